@@ -103,9 +103,12 @@ endif()
 
 file(CONFIGURE OUTPUT ${OUTPUT} @ONLY CONTENT [[
 // Generated from the sources: a digest of the sources of each component.
-#include "benchmarks/plan/build_parts.h"
+#include <map>
+#include <string>
 
 namespace isoline::benchmarks {
+
+const std::map<std::string, std::string>& tree_sources();  // benchmarks/plan/catalog.h
 
 const std::map<std::string, std::string>& tree_sources() {
   static const std::map<std::string, std::string> all{

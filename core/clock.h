@@ -36,10 +36,7 @@ class Stopwatch {
   double resumed_processor_ = 0, processor_ = 0;
 };
 
-// Times as records and component files contain them: whole seconds of universal time,
-// "2026-01-31T12:00:00Z".
-
-// From seconds since 1970.
+// Seconds since 1970 as records and component files contain them: "2026-01-31T12:00:00Z".
 std::string instant_text(std::int64_t seconds);
 std::optional<std::int64_t> instant_from(const std::string& text);  // none where it is no such text
 

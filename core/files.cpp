@@ -19,7 +19,6 @@
 #include <optional>
 #include <utility>
 
-#include "core/digest.h"
 #include "core/errors.h"
 #include "core/text.h"
 
@@ -154,6 +153,11 @@ bool has_moved(const fs::path& from, const fs::path& to) {
   return false;
 }
 
+bool is_of_a_dead_process(const fs::path& path) {
+  const std::optional<pid_t> writer = writer_of(path);
+  return writer && ::kill(*writer, 0) != 0 && errno == ESRCH;
+}
+
 }  // namespace
 
 // Looked at before it is opened, for some devices act when they are, and after, for another file
@@ -191,15 +195,6 @@ fs::path temporary_of(const fs::path& path) {
   return path.string() + fmt::format(".{}-{}.tmp", this_machine(), ::getpid());
 }
 
-namespace {
-
-bool is_of_a_dead_process(const fs::path& path) {
-  const std::optional<pid_t> writer = writer_of(path);
-  return writer && ::kill(*writer, 0) != 0 && errno == ESRCH;
-}
-
-}  // namespace
-
 bool is_abandoned(const fs::path& path) {
   struct stat found {};
   return ::lstat(path.c_str(), &found) == 0 && S_ISREG(found.st_mode) && is_of_a_dead_process(path);
@@ -236,6 +231,8 @@ void flush_all(const fs::path& folder) {
   const OpenFile file(folder, O_RDONLY | O_DIRECTORY, "open");
   if (::syncfs(file.descriptor()) != 0) fail("flush", folder);
 }
+
+std::string digest(std::string_view text) { return fmt::format("{:016x}", fnv1a(text)); }
 
 HiddenFolder::HiddenFolder() {
   std::error_code error;

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -47,9 +48,19 @@ std::filesystem::path move_into(const std::filesystem::path& folder,
 void write_unflushed(const std::filesystem::path& path, std::string_view text);
 void flush_all(const std::filesystem::path& folder);
 
-// A private folder in the temporary folder, with an unpredictable name.
+// FNV-1a, 64 bits (Fowler, Noll, Vo): names files by what they hold and keys random streams.
+inline constexpr std::uint64_t kDigestStart = 0xcbf29ce484222325;
 
-// Goes with its scope, and all that is in it. UsageError where it cannot be made.
+constexpr std::uint64_t fnv1a(std::string_view text, std::uint64_t state = kDigestStart) {
+  constexpr std::uint64_t kPrime = 0x100000001b3;
+  for (const char letter : text) state = (state ^ static_cast<unsigned char>(letter)) * kPrime;
+  return state;
+}
+
+std::string digest(std::string_view text);  // as 16 hexadecimal digits
+
+// A private folder in the temporary folder that goes with its scope, and all that is in it.
+// UsageError where it cannot be made.
 class HiddenFolder {
  public:
   HiddenFolder();

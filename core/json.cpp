@@ -3,41 +3,14 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
-#include <string_view>
 
 #include "core/errors.h"
 #include "core/files.h"
 
 namespace isoline {
-namespace {
-
-// Trees are copied, compared and written by recursion: each level takes of the stack.
-constexpr std::size_t kMostNesting = 200;
-
-// How deep lists and objects stand within each other, texts aside; of what is no JSON some number.
-std::size_t nesting_of(std::string_view text) {
-  std::size_t depth = 0, most = 0;
-  bool is_text = false;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const char letter = text[i];
-    if (letter == '"') is_text = !is_text;
-    if (is_text && letter == '\\') ++i;
-    if (is_text) continue;
-    const auto is_one_of = [&](const char(&two)[3]) {
-      return letter == two[0] || letter == two[1];
-    };
-    if (is_one_of("[{")) most = std::max(most, ++depth);
-    if (is_one_of("]}") && depth > 0) --depth;
-  }
-  return most;
-}
-
-}  // namespace
-
 Json json_number(Real value) {
   if (std::isnan(value)) return "nan";
   if (std::isinf(value)) return value > 0 ? "inf" : "-inf";
@@ -71,12 +44,17 @@ std::string json_text(const Json& value, int indent) {
 }
 
 Json parse_json(const std::string& text, const std::string& origin) {
-  require(nesting_of(text) <= kMostNesting, [&] {
-    return fmt::format("{} is nested deeper than {} levels, the limit for JSON", origin,
-                       kMostNesting);
-  });
+  // Trees are copied, compared and written by recursion: each level takes of the stack.
+  constexpr int kMostNesting = 200;
+  const auto is_kept = [&](int depth, Json::parse_event_t, const Json&) {
+    require(depth <= kMostNesting, [&] {
+      return fmt::format("{} is nested deeper than {} levels, the limit for JSON", origin,
+                         kMostNesting);
+    });
+    return true;
+  };
   try {
-    return Json::parse(text);
+    return Json::parse(text, is_kept);
   } catch (const Json::exception& error) {  // also of numbers that are out of range
     throw UsageError(fmt::format("{} is not JSON: {}", origin, error.what()));
   }

@@ -8,6 +8,7 @@
 #include <charconv>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "core/json.h"
 #include "core/spec.h"
@@ -22,22 +23,23 @@ bool parses_whole(const std::string& text, auto& value) {
   return error == std::errc() && stop == end;
 }
 
+std::optional<Real> number_in(const OptionValue& value) {
+  if (const Real* real = std::get_if<Real>(&value)) return *real;
+  if (const Index* whole = std::get_if<Index>(&value)) return static_cast<Real>(*whole);
+  return std::nullopt;
+}
+
 // One field's value in the field's type, or UsageError.
 class FieldParser {
  public:
   FieldParser(const std::string& component, const OptionField& field, const OptionValue& given)
       : component_(component), field_(field), given_(given) {}
 
-  OptionValue operator()(Real) const {
-    const Real value = number();
-    if (!isoline::contains(field_.range, value)) reject("in " + range_text(field_.range));
-    return value;
-  }
+  OptionValue operator()(Real) const { return within(number()); }
   OptionValue operator()(Index) const {
     const Real value = number();
     if (value != std::floor(value) || std::abs(value) > 1e15) reject("a whole number");
-    if (!isoline::contains(field_.range, value)) reject("in " + range_text(field_.range));
-    return static_cast<Index>(value);
+    return static_cast<Index>(within(value));
   }
   OptionValue operator()(bool) const {
     if (std::holds_alternative<bool>(given_)) return given_;
@@ -50,25 +52,25 @@ class FieldParser {
     const std::string* value = std::get_if<std::string>(&given_);
     if (!value) reject("text");
     const bool is_known = std::ranges::find(field_.choices, *value) != field_.choices.end();
-    if (!field_.choices.empty() && !is_known)
-      reject(fmt::format("one of {}", fmt::join(named_choices(), ", ")),
+    if (!field_.choices.empty() && !is_known) {
+      Choices named = field_.choices;
+      std::erase(named, "");  // the choice of nothing has no name
+      reject(fmt::format("one of {}", fmt::join(named, ", ")),
              nearest_name(*value, field_.choices));
+    }
     return *value;
   }
 
  private:
-  // The choice of nothing has no name.
-  Choices named_choices() const {
-    Choices named = field_.choices;
-    std::erase(named, "");
-    return named;
-  }
   Real number() const {
-    if (const Real* value = std::get_if<Real>(&given_)) return *value;
-    if (const Index* value = std::get_if<Index>(&given_)) return static_cast<Real>(*value);
+    if (const std::optional<Real> value = number_in(given_)) return *value;
     const std::string* text = std::get_if<std::string>(&given_);
     Real value = 0;
     if (!text || !parses_whole(*text, value) || std::isnan(value)) reject("a number");
+    return value;
+  }
+  Real within(Real value) const {
+    if (!isoline::contains(field_.range, value)) reject("in " + range_text(field_.range));
     return value;
   }
   [[noreturn]] void reject(const std::string& law, const std::string& nearest = "") const {
@@ -82,6 +84,28 @@ class FieldParser {
   const OptionField& field_;
   const OptionValue& given_;
 };
+
+Json json_of(const OptionValue& option) {
+  return std::visit(
+      [](const auto& value) -> Json {
+        if constexpr (std::is_same_v<std::decay_t<decltype(value)>, Real>)
+          return json_number(value);
+        else
+          return value;
+      },
+      option);
+}
+
+OptionValue option_from(const std::string& name, const Json& json) {
+  if (json.is_boolean()) return json.get<bool>();
+  if (json.is_number_integer()) return json.get<Index>();
+  if (json.is_number()) return json.get<Real>();
+  require(json.is_string(), [&] {
+    return fmt::format("the option {} must be a number, a truth value or a text, got {}", name,
+                       json_text(json));
+  });
+  return json.get<std::string>();
+}
 
 }  // namespace
 
@@ -115,10 +139,7 @@ const OptionValue& OptionValues::at(std::string_view name) const {
 
 Real OptionValues::number(std::string_view name, Real otherwise) const {
   const OptionValue* found = find(name);
-  if (!found) return otherwise;
-  if (const Real* value = std::get_if<Real>(found)) return *value;
-  if (const Index* value = std::get_if<Index>(found)) return static_cast<Real>(*value);
-  return otherwise;
+  return found ? number_in(*found).value_or(otherwise) : otherwise;
 }
 
 std::string OptionValues::text(std::string_view name, std::string_view otherwise) const {
@@ -177,32 +198,6 @@ std::string short_spec(const OptionTable& table, const std::string& name,
 }
 
 // Options to JSON and back.
-
-namespace {
-
-Json json_of(const OptionValue& option) {
-  return std::visit(
-      [](const auto& value) -> Json {
-        if constexpr (std::is_same_v<std::decay_t<decltype(value)>, Real>)
-          return json_number(value);
-        else
-          return value;
-      },
-      option);
-}
-
-OptionValue option_from(const std::string& name, const Json& json) {
-  if (json.is_boolean()) return json.get<bool>();
-  if (json.is_number_integer()) return json.get<Index>();
-  if (json.is_number()) return json.get<Real>();
-  require(json.is_string(), [&] {
-    return fmt::format("the option {} must be a number, a truth value or a text, got {}", name,
-                       json_text(json));
-  });
-  return json.get<std::string>();
-}
-
-}  // namespace
 
 Json to_json(const OptionValues& options) {
   Json json = Json::object();

@@ -6,6 +6,7 @@
 // Parsing, validation, `describe`, JSON, report columns and sweeps all come from it.
 #pragma once
 
+#include <array>
 #include <initializer_list>
 #include <limits>
 #include <nlohmann/json_fwd.hpp>
@@ -157,8 +158,6 @@ Options read_options(const OptionValues& complete) {
 struct NoOptions {};
 inline void fields(NoOptions&, auto&) {}
 
-// Options as JSON: what records hold of them, and what describes them.
-
 using Json = nlohmann::json;
 
 Json to_json(const OptionValues& options);          // an object; numbers survive
@@ -166,7 +165,15 @@ OptionValues option_values_from(const Json& json);  // UsageError if a value has
 // Without the options that are empty. Only these name a cell, so a component can gain an option
 // that is empty by default without renaming its cells.
 OptionValues without_empty(const OptionValues& options);
-Json describe_options(
-    const OptionTable& table);  // a list: name, type, default, constraint and meaning
+Json describe_options(const OptionTable& table);  // a list of name, type, default, constraint, doc
+
+// Options by which a network learns a problem. Problems declare them (problems/learning.h); plans,
+// records and reports read them.
+
+inline constexpr const char *kModeOption = "mode", *kDirectMode = "direct", *kLearnMode = "learn";
+inline constexpr const char *kNetworkOption = "network", *kBatchOption = "batch",
+                            *kDataOption = "data", *kEpochOption = "epoch", *kWatchOption = "watch";
+inline constexpr std::array kLearningOptions = {kModeOption, kNetworkOption, kBatchOption,
+                                                kDataOption, kEpochOption,   kWatchOption};
 
 }  // namespace isoline

@@ -1,8 +1,9 @@
-// The oracles of a problem, by kind; the ledger counts each.
+// The oracles of a problem, by kind, which the ledger counts; and extra information by name.
 #pragma once
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <initializer_list>
 #include <string_view>
@@ -133,5 +134,33 @@ class OracleSet {
   static constexpr unsigned bit(Oracle oracle) { return 1U << static_cast<unsigned>(oracle); }
   unsigned bits_ = 0;
 };
+
+// Extra information that a method may use and others do not: a fact of the run, stored by name.
+
+enum class Privilege {
+  exact_hessian,
+  exact_inverse,
+  damped_inverse,
+  approximate_inverse,
+  estimate,
+  ground_truth,
+};
+inline constexpr std::array<std::string_view, 6> kPrivilegeNames = {
+    "exact Hessian",
+    "exact inverse of the physics",
+    "damped inverse of the physics",
+    "approximate inverse of the physics",
+    "estimate by how the data were made",
+    "ground truth"};
+inline std::string_view name_of(Privilege privilege) {
+  return kPrivilegeNames[static_cast<std::size_t>(privilege)];
+}
+
+// Whether this extra information is an inverse of the physics.
+inline bool is_inverse_of_physics(std::string_view privilege) {
+  using enum Privilege;
+  return std::ranges::any_of(std::array{exact_inverse, damped_inverse, approximate_inverse},
+                             [&](Privilege each) { return name_of(each) == privilege; });
+}
 
 }  // namespace isoline

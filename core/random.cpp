@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/digest.h"
+#include "core/files.h"
 
 namespace isoline {
 Draws::Draws(std::uint64_t seed, std::string_view component, std::string_view purpose,

@@ -1,4 +1,4 @@
-// Numbers and their places, for files that need no arrays.
+// Numbers and their places.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +11,6 @@ using Real = double;
 using Index = std::ptrdiff_t;  // Eigen's
 
 // Numbers in columns, for files that keep and show arrays and need no algebra of them.
-
 class Grid {
  public:
   Grid() = default;

@@ -68,31 +68,6 @@ class WordReader {
   std::string_view rest_;
 };
 
-}  // namespace
-
-std::string shell_word(std::string_view word) {
-  if (!word.empty() && std::ranges::all_of(word, is_literal)) return std::string(word);
-  std::string quoted = "'";
-  for (const char letter : word)
-    if (letter == '\'')
-      quoted += "'\\''";  // ends the quotes, a quoted quote, begins them again
-    else
-      quoted += letter;
-  return quoted + "'";
-}
-
-std::vector<std::string> shell_words(std::string_view command) {
-  WordReader reader(command);
-  std::vector<std::string> words;
-  for (std::string word; reader.read(word);) words.push_back(word);
-  require(!words.empty(), "a command must have at least one word");
-  return words;
-}
-
-// Processor time of other processes, by the clock that each of them has.
-
-namespace {
-
 struct Counted {
   pid_t process;
   double seconds;  // at the last reading: a process that has ended reports nothing more
@@ -120,6 +95,27 @@ void look(Counted& one) {
 }
 
 }  // namespace
+
+std::string shell_word(std::string_view word) {
+  if (!word.empty() && std::ranges::all_of(word, is_literal)) return std::string(word);
+  std::string quoted = "'";
+  for (const char letter : word)
+    if (letter == '\'')
+      quoted += "'\\''";  // ends the quotes, a quoted quote, begins them again
+    else
+      quoted += letter;
+  return quoted + "'";
+}
+
+std::vector<std::string> shell_words(std::string_view command) {
+  WordReader reader(command);
+  std::vector<std::string> words;
+  for (std::string word; reader.read(word);) words.push_back(word);
+  require(!words.empty(), "a command must have at least one word");
+  return words;
+}
+
+// Processor time of other processes, by the clock that each of them has.
 
 CountedProcess::CountedProcess(pid_t process) : process_(process) {
   const std::lock_guard lock(ledger().mutex);

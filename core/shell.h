@@ -16,10 +16,8 @@ std::string shell_word(std::string_view word);
 // no pattern, no pipe. UsageError where a quote stays open or there is no word at all.
 std::vector<std::string> shell_words(std::string_view command);
 
-// Programs that compute for this process: their processor time is its own.
-
-// Counted while it stands, and what was counted stays. Of the process itself, not of those that it
-// starts.
+// A program that computes for this process, whose processor time is counted as this one's: of the
+// process itself, not of those that it starts.
 class CountedProcess {
  public:
   explicit CountedProcess(pid_t process);

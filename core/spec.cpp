@@ -147,7 +147,8 @@ using SeedSpan = std::pair<std::uint64_t, std::uint64_t>;  // the first and the 
 
 SeedSpan span_of(std::string_view part, std::string_view whole) {
   const auto number = [&](std::string_view digits) {
-    return parse_number<std::uint64_t>(digits, whole, "seeds such as 5 (0 to 4), 0..9 or =5");
+    return parse_number<std::uint64_t>(
+        digits, whole, "seeds as a count (5: 0 to 4), a range (0..9) or one seed (=5)");
   };
   if (part.starts_with('=')) {
     const std::uint64_t seed = number(part.substr(1));

@@ -1,11 +1,17 @@
-// How a run ends, what it may spend, what its problem aims at, and what the program returns.
+// How a run ends, what it may spend, what its problem aims at and by which targets, and what the
+// program returns.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <optional>
 #include <string_view>
+
+#include "core/real.h"
 
 namespace isoline {
 
@@ -31,10 +37,15 @@ inline std::string_view name_of(Status status) {
   return kStatusNames[static_cast<std::size_t>(status)];
 }
 
+// The choice of this name among those that `names` lists in order.
+template <class Choice>
+std::optional<Choice> choice_named(std::string_view name, const auto& names) {
+  const auto at = std::ranges::find(names, name);
+  if (at == names.end()) return std::nullopt;
+  return static_cast<Choice>(at - names.begin());
+}
 inline std::optional<Status> status_of(std::string_view name) {
-  for (std::size_t i = 0; i < kStatusNames.size(); ++i)
-    if (kStatusNames[i] == name) return static_cast<Status>(i);
-  return std::nullopt;
+  return choice_named<Status>(name, kStatusNames);
 }
 
 // The cell went wrong, as opposed to the method doing badly.
@@ -54,9 +65,7 @@ inline constexpr std::array<std::string_view, 2> kAimNames = {"loss", "x"};
 inline std::string_view name_of(Aim aim) { return kAimNames[static_cast<std::size_t>(aim)]; }
 
 inline std::optional<Aim> aim_of(std::string_view name) {
-  for (std::size_t i = 0; i < kAimNames.size(); ++i)
-    if (kAimNames[i] == name) return static_cast<Aim>(i);
-  return std::nullopt;
+  return choice_named<Aim>(name, kAimNames);
 }
 
 // The budget of a run, and the loss at which it is done.
@@ -80,5 +89,28 @@ enum ExitCode {
   kNotComparable = 4,  // at least in part
   kInterrupted = 130   // what a shell expects after Ctrl-C
 };
+
+// The ladder of targets by which runs are compared: τ_j = 10^(−j/5), j = 0 … 50.
+
+inline constexpr int kRungs = 51;
+inline Real rung(std::size_t j) { return std::pow(10.0, -static_cast<Real>(j) / 5); }
+
+// The first rung at or below a tolerance, so the next stricter one where it lies between two; the
+// last one where none is so strict.
+inline std::size_t rung_of(Real tau) {
+  constexpr Real kRounding = 1e-9;
+  std::size_t j = 0;
+  while (j + 1 < kRungs && rung(j) > tau * (1 + kRounding)) ++j;
+  return j;
+}
+
+// The error in x that counts as found at τ. A floor is measured: a tenth of it is its own error.
+inline Real x_goal(Real tau, Real x_scale, Real x_floor) {
+  constexpr Real kAboveFloor = 1.1;
+  return std::max(tau * x_scale, kAboveFloor * x_floor);
+}
+
+// Which iterations a curve keeps: 0 to 100, then 32 a decade.
+std::int64_t next_kept_after(std::int64_t iteration);
 
 }  // namespace isoline

@@ -68,6 +68,21 @@ bool is_harmful(char32_t code) {
          is_within(0x2028, 0x202E) || is_within(0x2066, 0x2069);
 }
 
+// Levenshtein (1966): least number of letters inserted, deleted or replaced.
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), 0);
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    std::size_t diagonal = std::exchange(row[0], i + 1);
+    for (std::size_t j = 0; j < b.size(); ++j) {
+      const std::size_t replaced = diagonal + (a[i] != b[j]);
+      diagonal = row[j + 1];
+      row[j + 1] = std::min({replaced, row[j] + 1, row[j + 1] + 1});
+    }
+  }
+  return row.back();
+}
+
 }  // namespace
 
 std::string valid_utf8(std::string_view text) {
@@ -120,25 +135,6 @@ std::string count_text(std::uint64_t count) {
 }
 
 // Edit distance, and the sentence about an unknown name.
-
-namespace {
-
-// Levenshtein (1966): least number of letters inserted, deleted or replaced.
-std::size_t edit_distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), 0);
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    std::size_t diagonal = std::exchange(row[0], i + 1);
-    for (std::size_t j = 0; j < b.size(); ++j) {
-      const std::size_t replaced = diagonal + (a[i] != b[j]);
-      diagonal = row[j + 1];
-      row[j + 1] = std::min({replaced, row[j] + 1, row[j + 1] + 1});
-    }
-  }
-  return row.back();
-}
-
-}  // namespace
 
 std::string nearest_name(std::string_view wrong, const std::vector<std::string>& known) {
   std::string nearest;

@@ -43,9 +43,7 @@ inline std::uint64_t sum_of(std::uint64_t a, std::uint64_t b) {
 
 std::string count_text(std::uint64_t count);  // "50,000"; of kUncountable "more than 10^19"
 
-// "Did you mean": the known name nearest to a misspelt one.
-
-// Nearest by edit distance, if near enough to be meant; else empty.
+// The known name nearest by edit distance, if near enough to be meant; else empty.
 std::string nearest_name(std::string_view wrong, const std::vector<std::string>& known);
 
 // "unknown WHAT 'wrong'; did you mean 'right'?", or the list of what is known.

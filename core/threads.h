@@ -25,8 +25,6 @@ const Processor& processor();
 // starts its threads and chooses its kernels before main() when merely linked, so the program sets
 // the environment and starts itself again, once, before anything else.
 
-struct Processor;
-
 // The first line of every main(): one thread, the kernels that the processor has, the sizes of
 // caches that this was built for. Replaces the process where the environment has to change.
 void prepare_libraries(char** arguments);

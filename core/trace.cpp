@@ -1,7 +1,6 @@
-// Texts in a trace, and the constraints on all of it.
+// The iterations that a trace keeps, its texts, and the constraints on all of it.
 #include "core/trace.h"
 
-#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <vector>
@@ -130,6 +129,17 @@ bool are_choices_sound(const Trace& trace) {
 }
 
 }  // namespace
+
+std::int64_t next_kept_after(std::int64_t iteration) {
+  constexpr std::int64_t kEvery = 100;
+  constexpr Real kPerDecade = 32;
+  if (iteration < kEvery) return iteration + 1;
+  const Real passed = std::floor(kPerDecade * std::log10(static_cast<Real>(iteration)) + 1e-9);
+  std::int64_t next = iteration;
+  for (Real step = passed; next <= iteration; ++step)
+    next = std::llround(std::pow(10.0, step / kPerDecade));
+  return next;
+}
 
 void set_text(char (&out)[Trace::kText], std::string_view text) {
   const std::string_view kept = cut(text, Trace::kText - 1);

@@ -11,7 +11,6 @@
 #include <string>
 #include <string_view>
 
-#include "core/ladder.h"
 #include "core/oracle.h"
 #include "core/status.h"
 

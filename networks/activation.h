@@ -72,20 +72,15 @@ void hyperbolic_tangent(FlatRef<Scalar> z, FlatOut<Scalar> a) {
 // a = s(z)
 template <class Scalar>
 void activate(Activation kind, FlatRef<Scalar> z, FlatOut<Scalar> a) {
-  switch (kind) {
-    case Activation::relu:
-      a = (z < 0).select(Scalar(0), z);  // not max, which would hide a nan
-      break;
-    case Activation::tanh:
-      hyperbolic_tangent<Scalar>(z, a);
-      break;
-    case Activation::sigmoid:
-      a = (1 + (-z).exp()).inverse();
-      break;
-    case Activation::gelu:
-      normal_distribution<Scalar>(z, a);
-      a *= z;
-      break;
+  if (kind == Activation::relu) {
+    a = (z < 0).select(Scalar(0), z);  // not max, which would hide a nan
+  } else if (kind == Activation::tanh) {
+    hyperbolic_tangent<Scalar>(z, a);
+  } else if (kind == Activation::sigmoid) {
+    a = (1 + (-z).exp()).inverse();
+  } else {
+    normal_distribution<Scalar>(z, a);
+    a *= z;
   }
 }
 
@@ -93,39 +88,29 @@ void activate(Activation kind, FlatRef<Scalar> z, FlatOut<Scalar> a) {
 template <class Scalar>
 void multiply_by_slope(Activation kind, FlatRef<Scalar> z, FlatRef<Scalar> a, FlatOut<Scalar> g,
                        FlatOut<Scalar> room) {
-  switch (kind) {
-    case Activation::relu:
-      g = (a > 0).select(g, Scalar(0));
-      break;
-    case Activation::tanh:
-      g *= 1 - a.square();
-      break;
-    case Activation::sigmoid:
-      g *= a * (1 - a);
-      break;
-    case Activation::gelu:
-      normal_distribution<Scalar>(z, room);
-      g *= room + z * normal_density<Scalar>(z);
-      break;
+  if (kind == Activation::relu) {
+    g = (a > 0).select(g, Scalar(0));
+  } else if (kind == Activation::tanh) {
+    g *= 1 - a.square();
+  } else if (kind == Activation::sigmoid) {
+    g *= a * (1 - a);
+  } else {
+    normal_distribution<Scalar>(z, room);
+    g *= room + z * normal_density<Scalar>(z);
   }
 }
 
 // g = s''(z) g
 template <class Scalar>
 void multiply_by_bend(Activation kind, FlatRef<Scalar> z, FlatRef<Scalar> a, FlatOut<Scalar> g) {
-  switch (kind) {
-    case Activation::relu:
-      g.setZero();
-      break;
-    case Activation::tanh:
-      g *= -2 * a * (1 - a.square());
-      break;
-    case Activation::sigmoid:
-      g *= a * (1 - a) * (1 - 2 * a);
-      break;
-    case Activation::gelu:
-      g *= (2 - z.square()) * normal_density<Scalar>(z);
-      break;
+  if (kind == Activation::relu) {
+    g.setZero();
+  } else if (kind == Activation::tanh) {
+    g *= -2 * a * (1 - a.square());
+  } else if (kind == Activation::sigmoid) {
+    g *= a * (1 - a) * (1 - 2 * a);
+  } else {
+    g *= (2 - z.square()) * normal_density<Scalar>(z);
   }
 }
 

@@ -7,10 +7,6 @@
 
 namespace isoline::networks {
 
-void Network::curvature(VectorRef, BatchRef, BatchRef, VectorOut, Workspace&) const {
-  throw std::logic_error("this network has no second derivatives");
-}
-
 void Network::jacobian(BatchRef dy_dx, BatchOut J, Workspace& w) const {
   const Index k = outputs(), m = dy_dx.rows(), samples = dy_dx.cols() / k;
   w.unit.setZero(k, samples);
@@ -23,20 +19,6 @@ void Network::jacobian(BatchRef dy_dx, BatchOut J, Workspace& w) const {
     }
     w.unit.col(b).setZero();
   }
-}
-
-void Network::layer_factors(BatchRef, std::vector<LayerFactor>&, Workspace&) const {
-  throw std::logic_error("this network has no dense layers");
-}
-
-void Network::layer_moments(BatchRef, std::vector<LayerMoments>&, VectorOut, Workspace&) const {
-  throw std::logic_error("this network has no convolutions");
-}
-
-Vector Network::statistics(VectorRef, BatchRef, Workspace&) const { return {}; }
-
-void Network::infer(VectorRef theta, VectorRef, BatchRef in, BatchOut x, Workspace& w) const {
-  forward(theta, in, x, w);
 }
 
 const NetworkRegistry& network_registry() {

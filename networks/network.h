@@ -4,6 +4,7 @@
 #pragma once
 
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -62,7 +63,9 @@ class Network {
   // (d/dε) N'(θ + ε v)ᵀ (u + ε du) at ε = 0, exactly, by forward over reverse: u, du (k, B) -> (n).
   // v is that of the last pushforward on this workspace, whose tangents are used.
   virtual bool has_curvature() const { return false; }
-  virtual void curvature(VectorRef v, BatchRef u, BatchRef du, VectorOut out, Workspace& w) const;
+  virtual void curvature(VectorRef, BatchRef, BatchRef, VectorOut, Workspace&) const {
+    throw std::logic_error("this network has no second derivatives");
+  }
 
   // ∂y/∂θ of all samples stacked, (m·B, n), from ∂y/∂x of each side by side, (m, k·B). By default
   // one pullback per row.
@@ -70,18 +73,22 @@ class Network {
 
   // The factors of each dense layer, in order, under the cotangent u (k, B).
   virtual bool has_layer_factors() const { return false; }
-  virtual void layer_factors(BatchRef u, std::vector<LayerFactor>& out, Workspace& w) const;
+  virtual void layer_factors(BatchRef, std::vector<LayerFactor>&, Workspace&) const {
+    throw std::logic_error("this network has no dense layers");
+  }
 
   // The moments of each convolution, in order, under the cotangent u (k, B), and its pullback.
   virtual bool has_layer_moments() const { return false; }
-  virtual void layer_moments(BatchRef u, std::vector<LayerMoments>& out, VectorOut JTu,
-                             Workspace& w) const;
+  virtual void layer_moments(BatchRef, std::vector<LayerMoments>&, VectorOut, Workspace&) const {
+    throw std::logic_error("this network has no convolutions");
+  }
 
   // Evaluation of trained parameters. Where the forward pass depends on statistics of its batch,
   // `statistics` gives those of a batch, to be averaged, and `infer` is given the average.
-  virtual Vector statistics(VectorRef theta, BatchRef in, Workspace& w) const;  // empty by default
-  virtual void infer(VectorRef theta, VectorRef statistics, BatchRef in, BatchOut x,
-                     Workspace& w) const;  // forward by default
+  virtual Vector statistics(VectorRef, BatchRef, Workspace&) const { return {}; }
+  virtual void infer(VectorRef theta, VectorRef, BatchRef in, BatchOut x, Workspace& w) const {
+    forward(theta, in, x, w);
+  }
 };
 
 // A network from "mlp[layers=32-64-32]"; UsageError where it does not fit the shape.

@@ -103,7 +103,7 @@ struct HessianFree {
       const Real before = std::exchange(rr, s.r.squaredNorm());
       s.p = s.r + rr / before * s.p;
     }
-    keep(s.model[i], s);  // the last may so be there twice
+    keep(s.model[i], s);  // the last may be there twice
   }
 
   static void keep(Real model, State& s) {
@@ -120,8 +120,10 @@ struct HessianFree {
            model[i] - model[i - k] > static_cast<Real>(k) * kEpsilon * model[i];
   }
 
-  // Back from the last iterate for as long as the loss falls.
+  // Back from the last iterate for as long as the loss falls. Conjugate gradients that have nearly
+  // converged differ by rounding, which moves the loss by up to 1e-9 of itself: that is no fall.
   static Index backtrack(Meter& f, const Vector& theta, State& s, Real& loss) {
+    constexpr Real kLeastFall = 1e-6;
     const auto loss_of = [&](Index i) {
       s.candidate = theta + s.kept.col(i);
       return f.loss(s.candidate);
@@ -130,7 +132,7 @@ struct HessianFree {
     loss = loss_of(best);
     while (best > 0 && !f.is_spent()) {
       const Real earlier = loss_of(best - 1);
-      if (earlier >= loss) break;
+      if (!(earlier < (1 - kLeastFall) * loss)) break;
       loss = earlier;
       --best;
     }

@@ -43,13 +43,8 @@ struct LbfgsLimits {
   std::function<bool()> is_over = nullptr;  // called before each evaluation
 };
 
-struct LbfgsResult {
-  Real value;         // f at the x returned
-  Index evaluations;  // spent
-};
-
 // Moves x to the best point found.
-LbfgsResult minimize_lbfgs(const ValueAndGradient& f, const LbfgsLimits& limits, Vector& x);
+void minimize_lbfgs(const ValueAndGradient& f, const LbfgsLimits& limits, Vector& x);
 
 class Inversion {
  public:
@@ -82,16 +77,6 @@ std::unique_ptr<Inversion> make_inversion(const InversionOptions& options, Inver
 OracleSet needs_of(const InversionOptions& options, const Problem& problem);  // and the network
 // The reason why it cannot treat a problem; empty if it can.
 std::string objection_to(const InversionOptions& options, const Problem& problem);
-
-// The same for the entry of a method whose options contain an `inversion`.
-template <class Options>
-OracleSet needs_of_inversion(const OptionValues& options, const Problem& problem) {
-  return needs_of(read_options<Options>(options).inversion, problem);
-}
-template <class Options>
-std::string objection_of_inversion(const OptionValues& options, const Problem& problem) {
-  return objection_to(read_options<Options>(options).inversion, problem);
-}
 
 // x̃ = x − V diag(sign(g̃ᵢ) lᵢ) Vᵀ, lᵢ = |g̃ᵢ/(Sᵢ + μ)|, at most `clip` where that is not 0: Newton's
 // step on ½‖P(x) − y*‖² against the gradient, with H = V diag(S) Vᵀ and g̃ = Vᵀ∇L.

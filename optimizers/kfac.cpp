@@ -238,10 +238,9 @@ void register_kfac(OptimizerRegistry& registry) {
        .note =
            "For networks of dense layers or of convolutions. G is exact, with one pullback per "
            "output. For convolutions, and for more than 64 outputs, it uses one random cotangent "
-           "per step, the same for every seed. A convolution's A is the sum over places, its G "
-           "the mean: this underestimates the curvature if the physics correlates places. Batch "
-           "norm's γ "
-           "and β step along their gradients, over the mean of their curvature's diagonal. "
+           "per step, the same for every seed. A convolution's A is the sum over places, its G the "
+           "mean: this underestimates the curvature if the physics correlates places. Batch norm's "
+           "γ and β step along their gradients, over the mean of their curvature's diagonal. "
            "Without the paper's rescaling, momentum and adaptive damping.",
        .needs = {Oracle::forward, Oracle::pullback},
        .tunable = {.option = "rate", .below = 1},

@@ -4,20 +4,40 @@
 // samples at every step J and r are those of the step's own. With damping=fixed, the rule of
 // mini-batches that cannot be compared: θ ← θ − η Jᵀ (K + μ)⁻¹ r, K = JJᵀ, μ a share of the mean
 // diagonal of K, and every step is taken.
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string>
+#include <string_view>
+#include <utility>
 
 #include "core/archive.h"
 #include "core/array.h"
 #include "core/decompose.h"
 #include "core/product.h"
-#include "optimizers/nielsen_damping.h"
 #include "optimizers/optimizer.h"
 #include "optimizers/spectral_step.h"
 
 namespace isoline::optimizers {
 namespace {
+
+// The damping μ of a Levenberg-Marquardt method by the gain of each step, actual over predicted
+// decrease; Nielsen (1999): divided by at most 3 after a good step, and multiplied by 2, 4, 8, …
+// through steps that are rejected one after the other.
+struct NielsenDamping {
+  Real mu = 0, growth = 2;  // μ, and its factor at the next rejection
+
+  Status reject() {
+    mu *= growth;
+    growth *= 2;
+    return std::isfinite(mu) ? Status::running : Status::converged;
+  }
+  void accept(Real gain) {
+    mu *= std::max(1.0 / 3, 1 - std::pow(2 * gain - 1, 3));
+    growth = 2;
+  }
+  void persist(Archive& archive) { archive(mu, growth); }
+};
 
 constexpr Real kEpsilon = std::numeric_limits<Real>::epsilon();
 constexpr Index kLeastSquared = 64;  // of min(m·B, n): below, QR takes no longer than Cholesky
@@ -29,12 +49,53 @@ constexpr Index kLeastSquared = 64;  // of min(m·B, n): below, QR takes no long
 // converge QR is left.
 class DampedLeastSquares {
  public:
-  enum class Way { automatic, orthogonal, cholesky };
-  enum class Scaling { more, none, jacobian };
-
-  void set(Meter& f, Linearization& at, const Vector& b, Scaling scaling);
+  // Scaling and way as the method's options have them.
+  void set(Meter& f, Linearization& at, const Vector& b, std::string_view scaling) {
+    const Index n = f.unknowns();
+    rows_ = b.size();
+    has_gram_ = false;
+    // An audit grants both, and J serves any problem.
+    is_layered_ = !f.is_granted(Oracle::jacobian);
+    if (is_layered_) {
+      layered_.take(at);
+      layered_.order(f.layout(), order_);
+      layered_.squared_columns(pulled_);
+      norms_.resize(n);
+      norms_(order_) = pulled_.cwiseSqrt();
+    } else {
+      J_ = at.jacobian();
+      norms_ = J_.colwise().norm();
+    }
+    if (scale_.size() != n) scale_.setZero(n);
+    if (scaling == "more") scale_ = scale_.cwiseMax(norms_);
+    if (scaling == "none") scale_.setOnes();
+    if (scaling == "jacobian") scale_ = norms_;
+    // A parameter that has done nothing yet has no scale, and no step.
+    inverse_ = (scale_.array() > 0).select(scale_.cwiseInverse(), 1);
+    if (is_layered_) inverse_ = inverse_(order_).eval();
+    const Index size = is_wide() ? rows_ : rows_ + n;
+    if (right_.size() != size) right_.setZero(size);
+    right_.head(rows_) = b;
+  }
   // d and J d; false where they are not finite.
-  bool solve(Real mu, Way way, Vector& d, Vector& Jd);
+  bool solve(Real mu, std::string_view way, Vector& d, Vector& Jd) {
+    const bool is_large = std::min(rows_, scale_.size()) >= kLeastSquared;
+    const bool squares = way == "cholesky" || (way == "auto" && is_large);
+    if (squares && by_cholesky(mu)) {
+      d.resize(scale_.size());
+      if (is_layered_)
+        d(order_) = step_.cwiseProduct(inverse_);
+      else
+        d = step_.cwiseProduct(inverse_);
+      d = (scale_.array() > 0).select(d, 0);
+      Jd = moved_;
+      return true;
+    }
+    if (is_layered_) form_jacobian();
+    if (!by_qr(mu, d)) return false;
+    Jd = moved_;
+    return true;
+  }
   Real misfit() const { return 0.5 * right_.squaredNorm(); }  // ½‖b‖²
   Real squared_length(const Vector& d) const { return scale_.cwiseProduct(d).squaredNorm(); }
   void persist(Archive& archive) {
@@ -44,13 +105,102 @@ class DampedLeastSquares {
 
  private:
   bool is_wide() const { return rows_ < scale_.size(); }
-  void push(const Vector& s);  // moved_ = A s
-  void pull(const Vector& y);  // pulled_ = Aᵀ y
-  void form_gram();
-  bool by_cholesky(Real mu);
-  void correct(Real mu);  // correction_ = the residual of solution_
-  bool by_qr(Real mu, Vector& d);
-  void form_jacobian();  // from the layers
+  // moved_ = A s
+  void push(const Vector& s) {
+    wide_ = s.cwiseProduct(inverse_);
+    if (is_layered_) {
+      layered_.pushforward(wide_, tall_);
+      moved_ = tall_.col(0);
+    } else {
+      moved_.noalias() = J_ * wide_.col(0);
+    }
+  }
+  // pulled_ = Aᵀ y
+  void pull(const Vector& y) {
+    if (is_layered_) {
+      tall_ = y;
+      layered_.pullback(tall_, wide_);
+      pulled_ = wide_.col(0).cwiseProduct(inverse_);
+    } else {
+      pulled_.noalias() = J_.transpose() * y;
+      pulled_.array() *= inverse_.array();
+    }
+  }
+  void form_gram() {
+    if (has_gram_) return;
+    has_gram_ = true;
+    if (is_layered_) {
+      pulled_ = inverse_.cwiseAbs2();
+      layered_.weighted_gram(pulled_, gram_);
+      return;
+    }
+    scaled_ = J_ * inverse_.asDiagonal();
+    const Index r = std::min(J_.rows(), J_.cols());
+    gram_.resize(r, r);
+    product(is_wide() ? Form::A_BH : Form::AH_B, scaled_, scaled_, gram_);
+  }
+  // (AAᵀ + μ) z = b and s = Aᵀz where A is wide, else (AᵀA + μ) s = Aᵀb.
+  bool by_cholesky(Real mu) {
+    constexpr int kMostCorrections = 6;
+    constexpr Real kEnough = 1e-10;  // of the correction that is left out
+    form_gram();
+    factor_ = gram_;
+    factor_.diagonal().array() += mu;
+    if (!cholesky(factor_)) return false;
+    rest_ = right_.head(rows_);
+    if (!is_wide()) pull(rest_);
+    solution_ = is_wide() ? rest_ : pulled_;
+    if (!solve_by_cholesky(factor_, solution_)) return false;
+    for (int i = 0; i < kMostCorrections; ++i) {
+      correct(mu);
+      if (!solve_by_cholesky(factor_, correction_)) return false;
+      if (correction_.norm() <= kEnough * solution_.norm()) return true;
+      solution_ += correction_;
+    }
+    return false;
+  }
+  // correction_ = the residual of solution_
+  void correct(Real mu) {
+    rest_ = solution_.col(0);
+    if (is_wide()) {
+      pull(rest_);
+      step_ = pulled_;
+      push(step_);
+      correction_ = right_ - moved_ - mu * rest_;
+    } else {
+      step_ = rest_;
+      push(step_);
+      rest_ = right_.head(rows_) - moved_;
+      pull(rest_);
+      correction_ = pulled_ - mu * step_;
+    }
+  }
+  bool by_qr(Real mu, Vector& d) {
+    const Index n = J_.cols();
+    const Real root = std::sqrt(mu);
+    if (!is_wide()) {
+      scaled_.setZero(rows_ + n, n);
+      scaled_.topRows(rows_) = J_;
+      scaled_.bottomRows(n).diagonal() = root * scale_;
+      if (!least_squares(scaled_, right_, kEpsilon, d)) return false;
+      moved_.noalias() = scaled_.topRows(rows_) * d;
+      return true;
+    }
+    scaled_.setZero(rows_, n + rows_);
+    for (Index j = 0; j < n; ++j) scaled_.col(j) = J_.col(j) / (scale_[j] > 0 ? scale_[j] : 1);
+    scaled_.rightCols(rows_).diagonal().setConstant(root);
+    if (!least_squares(scaled_, right_, kEpsilon, step_)) return false;
+    d = (scale_.array() > 0).select(step_.head(n).cwiseQuotient(scale_), 0);
+    moved_.noalias() = scaled_.leftCols(n) * step_.head(n);
+    return true;
+  }
+  void form_jacobian() {  // from the layers
+    layered_.pullback(Matrix::Identity(rows_, rows_), wide_);
+    J_.resize(rows_, wide_.rows());
+    for (Index i = 0; i < wide_.rows(); ++i) J_.col(order_[i]) = wide_.row(i).transpose();
+    inverse_ = (scale_.array() > 0).select(scale_.cwiseInverse(), 1);
+    is_layered_ = has_gram_ = false;
+  }
 
   Index rows_ = 0;  // m·B
   bool is_layered_ = false, has_gram_ = false;
@@ -66,152 +216,6 @@ class DampedLeastSquares {
   Matrix scaled_, wide_, tall_;                  // A or what QR takes, (n, 1), (m·B, 1)
   Vector norms_, step_, moved_, pulled_, rest_;  // (n) ‖J_j‖, s = D d; (m·B) A s; (n); (m·B)
 };
-
-void DampedLeastSquares::set(Meter& f, Linearization& at, const Vector& b, Scaling scaling) {
-  const Index n = f.unknowns();
-  rows_ = b.size();
-  has_gram_ = false;
-  is_layered_ = !f.is_granted(Oracle::jacobian);  // an audit grants both, and J serves any problem
-  if (is_layered_) {
-    layered_.take(at);
-    layered_.order(f.layout(), order_);
-    layered_.squared_columns(pulled_);
-    norms_.resize(n);
-    norms_(order_) = pulled_.cwiseSqrt();
-  } else {
-    J_ = at.jacobian();
-    norms_ = J_.colwise().norm();
-  }
-  if (scale_.size() != n) scale_.setZero(n);
-  if (scaling == Scaling::more) scale_ = scale_.cwiseMax(norms_);
-  if (scaling == Scaling::none) scale_.setOnes();
-  if (scaling == Scaling::jacobian) scale_ = norms_;
-  // A parameter that has done nothing yet has no scale, and no step.
-  inverse_ = (scale_.array() > 0).select(scale_.cwiseInverse(), 1);
-  if (is_layered_) inverse_ = inverse_(order_).eval();
-  const Index size = is_wide() ? rows_ : rows_ + n;
-  if (right_.size() != size) right_.setZero(size);
-  right_.head(rows_) = b;
-}
-
-bool DampedLeastSquares::solve(Real mu, Way way, Vector& d, Vector& Jd) {
-  const bool is_large = std::min(rows_, scale_.size()) >= kLeastSquared;
-  const bool squares = way == Way::cholesky || (way == Way::automatic && is_large);
-  if (squares && by_cholesky(mu)) {
-    d.resize(scale_.size());
-    if (is_layered_)
-      d(order_) = step_.cwiseProduct(inverse_);
-    else
-      d = step_.cwiseProduct(inverse_);
-    d = (scale_.array() > 0).select(d, 0);
-    Jd = moved_;
-    return true;
-  }
-  if (is_layered_) form_jacobian();
-  if (!by_qr(mu, d)) return false;
-  Jd = moved_;
-  return true;
-}
-
-void DampedLeastSquares::push(const Vector& s) {
-  wide_ = s.cwiseProduct(inverse_);
-  if (is_layered_) {
-    layered_.pushforward(wide_, tall_);
-    moved_ = tall_.col(0);
-  } else {
-    moved_.noalias() = J_ * wide_.col(0);
-  }
-}
-
-void DampedLeastSquares::pull(const Vector& y) {
-  if (is_layered_) {
-    tall_ = y;
-    layered_.pullback(tall_, wide_);
-    pulled_ = wide_.col(0).cwiseProduct(inverse_);
-  } else {
-    pulled_.noalias() = J_.transpose() * y;
-    pulled_.array() *= inverse_.array();
-  }
-}
-
-void DampedLeastSquares::form_gram() {
-  if (has_gram_) return;
-  has_gram_ = true;
-  if (is_layered_) {
-    pulled_ = inverse_.cwiseAbs2();
-    layered_.weighted_gram(pulled_, gram_);
-    return;
-  }
-  scaled_ = J_ * inverse_.asDiagonal();
-  const Index r = std::min(J_.rows(), J_.cols());
-  gram_.resize(r, r);
-  product(is_wide() ? Form::A_BH : Form::AH_B, scaled_, scaled_, gram_);
-}
-
-// (AAᵀ + μ) z = b and s = Aᵀz where A is wide, else (AᵀA + μ) s = Aᵀb.
-bool DampedLeastSquares::by_cholesky(Real mu) {
-  constexpr int kMostCorrections = 6;
-  constexpr Real kEnough = 1e-10;  // of the correction that is left out
-  form_gram();
-  factor_ = gram_;
-  factor_.diagonal().array() += mu;
-  if (!cholesky(factor_)) return false;
-  rest_ = right_.head(rows_);
-  if (!is_wide()) pull(rest_);
-  solution_ = is_wide() ? rest_ : pulled_;
-  if (!solve_by_cholesky(factor_, solution_)) return false;
-  for (int i = 0; i < kMostCorrections; ++i) {
-    correct(mu);
-    if (!solve_by_cholesky(factor_, correction_)) return false;
-    if (correction_.norm() <= kEnough * solution_.norm()) return true;
-    solution_ += correction_;
-  }
-  return false;
-}
-
-void DampedLeastSquares::correct(Real mu) {
-  rest_ = solution_.col(0);
-  if (is_wide()) {
-    pull(rest_);
-    step_ = pulled_;
-    push(step_);
-    correction_ = right_ - moved_ - mu * rest_;
-  } else {
-    step_ = rest_;
-    push(step_);
-    rest_ = right_.head(rows_) - moved_;
-    pull(rest_);
-    correction_ = pulled_ - mu * step_;
-  }
-}
-
-bool DampedLeastSquares::by_qr(Real mu, Vector& d) {
-  const Index n = J_.cols();
-  const Real root = std::sqrt(mu);
-  if (!is_wide()) {
-    scaled_.setZero(rows_ + n, n);
-    scaled_.topRows(rows_) = J_;
-    scaled_.bottomRows(n).diagonal() = root * scale_;
-    if (!least_squares(scaled_, right_, kEpsilon, d)) return false;
-    moved_.noalias() = scaled_.topRows(rows_) * d;
-    return true;
-  }
-  scaled_.setZero(rows_, n + rows_);
-  for (Index j = 0; j < n; ++j) scaled_.col(j) = J_.col(j) / (scale_[j] > 0 ? scale_[j] : 1);
-  scaled_.rightCols(rows_).diagonal().setConstant(root);
-  if (!least_squares(scaled_, right_, kEpsilon, step_)) return false;
-  d = (scale_.array() > 0).select(step_.head(n).cwiseQuotient(scale_), 0);
-  moved_.noalias() = scaled_.leftCols(n) * step_.head(n);
-  return true;
-}
-
-void DampedLeastSquares::form_jacobian() {
-  layered_.pullback(Matrix::Identity(rows_, rows_), wide_);
-  J_.resize(rows_, wide_.rows());
-  for (Index i = 0; i < wide_.rows(); ++i) J_.col(order_[i]) = wide_.row(i).transpose();
-  inverse_ = (scale_.array() > 0).select(scale_.cwiseInverse(), 1);
-  is_layered_ = has_gram_ = false;
-}
 
 struct LevenbergMarquardt {
   Real initial_damping = 1e-4, rate = 1;
@@ -249,7 +253,7 @@ struct LevenbergMarquardt {
       f.linearize(theta, s.at);
       accept(f, s);
     }
-    if (!s.squares.solve(s.damping.mu, least_squares_way(), s.step, s.Jd)) return Status::stalled;
+    if (!s.squares.solve(s.damping.mu, way, s.step, s.Jd)) return Status::stalled;
     s.candidate = theta + s.step;
     if (s.candidate == theta && !f.has_fresh_batches()) return Status::converged;
     f.linearize(s.candidate, s.trial);
@@ -276,7 +280,7 @@ struct LevenbergMarquardt {
   // J, −r and D at the point just accepted.
   void accept(Meter& f, State& s) const {
     s.residual = (f.target() - s.at.y()).reshaped();
-    s.squares.set(f, s.at, s.residual, least_squares_scaling());
+    s.squares.set(f, s.at, s.residual, scaling);
     s.has_point = true;
   }
 
@@ -288,19 +292,8 @@ struct LevenbergMarquardt {
     return (s.squares.misfit() - after) / predicted;
   }
 
-  DampedLeastSquares::Way least_squares_way() const {
-    using LeastSquares = DampedLeastSquares::Way;
-    if (way == "cholesky") return LeastSquares::cholesky;
-    return way == "orthogonal" ? LeastSquares::orthogonal : LeastSquares::automatic;
-  }
-  DampedLeastSquares::Scaling least_squares_scaling() const {
-    using Scaling = DampedLeastSquares::Scaling;
-    if (scaling == "none") return Scaling::none;
-    return scaling == "jacobian" ? Scaling::jacobian : Scaling::more;
-  }
   static Way spectral_way(const std::string& way) {
-    if (way == "orthogonal") return Way::qr;
-    return way_named(way);
+    return way == "orthogonal" ? Way::qr : way_named(way);
   }
 };
 
@@ -319,10 +312,111 @@ void fields(LevenbergMarquardt& o, auto& field) {
         "or of the norms they have now");
 }
 
+// Levenberg-Marquardt by products, for problems too large for a Jacobian: θ ← θ + d,
+// d ≈ argmin ‖J d + r‖² + μ‖d‖² by conjugate gradients on JᵀJ + μ in the form of Paige and Saunders
+// (1982), section 7.1, which forms neither. They end where the gradient of that is down to η of its
+// start, η = min(0.1, √(‖g‖/‖g₀‖)), g = Jᵀr at this and the first point: inexact at first, ever
+// more exact near a solution; Dembo, Eisenstat, Steihaug (1982). The damping starts at 10⁻⁴ of ‖J
+// g‖²/‖g‖² and follows the gain of each step by the rule of Nielsen (1999), as that of
+// levenberg-marquardt does. Unlike there, μ is in units of the unknowns: there are no columns to
+// scale by.
+struct LevenbergMarquardtCg {
+  Index cg_iterations = 100;
+
+  struct State {
+    NielsenDamping damping;
+    Real first_slope = 0;  // ‖g₀‖
+    Linearization at;
+    Matrix residual;        // (m, B) −r
+    Vector gradient;        // (n) −g = −Jᵀr
+    Matrix left, moved;     // (m, B) −r − J d, J p
+    Vector step, slope, p;  // (n) d, −g − (JᵀJ + μ) d, direction
+    Vector candidate;       // (n)
+  };
+  static void persist(State& s, Archive& archive) {
+    s.damping.persist(archive);
+    archive(s.first_slope);
+  }
+  State init(Meter&, const Vector&) const { return {}; }
+
+  Status step(Meter& f, Vector& theta, State& s) const {
+    f.linearize(theta, s.at);
+    s.residual = f.target() - s.at.y();
+    s.gradient.resize(theta.size());
+    s.at.pullback(s.residual, s.gradient);
+    if (s.gradient.isZero(0)) return Status::converged;
+    if (s.damping.mu == 0) set_damping(s);
+    if (!conjugate_gradients(f, s)) return Status::stalled;
+    s.candidate = theta + s.step;
+    if (s.candidate == theta && !f.has_fresh_batches()) return Status::converged;
+    const Real gain = (s.at.loss() - f.loss(s.candidate)) / predicted_decrease(s);
+    if (!(gain > 0)) {
+      f.reject_step();
+      return s.damping.reject();
+    }
+    theta = s.candidate;
+    s.damping.accept(gain);
+    return Status::running;
+  }
+
+  static void set_damping(State& s) {
+    constexpr Real kInitial = 1e-4;
+    s.first_slope = s.gradient.norm();
+    s.moved.resizeLike(s.residual);
+    s.at.pushforward(s.gradient, s.moved);
+    s.damping.mu = kInitial * s.moved.squaredNorm() / s.gradient.squaredNorm();
+  }
+
+  bool conjugate_gradients(Meter& f, State& s) const {
+    s.left = s.residual;
+    s.moved.resizeLike(s.left);
+    s.step.setZero(s.gradient.size());
+    s.p = s.slope = s.gradient;
+    Real slope = s.slope.squaredNorm();
+    const Real forcing = std::min(0.1, std::sqrt(std::sqrt(slope) / s.first_slope));
+    const Real enough = forcing * forcing * slope;
+    for (Index i = 0; i < cg_iterations && slope > enough && !f.is_spent(); ++i) {
+      s.at.pushforward(s.p, s.moved);
+      const Real alpha = slope / (s.moved.squaredNorm() + s.damping.mu * s.p.squaredNorm());
+      if (!(alpha > 0 && std::isfinite(alpha))) return i > 0;
+      s.step += alpha * s.p;
+      s.left -= alpha * s.moved;
+      s.at.pullback(s.left, s.slope);
+      s.slope -= s.damping.mu * s.step;
+      const Real before = std::exchange(slope, s.slope.squaredNorm());
+      s.p = s.slope + slope / before * s.p;
+    }
+    return is_finite(s.step);
+  }
+
+  // The predicted decrease of the loss, which is a multiple of ½‖r‖²; for ½‖r‖² and any d it is
+  // ½ dᵀ(−g) + ½ dᵀ(−g − (JᵀJ + μ) d) + ½μ‖d‖².
+  static Real predicted_decrease(const State& s) {
+    const Real of_squares =
+        0.5 * (s.step.dot(s.gradient) + s.step.dot(s.slope) + s.damping.mu * s.step.squaredNorm());
+    return of_squares * s.at.loss() / (0.5 * s.residual.squaredNorm());
+  }
+};
+
+void fields(LevenbergMarquardtCg& o, auto& field) {
+  field("cg-iterations", o.cg_iterations, between(1, 1e6),
+        "most conjugate-gradient iterations per step");
+}
+
+OracleSet needs_of_levenberg_marquardt(const OptionValues& options, const Problem& problem) {
+  const std::string way = options.text("way");
+  if (options.text("damping") == "fixed")
+    return needs_of(LevenbergMarquardt::spectral_way(way), tikhonov_filter(1), problem);
+  const bool is_wide = problem.residuals() < problem.unknowns();
+  const bool squares = way == "cholesky" || (way == "auto" && problem.residuals() >= kLeastSquared);
+  const bool by_layers = is_wide && squares && problem.offers().contains(Oracle::layer_factors);
+  return {Oracle::forward, by_layers ? Oracle::layer_factors : Oracle::jacobian};
+}
+
 }  // namespace
 
 void register_levenberg_marquardt(OptimizerRegistry& registry) {
-  OptimizerEntry entry = stepper_entry<LevenbergMarquardt>(
+  registry.add(stepper_entry<LevenbergMarquardt>(
       {.name = "levenberg-marquardt",
        .title = "Levenberg-Marquardt",
        .family = Family::curvature,
@@ -337,18 +431,19 @@ void register_levenberg_marquardt(OptimizerRegistry& registry) {
        .needs = {Oracle::forward},
        .is_input_scale_invariant = true,
        .most_rank = 2048,
-       .tunable = {.option = "initial-damping", .factor = 10}});
-  entry.needs_for = [](const OptionValues& options, const Problem& problem) -> OracleSet {
-    const std::string way = options.text("way");
-    if (options.text("damping") == "fixed")
-      return needs_of(LevenbergMarquardt::spectral_way(way), tikhonov_filter(1), problem);
-    const bool is_wide = problem.residuals() < problem.unknowns();
-    const bool squares =
-        way == "cholesky" || (way == "auto" && problem.residuals() >= kLeastSquared);
-    const bool by_layers = is_wide && squares && problem.offers().contains(Oracle::layer_factors);
-    return {Oracle::forward, by_layers ? Oracle::layer_factors : Oracle::jacobian};
-  };
-  registry.add(std::move(entry));
+       .tunable = {.option = "initial-damping", .factor = 10},
+       .needs_for = needs_of_levenberg_marquardt}));
+  registry.add(stepper_entry<LevenbergMarquardtCg>(
+      {.name = "levenberg-marquardt-cg",
+       .title = "Levenberg-Marquardt by products",
+       .family = Family::curvature,
+       .kind = Kind::least_squares,
+       .formula = "θ ← θ + d,  d ≈ argmin ‖J d + r‖² + μ‖d‖² by conjugate gradients",
+       .source = "Marquardt (1963); Paige, Saunders (1982), section 7.1; Nielsen (1999)",
+       .note = "Never forms J: a step costs a pushforward and a pullback per iteration of the "
+               "conjugate gradients. A rejected candidate is an iteration, too. The damping adapts "
+               "itself, so no option is tuned.",
+       .needs = {Oracle::forward, Oracle::pullback, Oracle::pushforward}}));
 }
 
 }  // namespace isoline::optimizers

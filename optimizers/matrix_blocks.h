@@ -32,10 +32,4 @@ inline std::vector<MatrixBlock> matrix_blocks(const std::vector<Block>& layout) 
   return all;
 }
 
-inline bool has_matrix(const Problem& problem) {
-  for (const MatrixBlock& block : matrix_blocks(problem.layout()))
-    if (block.is_matrix()) return true;
-  return false;
-}
-
 }  // namespace isoline::optimizers

@@ -10,13 +10,14 @@
 #include "core/decompose.h"
 #include "core/errors.h"
 #include "core/frames.h"
-#include "core/ladder.h"
+#include "core/status.h"
 
 namespace isoline::optimizers {
 namespace {
 
 constexpr Real kInfinity = std::numeric_limits<Real>::infinity();
 constexpr Real kNone = -kInfinity;  // a loss that is never reached
+
 }  // namespace
 
 Meter::Meter(const Problem& problem, const Budget& budget, OracleSet granted, Trace& trace)
@@ -48,6 +49,7 @@ Meter::Meter(const Problem& problem, const Budget& budget, OracleSet granted, Tr
 void Meter::linearize(VectorRef theta, Linearization& at) {
   charge_forward(theta);
   at.meter_ = this;
+  at.problem_ = &problem_;
   at.has_jacobian_ = at.has_hessian_ = false;
   problem_.forward(theta, *samples_, at.point_);
   see(at.point_.loss);
@@ -57,6 +59,7 @@ void Meter::linearize(VectorRef theta, Linearization& at) {
 void Meter::linearize_physics(BatchRef x, Linearization& at) {
   charge(Oracle::forward);
   at.meter_ = this;
+  at.problem_ = &problem_;
   at.has_jacobian_ = at.has_hessian_ = false;
   problem_.physics_forward(x, *samples_, at.point_);
 }
@@ -141,18 +144,13 @@ void Meter::reach(Real loss) {
 
 // The meter as the harness has it: a run begun, traced, judged and ended.
 
-using problems::Series;
-
-namespace {
-
-constexpr Real kDivergence = 1e12, kStallDecrease = 1e-12;
-constexpr std::int64_t kStallIterations = 100;
-
-}  // namespace
-
 Status Meter::begin(VectorRef theta) {
   prepare();
-  open_pictures();
+  if (const auto& field = problem_.field()) {
+    const Picture target(judging().target, field);
+    const Picture truth(judging().truth, field, problem_.history());
+    open_frames(trace_.frames, field->rows, field->columns, target.cells(), truth.cells());
+  }
   previous_ = theta;
   measure(theta);
   accepted_ = theta;
@@ -205,16 +203,7 @@ void Meter::persist(Archive& archive) {
   archive.raw(&trace_, sizeof trace_);  // plain data; no reader waits for its atomics
   trace_.spectra.are_wanted = are_spectra_wanted;
   if (!archive.is_reading()) return;
-  require_sound();
-  accepted_ = judged_theta_;
-  trace_.is_finished = false;
-  watch_.set(wall, processor);
-  prepare();
-  watch_.resume();
-}
-
-// The state from a file must be valid for this run: all sizes and counts are in their ranges.
-void Meter::require_sound() const {
+  // The state from a file must be valid for this run: all sizes and counts are in their ranges.
   const Index n = problem_.unknowns();
   const bool is_sound = targets_met_ >= 0 && targets_met_ <= kRungs && iteration_ >= 0 &&
                         work_ >= 0 && status_ == Status::running && batch_loss_.is_sound() &&
@@ -223,6 +212,11 @@ void Meter::require_sound() const {
   require(is_sound, "the state of the meter belongs to another run");
   const std::string defect = defect_of(trace_);
   require(defect.empty(), [&] { return "its trace holds " + defect; });
+  accepted_ = judged_theta_;
+  trace_.is_finished = false;
+  watch_.set(wall, processor);
+  prepare();
+  watch_.resume();
 }
 
 Status Meter::iterate(VectorRef theta) {
@@ -302,31 +296,30 @@ void Meter::measure(VectorRef theta) {
   last.processor_seconds = watch_.processor_seconds();
   last.loss = judged_.loss;
   last.x_error = problem_.x_error(judged_.x(), judging());
-  const bool has_gradient =
-      measures_gradients_ && !problem_.is_learned() && problem_.products().has_pullback;
-  last.gradient_norm = has_gradient ? judged_gradient_norm() : TracePoint::kAbsent;
+  last.gradient_norm = TracePoint::kAbsent;
+  // A second pass over the network for a validation of many samples would cost more than the step.
+  if (measures_gradients_ && !problem_.is_learned() && problem_.products().has_pullback) {
+    judged_g_.resize(problem_.outputs(), problem_.samples());
+    judged_gradient_.resize(problem_.unknowns());
+    problem_.cotangent(judged_, judged_g_);
+    problem_.pullback(judged_g_, judged_gradient_, judged_);
+    last.gradient_norm = judged_gradient_.norm();
+  }
   last.step_norm = (theta - previous_).norm();
   for (int i = 0; i < 2; ++i) {
     last.batch_loss[i] = batch_loss_.mean(TracePoint::kWindows[i]);
     last.batch_x_error[i] = batch_x_error_.mean(TracePoint::kWindows[i]);
   }
-  const Series& series = problem_.series();
+  const problems::Series& series = problem_.series();
   if (series.names.empty()) return;
   Vector values(static_cast<Index>(series.names.size()));
   series.evaluate(problem_, theta, judged_, values);
   std::copy_n(values.data(), values.size(), last.series);
 }
 
-// A second pass over the network for a validation of many samples would cost more than the step.
-Real Meter::judged_gradient_norm() {
-  judged_g_.resize(problem_.outputs(), problem_.samples());
-  judged_gradient_.resize(problem_.unknowns());
-  problem_.cotangent(judged_, judged_g_);
-  problem_.pullback(judged_g_, judged_gradient_, judged_);
-  return judged_gradient_.norm();
-}
-
 bool Meter::has_stalled() {
+  constexpr Real kStallDecrease = 1e-12;
+  constexpr std::int64_t kStallIterations = 100;
   if (stall_loss_ - best_loss_ > kStallDecrease * std::abs(stall_loss_)) {
     stall_loss_ = best_loss_;
     stall_iteration_ = iteration_;
@@ -336,6 +329,7 @@ bool Meter::has_stalled() {
 
 // `judged_` holds the loss at the last kept iteration, which is this one for the first hundred.
 Status Meter::judge(VectorRef theta) {
+  constexpr Real kDivergence = 1e12;
   const Real loss = judged_.loss;
   if (!is_finite(theta) || !std::isfinite(loss) || loss > kDivergence * trace_.start_loss)
     return Status::diverged;
@@ -352,27 +346,6 @@ Status Meter::judge(VectorRef theta) {
 
 // The data that a run keeps about its path, off the clock: its curve, its path, its fields, the
 // spectrum of J, and samples of the learned results.
-
-namespace {
-
-constexpr Index kMostNumbers = Index{1} << 26;  // of J: half a gibibyte
-
-// Whether its J is formed, and small enough.
-bool has_spectrum(const Problem& problem) {
-  const Index rows = problem.residuals(), columns = problem.unknowns();
-  return problem.offers().contains(Oracle::jacobian) &&
-         std::min(rows, columns) <= Trace::Spectra::kValues && rows * columns <= kMostNumbers;
-}
-
-}  // namespace
-
-void Meter::open_pictures() {
-  const auto& field = problem_.field();
-  if (!field) return;
-  const Picture target(judging().target, field);
-  const Picture truth(judging().truth, field, problem_.history());
-  open_frames(trace_.frames, field->rows, field->columns, target.cells(), truth.cells());
-}
 
 void Meter::keep_point() {
   const int index = trace_.points;
@@ -417,7 +390,11 @@ bool Meter::is_spectrum_due(bool is_last) const {
 
 // Over the batch of the step that led here. A J that is not finite has no spectrum.
 void Meter::keep_spectrum(bool is_last) {
-  if (!is_spectrum_due(is_last) || !has_spectrum(problem_)) return;
+  constexpr Index kMostNumbers = Index{1} << 26;  // of J: half a gibibyte
+  const Index rows = problem_.residuals(), columns = problem_.unknowns();
+  if (!is_spectrum_due(is_last) || !problem_.offers().contains(Oracle::jacobian) ||
+      std::min(rows, columns) > Trace::Spectra::kValues || rows * columns > kMostNumbers)
+    return;
   Point point;
   Matrix J;  // (m·B, n)
   Vector sigma;
@@ -431,93 +408,23 @@ void Meter::keep_spectrum(bool is_last) {
   ++kept.taken;
 }
 
-// One forward pass and its products; the meter counts each.
-
-void Linearization::cotangent(Matrix& g) const {
-  g.resize(point_.y.rows(), point_.y.cols());
-  meter_->problem_.cotangent(point_, g);
+const Problem& Linearization::ask(Oracle oracle) {
+  meter_->charge(oracle);
+  return meter_->problem_;
 }
 
-void Linearization::residual(Vector& r) const {
-  r.resize(point_.y.size());
-  meter_->problem_.residual(point_, r);
+const Matrix& Linearization::once(Oracle oracle, bool& is_there, Matrix& out) {
+  if (is_there) return out;
+  const Problem& problem = ask(oracle);
+  oracle == Oracle::jacobian ? problem.jacobian(out, point_) : problem.hessian(out, point_);
+  is_there = true;
+  return out;
 }
 
 void Linearization::gradient(Vector& out) {
   cotangent(g_);
-  out.resize(meter_->unknowns());
+  out.resize(problem_->unknowns());
   pullback(g_, out);
-}
-
-void Linearization::pullback(BatchRef w, VectorOut out) {
-  meter_->charge(Oracle::pullback);
-  meter_->problem_.pullback(w, out, point_);
-}
-
-void Linearization::physics_pullback(BatchRef w, BatchOut out) {
-  meter_->charge(Oracle::pullback);
-  meter_->problem_.physics_pullback(w, out, point_);
-}
-
-void Linearization::pushforward(VectorRef v, BatchOut out) {
-  meter_->charge(Oracle::pushforward);
-  meter_->problem_.pushforward(v, out, point_);
-}
-
-const Matrix& Linearization::jacobian() {
-  if (has_jacobian_) return J_;
-  meter_->charge(Oracle::jacobian);
-  meter_->problem_.jacobian(J_, point_);
-  has_jacobian_ = true;
-  return J_;
-}
-
-const Matrix& Linearization::sensitivity() {
-  meter_->charge(Oracle::sensitivity);
-  meter_->problem_.sensitivity(dy_dx_, point_);
-  return dy_dx_;
-}
-
-void Linearization::hessian_product(VectorRef v, VectorOut out) {
-  meter_->charge(Oracle::hessian_product);
-  meter_->problem_.hessian_product(v, out, point_);
-}
-
-void Linearization::loss_curvature(BatchRef dy, BatchOut dg) const {
-  meter_->problem_.loss_curvature(point_, dy, dg);
-}
-
-const Matrix& Linearization::hessian() {
-  if (has_hessian_) return H_;
-  meter_->charge(Oracle::hessian);
-  meter_->problem_.hessian(H_, point_);
-  has_hessian_ = true;
-  return H_;
-}
-
-void Linearization::curvature(BatchRef w, BatchOut out) {
-  meter_->charge(Oracle::curvature);
-  meter_->problem_.curvature(w, out, point_);
-}
-
-Success Linearization::local_inverse(BatchRef y, BatchOut x) {
-  meter_->charge(Oracle::inverse);
-  return meter_->problem_.local_inverse(y, x, point_);
-}
-
-void Linearization::layer_factors(BatchRef w, std::vector<LayerFactor>& out) {
-  meter_->charge(Oracle::layer_factors);
-  meter_->problem_.layer_factors(w, out, point_);
-}
-
-void Linearization::layer_moments(BatchRef w, std::vector<LayerMoments>& out, VectorOut JTw) {
-  meter_->charge(Oracle::layer_moments);
-  meter_->problem_.layer_moments(w, out, JTw, point_);
-}
-
-void Linearization::network_pullback(BatchRef w, VectorOut out) {
-  meter_->charge(Oracle::network);
-  meter_->problem_.network_pullback(w, out, point_);
 }
 
 }  // namespace isoline::optimizers

@@ -61,26 +61,58 @@ class Linearization {
   const Matrix& y() const { return point_.y; }    // (m, B)
   Real loss() const { return point_.loss; }
 
-  void cotangent(Matrix& g) const;  // g = ∂L/∂y, (m, B)
-  void residual(Vector& r) const;   // r = (y − y*)/√B, (m·B)
-  void gradient(Vector& out);       // Jᵀ g, (n)
-  void pullback(BatchRef w, VectorOut out);
-  void physics_pullback(BatchRef w, BatchOut out);  // through the physics alone, (m, B) -> (k, B)
-  void pushforward(VectorRef v, BatchOut out);
-  const Matrix& jacobian();     // (m·B, n), computed once a point
-  const Matrix& sensitivity();  // ∂y/∂x of each sample side by side, (m, k·B)
-  const Matrix& hessian();      // ∇²L, (n, n), computed once a point
-  void hessian_product(VectorRef v, VectorOut out);     // ∇²L v, (n)
-  void loss_curvature(BatchRef dy, BatchOut dg) const;  // (∂²L/∂y²) dy, (m, B)
-  void curvature(BatchRef w, BatchOut out);
-  Success local_inverse(BatchRef y, BatchOut x);
-  void network_pullback(BatchRef w, VectorOut out);
-  void layer_factors(BatchRef w, std::vector<LayerFactor>& out);  // under the cotangent w, (m, B)
-  void layer_moments(BatchRef w, std::vector<LayerMoments>& out, VectorOut JTw);
+  void cotangent(Matrix& g) const {  // g = ∂L/∂y, (m, B)
+    g.resize(point_.y.rows(), point_.y.cols());
+    problem_->cotangent(point_, g);
+  }
+  void residual(Vector& r) const {  // r = (y − y*)/√B, (m·B)
+    r.resize(point_.y.size());
+    problem_->residual(point_, r);
+  }
+  void loss_curvature(BatchRef dy, BatchOut dg) const {  // (∂²L/∂y²) dy, (m, B)
+    problem_->loss_curvature(point_, dy, dg);
+  }
+  void gradient(Vector& out);  // Jᵀ g, (n)
+  void pullback(BatchRef w, VectorOut out) { ask(Oracle::pullback).pullback(w, out, point_); }
+  // Through the physics alone, (m, B) -> (k, B).
+  void physics_pullback(BatchRef w, BatchOut out) {
+    ask(Oracle::pullback).physics_pullback(w, out, point_);
+  }
+  void pushforward(VectorRef v, BatchOut out) {
+    ask(Oracle::pushforward).pushforward(v, out, point_);
+  }
+  // (m·B, n) and ∇²L (n, n), each computed once a point.
+  const Matrix& jacobian() { return once(Oracle::jacobian, has_jacobian_, J_); }
+  const Matrix& hessian() { return once(Oracle::hessian, has_hessian_, H_); }
+  const Matrix& sensitivity() {  // ∂y/∂x of each sample side by side, (m, k·B)
+    ask(Oracle::sensitivity).sensitivity(dy_dx_, point_);
+    return dy_dx_;
+  }
+  void hessian_product(VectorRef v, VectorOut out) {  // ∇²L v, (n)
+    ask(Oracle::hessian_product).hessian_product(v, out, point_);
+  }
+  void curvature(BatchRef w, BatchOut out) { ask(Oracle::curvature).curvature(w, out, point_); }
+  Success local_inverse(BatchRef y, BatchOut x) {
+    return ask(Oracle::inverse).local_inverse(y, x, point_);
+  }
+  void network_pullback(BatchRef w, VectorOut out) {
+    ask(Oracle::network).network_pullback(w, out, point_);
+  }
+  // Under the cotangent w, (m, B).
+  void layer_factors(BatchRef w, std::vector<LayerFactor>& out) {
+    ask(Oracle::layer_factors).layer_factors(w, out, point_);
+  }
+  void layer_moments(BatchRef w, std::vector<LayerMoments>& out, VectorOut JTw) {
+    ask(Oracle::layer_moments).layer_moments(w, out, JTw, point_);
+  }
 
  private:
   friend class Meter;
+  const Problem& ask(Oracle oracle);  // charges for it
+  const Matrix& once(Oracle oracle, bool& is_there, Matrix& out);
+
   Meter* meter_ = nullptr;
+  const Problem* problem_ = nullptr;
   Point point_;
   Matrix g_, J_, H_, dy_dx_;
   bool has_jacobian_ = false, has_hessian_ = false;
@@ -160,14 +192,11 @@ class Meter {
   }
   void reach(Real loss);          // records the targets that `loss` meets
   void measure(VectorRef theta);  // fills trace_.last, off the clock
-  Real judged_gradient_norm();
-  void open_pictures();  // y* and x*, of problems on a grid
   void keep_point();
   bool is_spectrum_due(bool is_last) const;
   void keep_spectrum(bool is_last);
-  void show();     // what was learned
-  void prepare();  // samples and limits
-  void require_sound() const;
+  void show();        // what was learned
+  void prepare();     // samples and limits
   void set_scales();  // by which this run's targets are measured; after the start's loss
   Real target_at(Real tau) const { return trace_.minimum + tau * trace_.scale; }  // nan where none
   const Batch& judging() const { return problem_.is_learned() ? validation_ : problem_.batch(); }

@@ -204,21 +204,22 @@ struct Minimization {
   const LbfgsLimits& limits;
   Vector origin, x, gradient, best;  // (n)
   nlopt_opt handle = nullptr;
-  LbfgsResult result{std::numeric_limits<Real>::infinity(), 0};
+  Real least = std::numeric_limits<Real>::infinity();
+  Index evaluations = 0;
   Real unit = 0, length = 0;  // f₀, f₀/‖∇f₀‖; 0: not yet known
   std::exception_ptr error = nullptr;
 
   bool is_over() const {
-    return result.value <= limits.enough || result.evaluations >= limits.evaluations ||
+    return least <= limits.enough || evaluations >= limits.evaluations ||
            (limits.is_over && limits.is_over());
   }
 
   Real evaluate(const double* z, double* out) {  // at x = origin + length z
     x = origin + length * Map<const Vector>(z, origin.size());
-    ++result.evaluations;
+    ++evaluations;
     const Real value = f(x, gradient);
-    if (value < result.value) best = x;
-    result.value = std::min(result.value, value);
+    if (value < least) best = x;
+    least = std::min(least, value);
     if (length == 0) {
       unit = value;
       length = value / gradient.norm();
@@ -243,16 +244,15 @@ struct Minimization {
 
 }  // namespace
 
-LbfgsResult minimize_lbfgs(const ValueAndGradient& f, const LbfgsLimits& limits, Vector& x) {
+void minimize_lbfgs(const ValueAndGradient& f, const LbfgsLimits& limits, Vector& x) {
   constexpr Real kWorthwhile = 0.1;  // a descent in new units goes on while it gains this factor
   Minimization minimization{f, limits, x, x, Vector(x.size()), x};
   Real before = 0;
   do {
-    before = minimization.result.value;
+    before = minimization.least;
     minimization.descend();
-  } while (!minimization.is_over() && minimization.result.value < kWorthwhile * before);
+  } while (!minimization.is_over() && minimization.least < kWorthwhile * before);
   x = minimization.best;
-  return minimization.result;
 }
 
 void register_nlopt(OptimizerRegistry& registry) {

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "core/privilege.h"
+#include "core/oracle.h"
 #include "core/spec.h"
 
 namespace isoline::optimizers {

@@ -88,22 +88,21 @@ class Stepping final : public Optimizer {
   typename M::State state_{};
 };
 
-template <GradientRule R>
+// A gradient rule on its own.
 class ByGradient final : public Optimizer {
  public:
-  explicit ByGradient(const R& rule) : rule_(rule) {}
-  void start(Meter& f, const Vector&) override { state_ = rule_.init(f.unknowns()); }
+  explicit ByGradient(std::unique_ptr<Descent> rule) : rule_(std::move(rule)) {}
+  void start(Meter& f, const Vector&) override { rule_->start(f.unknowns()); }
   Status step(Meter& f, Vector& theta) override {
     f.linearize(theta, at_);
     at_.gradient(gradient_);
-    rule_.update(gradient_, theta, state_);
+    rule_->update(gradient_, theta);
     return Status::running;
   }
-  bool persist(Archive& archive) override { return persist_state<R>(state_, archive); }
+  bool persist(Archive& archive) override { return rule_->persist(archive); }
 
  private:
-  const R rule_;
-  typename R::State state_{};
+  std::unique_ptr<Descent> rule_;
   Linearization at_;
   Vector gradient_;  // (n)
 };
@@ -137,12 +136,11 @@ template <GradientRule R>
 OptimizerEntry rule_entry(OptimizerEntry entry) {
   entry.options = option_table<R>();
   entry.needs = {Oracle::forward, Oracle::pullback};
-  entry.make = [](const OptionValues& options,
-                  const OptimizerRegistry&) -> std::unique_ptr<Optimizer> {
-    return std::make_unique<ByGradient<R>>(read_options<R>(options));
-  };
   entry.make_descent = [](const OptionValues& options) -> std::unique_ptr<Descent> {
     return std::make_unique<Descending<R>>(read_options<R>(options));
+  };
+  entry.make = [rule = entry.make_descent](const OptionValues& options, const OptimizerRegistry&) {
+    return std::make_unique<ByGradient>(rule(options));
   };
   return entry;
 }

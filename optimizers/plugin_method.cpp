@@ -38,6 +38,7 @@ struct Questions : isoline_oracles {
     if (error || f.status() != Status::running) return true;
     return is_whole_solve && f.is_spent();
   }
+  const Vector& moved_to(const double* to) { return theta = Map<const Vector>(to, theta.size()); }
   BatchOut taken(const double* y) {
     const Matrix& like = f.target();
     narrow = Map<const Matrix>(y, like.rows(), like.cols());
@@ -62,91 +63,65 @@ int answer(isoline_oracles* asked, const Answer& of) noexcept {
   }
 }
 
-int linearize(isoline_oracles* asked, const double* theta, double* loss) {
-  return answer(asked, [&](Questions& all) {
-    all.theta = Map<const Vector>(theta, all.theta.size());
-    all.f.linearize(all.theta, all.at);
-    all.is_linearized = true;
-    *loss = all.at.loss();
-  });
-}
-
-int loss_at(isoline_oracles* asked, const double* theta, double* loss) {
-  return answer(asked, [&](Questions& all) {
-    all.theta = Map<const Vector>(theta, all.theta.size());
-    *loss = all.f.loss(all.theta);
-  });
-}
-
-int gradient(isoline_oracles* asked, double* g) {
-  return answer(asked, [&](Questions& all) {
-    all.point().gradient(all.theta);
-    Map<Vector>(g, all.theta.size()) = all.theta;
-  });
-}
-
-int residual(isoline_oracles* asked, double* r) {
-  return answer(asked, [&](Questions& all) {
-    all.point().residual(all.wide);
-    Map<Vector>(r, all.wide.size()) = all.wide;
-  });
-}
-
-int pushforward(isoline_oracles* asked, const double* v, double* Jv) {
-  return answer(asked, [&](Questions& all) {
-    all.theta = Map<const Vector>(v, all.theta.size());
-    all.narrow.resize(all.f.target().rows(), all.f.target().cols());
-    all.point().pushforward(all.theta, all.narrow);
-    Map<Vector>(Jv, all.narrow.size()) = all.narrow.reshaped() / all.root();
-  });
-}
-
-int pullback(isoline_oracles* asked, const double* u, double* JTu) {
-  return answer(asked, [&](Questions& all) {
-    all.point().pullback(all.taken(u), all.theta);
-    Map<Vector>(JTu, all.theta.size()) = all.theta / all.root();
-  });
-}
-
-int jacobian(isoline_oracles* asked, double* J) {
-  return answer(asked, [&](Questions& all) {
-    const Matrix& found = all.point().jacobian();
-    Map<Matrix>(J, found.rows(), found.cols()) = found / all.root();
-  });
-}
-
-int inverse(isoline_oracles* asked, const double* y, double* x) {
-  return answer(asked, [&](Questions& all) {
-    const Success success =
-        all.point().local_inverse(all.taken(y), Map<Matrix>(x, all.theta.size(), 1));
-    if (!success.all()) Map<Vector>(x, all.theta.size()).setConstant(std::nan(""));
-  });
-}
-
-int report(isoline_oracles* asked, const double* theta) {
-  return answer(asked,
-                [&](Questions& all) {
-                  require(all.is_whole_solve,
-                          "report() is for ISOLINE_SOLVE: each step() is an iteration");
-                  all.theta = Map<const Vector>(theta, all.theta.size());
-                  all.f.iterate(all.theta);
-                }) != 0 ||
-         static_cast<Questions&>(*asked).is_over();
-}
-
 Questions::Questions(Meter& meter, bool solves)
     : isoline_oracles{}, f(meter), is_whole_solve(solves), theta(meter.unknowns()) {
   unknowns = static_cast<std::uint64_t>(f.unknowns());
   residuals = static_cast<std::uint64_t>(f.residuals());
-  isoline_oracles::linearize = optimizers::linearize;
-  loss = loss_at;
-  isoline_oracles::gradient = optimizers::gradient;
-  isoline_oracles::residual = optimizers::residual;
-  isoline_oracles::pushforward = optimizers::pushforward;
-  isoline_oracles::pullback = optimizers::pullback;
-  isoline_oracles::jacobian = optimizers::jacobian;
-  isoline_oracles::inverse = optimizers::inverse;
-  isoline_oracles::report = optimizers::report;
+  linearize = [](isoline_oracles* asked, const double* to, double* found) {
+    return answer(asked, [&](Questions& all) {
+      all.f.linearize(all.moved_to(to), all.at);
+      all.is_linearized = true;
+      *found = all.at.loss();
+    });
+  };
+  loss = [](isoline_oracles* asked, const double* to, double* found) {
+    return answer(asked, [&](Questions& all) { *found = all.f.loss(all.moved_to(to)); });
+  };
+  gradient = [](isoline_oracles* asked, double* g) {
+    return answer(asked, [&](Questions& all) {
+      all.point().gradient(all.theta);
+      Map<Vector>(g, all.theta.size()) = all.theta;
+    });
+  };
+  residual = [](isoline_oracles* asked, double* r) {
+    return answer(asked, [&](Questions& all) {
+      all.point().residual(all.wide);
+      Map<Vector>(r, all.wide.size()) = all.wide;
+    });
+  };
+  pushforward = [](isoline_oracles* asked, const double* v, double* Jv) {
+    return answer(asked, [&](Questions& all) {
+      all.narrow.resize(all.f.target().rows(), all.f.target().cols());
+      all.point().pushforward(all.moved_to(v), all.narrow);
+      Map<Vector>(Jv, all.narrow.size()) = all.narrow.reshaped() / all.root();
+    });
+  };
+  pullback = [](isoline_oracles* asked, const double* u, double* JTu) {
+    return answer(asked, [&](Questions& all) {
+      all.point().pullback(all.taken(u), all.theta);
+      Map<Vector>(JTu, all.theta.size()) = all.theta / all.root();
+    });
+  };
+  jacobian = [](isoline_oracles* asked, double* J) {
+    return answer(asked, [&](Questions& all) {
+      const Matrix& found = all.point().jacobian();
+      Map<Matrix>(J, found.rows(), found.cols()) = found / all.root();
+    });
+  };
+  inverse = [](isoline_oracles* asked, const double* y, double* x) {
+    return answer(asked, [&](Questions& all) {
+      const Success success =
+          all.point().local_inverse(all.taken(y), Map<Matrix>(x, all.theta.size(), 1));
+      if (!success.all()) Map<Vector>(x, all.theta.size()).setConstant(std::nan(""));
+    });
+  };
+  report = [](isoline_oracles* asked, const double* to) {
+    const int told = answer(asked, [&](Questions& all) {
+      require(all.is_whole_solve, "report() is for ISOLINE_SOLVE: each step() is an iteration");
+      all.f.iterate(all.moved_to(to));
+    });
+    return static_cast<int>(told != 0 || static_cast<Questions&>(*asked).is_over());
+  };
 }
 
 class PluginMethod final : public Optimizer {

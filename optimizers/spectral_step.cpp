@@ -1,4 +1,5 @@
-// Ways by name, and their needs.
+// Spectral steps: ways by name and their needs, by Krylov vectors, by a Gram matrix that is split,
+// and by all ways.
 #include "optimizers/spectral_step.h"
 
 #include <fmt/format.h>
@@ -28,6 +29,26 @@ constexpr WayRow kWays[] = {
     {Way::lanczos, "lanczos", "Lanczos"},
 };
 
+// The choice of `automatic`. A Gram matrix squares the condition number. It is used if the
+// estimated relative error of the step is at most 2e-9, and if the smallest σ that matters is at
+// least 1e-5 of the largest (1e-7 if split in two). It is not tried if the cut-off is so near its
+// rounding that this could not be detected.
+constexpr Real kMostErrorByGram = 2e-9, kLeastShareByGram = 1e-5, kLeastShareBySplit = 1e-7;
+constexpr Real kLeastCutoffByGram = 1e-7;
+
+// Whether one number is enough of a spectrum: Tikhonov's filter with μ in units of the mean.
+bool is_tikhonov(const SpectralFilter& filter) {
+  return filter.kappa == 1 && filter.damping > 0 && filter.unit == SpectralFilter::Unit::mean;
+}
+
+// Whether every spectrum excludes a Gram matrix. A damping in units of the mean is judged when it
+// is known.
+bool never_by_gram(const SpectralFilter& filter) {
+  const bool is_relative = filter.unit == SpectralFilter::Unit::largest;
+  return filter.clamps ||
+         (is_relative && std::max(filter.cutoff, std::sqrt(filter.damping)) < kLeastCutoffByGram);
+}
+
 }  // namespace
 
 Way way_named(std::string_view name) {
@@ -37,17 +58,6 @@ Way way_named(std::string_view name) {
 }
 
 std::string_view way_text(Way way) { return kWays[static_cast<std::size_t>(way)].words; }
-
-bool is_tikhonov(const SpectralFilter& filter) {
-  return filter.kappa == 1 && filter.damping > 0 && filter.unit == SpectralFilter::Unit::mean;
-}
-
-// A damping in units of the mean is judged when it is known.
-bool never_by_gram(const SpectralFilter& filter) {
-  const bool is_relative = filter.unit == SpectralFilter::Unit::largest;
-  return filter.clamps ||
-         (is_relative && std::max(filter.cutoff, std::sqrt(filter.damping)) < kLeastCutoffByGram);
-}
 
 OracleSet needs_of(Way way, const SpectralFilter& filter, const Problem& problem) {
   const OracleSet by_matrix{Oracle::forward, Oracle::jacobian};
@@ -82,6 +92,123 @@ std::string objection_to(Way way, const Problem& problem) {
                        kWays[static_cast<std::size_t>(way)].name, problem.residuals(),
                        problem.unknowns());
   return "";
+}
+
+// Golub-Kahan bidiagonalization with one side orthogonalized, and functions of what it finds.
+
+namespace {
+
+constexpr Real kMostBytes = 512.0 * 1024 * 1024;
+
+// B, (size, size).
+Matrix bidiagonal(const std::vector<Real>& alpha, const std::vector<Real>& beta, Index size) {
+  Matrix B = Matrix::Zero(size, size);
+  for (Index i = 0; i < size; ++i) {
+    B(i, i) = alpha[static_cast<std::size_t>(i)];
+    if (i + 1 < size) B(i, i + 1) = beta[static_cast<std::size_t>(i)];
+  }
+  return B;
+}
+
+}  // namespace
+
+// J v, or Jᵀ v.
+void LanczosStep::apply(Linearization& at, bool pushes, VectorRef v, Vector& out) {
+  cotangent_.resize(at.y().rows(), at.y().cols());
+  if (pushes) {
+    at.pushforward(v, cotangent_);
+    out = cotangent_.reshaped();
+  } else {
+    cotangent_ = v.reshaped(cotangent_.rows(), cotangent_.cols());
+    out.resize(unknowns_);
+    at.pullback(cotangent_, out);
+  }
+}
+
+// s₁ is Jᵀw over the parameters, else w.
+void LanczosStep::start(Linearization& at, const Vector& w, Index most) {
+  alpha_.clear();
+  beta_.clear();
+  vectors_ = 0;
+  is_exhausted_ = false;
+  s_ = w;
+  if (is_over_parameters_) apply(at, false, w, s_);
+  length_ = s_.norm();
+  S_.resize(s_.size(), most);
+  if (length_ > 0) S_.col(0) = s_ / length_;
+}
+
+bool LanczosStep::extend(Linearization& at) {
+  constexpr Real kExhausted = 1e-14;  // of the largest so far: rounding
+  const Index k = vectors_;
+  apply(at, is_over_parameters_, S_.col(k), t_);
+  if (k > 0) t_ -= beta_.back() * last_t_;
+  const Real alpha = t_.norm();
+  const Real largest = alpha_.empty() ? alpha : *std::max_element(alpha_.begin(), alpha_.end());
+  is_exhausted_ = !(alpha > kExhausted * largest);
+  if (is_exhausted_) return false;
+  t_ /= alpha;
+  apply(at, !is_over_parameters_, t_, s_);
+  s_ -= alpha * S_.col(k);
+  for (int pass = 0; pass < 2; ++pass) {  // "twice is enough", Parlett (1998), §6.9
+    overlap_.noalias() = S_.leftCols(k + 1).transpose() * s_;
+    s_.noalias() -= S_.leftCols(k + 1) * overlap_;
+  }
+  const Real beta = s_.norm();
+  alpha_.push_back(alpha);
+  beta_.push_back(beta);
+  vectors_ = k + 1;
+  std::swap(t_, last_t_);
+  is_exhausted_ = !(beta > kExhausted * largest);
+  if (is_exhausted_ || vectors_ == S_.cols()) return false;
+  S_.col(vectors_) = s_ / beta;
+  return true;
+}
+
+// ‖s‖ h(BᵀB) e₁ of the first `size` vectors.
+void LanczosStep::solve(const SpectralFilter& filter, Index size, Vector& out) {
+  out.setZero(vectors_);
+  if (size == 0 || !thin_svd(bidiagonal(alpha_, beta_, size), svd_)) return;
+  const Spectrum spectrum{.largest = svd_.sigma[0]};
+  overlap_ = length_ * svd_.Vt.col(0);
+  for (Index i = 0; i < size; ++i) overlap_[i] *= filter.over_sigma(svd_.sigma[i], spectrum);
+  out.head(size).noalias() = svd_.Vt.transpose() * overlap_;
+}
+
+// The length of a step with these coefficients: ‖S c‖, or ‖Jᵀ S c‖ = ‖T B c‖.
+Real LanczosStep::distance(const Vector& coefficients) const {
+  if (is_over_parameters_) return coefficients.norm();
+  return (bidiagonal(alpha_, beta_, vectors_) * coefficients).norm();
+}
+
+bool LanczosStep::add(Meter& f, Linearization& at, const SpectralFilter& filter,
+                      const KrylovLimits& limits, const Vector& w, Real factor, Vector& out) {
+  constexpr Index kFirstLook = 6;
+  unknowns_ = out.size();
+  is_over_parameters_ = unknowns_ <= w.size();
+  const Index r = std::min(w.size(), out.size());
+  const auto room = static_cast<Index>(kMostBytes / (sizeof(Real) * static_cast<Real>(r)));
+  start(at, w, std::clamp<Index>(std::min(limits.vectors, r), 1, std::max<Index>(room, 1)));
+  if (!std::isfinite(length_)) return false;
+  if (length_ == 0) return true;
+  Index next_look = kFirstLook;
+  bool is_open = true;
+  error_ = 1;
+  while (is_open && error_ > limits.tolerance) {
+    is_open = extend(at) && !f.is_spent();
+    if (is_open && vectors_ < next_look) continue;
+    next_look = vectors_ + std::max<Index>(1, vectors_ / 8);
+    solve(filter, vectors_, solution_);
+    solve(filter, 2 * vectors_ / 3, earlier_);
+    const Real length = distance(solution_);
+    // A space that no product leaves holds the step itself.
+    error_ = length > 0 && !is_exhausted_ ? distance(solution_ - earlier_) / length : 0;
+  }
+  if (vectors_ == 0 || !is_finite(solution_)) return vectors_ == 0;
+  s_.noalias() = S_.leftCols(vectors_) * solution_;
+  if (!is_over_parameters_) apply(at, false, s_, t_);
+  out += factor * (is_over_parameters_ ? s_ : t_);
+  return true;
 }
 
 // The eigenvalues of JJᵀ in two parts, and the step by both.
@@ -165,19 +292,17 @@ void SpectralStep::start(Meter& f) const {
     f.name_series({"Krylov vectors of a step", "estimated relative error of a step"});
 }
 
-Way SpectralStep::choose(const Meter& f, const SpectralFilter& filter, bool is_wide) const {
-  if (wanted_ != Way::automatic) return wanted_;
-  const bool has_jacobian = f.is_granted(Oracle::jacobian);
-  if (filter.clamps && has_jacobian) return Way::svd;
-  if ((was_too_small_ || never_by_gram(filter)) && has_jacobian) return Way::qr;
-  if (is_tikhonov(filter)) return Way::cholesky;
-  return is_wide && has_layers(f) ? Way::layers : Way::gram;
-}
-
 bool SpectralStep::add(Meter& f, Linearization& at, const SpectralFilter& filter, const Vector& w,
                        Real factor, Vector& out) {
   const bool is_wide = w.size() < out.size();
-  Way way = choose(f, filter, is_wide);
+  const bool has_jacobian = f.is_granted(Oracle::jacobian);
+  Way way = wanted_;
+  if (way == Way::automatic)
+    way = filter.clamps && has_jacobian                               ? Way::svd
+          : (was_too_small_ || never_by_gram(filter)) && has_jacobian ? Way::qr
+          : is_tikhonov(filter)                                       ? Way::cholesky
+          : is_wide && has_layers(f)                                  ? Way::layers
+                                                                      : Way::gram;
   bool is_done = false;
   if (way == Way::gram || way == Way::layers || way == Way::split || way == Way::cholesky) {
     const Outcome outcome = by_gram(way, f, at, filter, w, factor, out);
@@ -187,30 +312,25 @@ bool SpectralStep::add(Meter& f, Linearization& at, const SpectralFilter& filter
   if (way == Way::svd) is_done = by_svd(at.jacobian(), filter, w, factor, out);
   if (way == Way::qr && (is_done = by_qr(at.jacobian(), filter, w, factor, out)))
     judge(is_wide && has_layers(f) ? Way::split : Way::gram, filter, is_wide, w.norm());
-  if (way == Way::orthogonal) is_done = by_pivots(at.jacobian(), filter, w, factor, out);
+  if (way == Way::orthogonal && (is_done = least_squares(at.jacobian(), w, filter.cutoff, result_)))
+    out += factor * result_;
   if (way == Way::lanczos) {
     is_done = lanczos_.add(f, at, filter, limits_, w, factor, out);
     f.note(0, static_cast<Real>(lanczos_.vectors()));
     f.note(1, lanczos_.error());
   }
-  if (is_done)
-    say(f, way);
-  else
-    f.claim("the Jacobian has no singular values in finite numbers");
-  return is_done;
-}
-
-// Named when a way is taken for the first time, in the order of the table.
-void SpectralStep::say(Meter& f, Way way) {
   const std::uint32_t bit = 1U << static_cast<unsigned>(way);
-  if ((ways_taken_ & bit) != 0) return;
-  ways_taken_ |= bit;
   std::string words;
-  for (unsigned other = 0; other <= static_cast<unsigned>(Way::lanczos); ++other)
-    if ((ways_taken_ & (1U << other)) != 0)
-      words += fmt::format("{}{}", words.empty() ? "steps by " : ", and by ",
-                           way_text(static_cast<Way>(other)));
-  f.claim(words);
+  if (!is_done) {
+    words = "the Jacobian has no singular values in finite numbers";
+  } else if ((ways_taken_ & bit) == 0) {  // named for the first time, in the order of the table
+    ways_taken_ |= bit;
+    for (const WayRow& row : kWays)
+      if ((ways_taken_ & (1U << static_cast<unsigned>(row.way))) != 0)
+        words += fmt::format("{}{}", words.empty() ? "steps by " : ", and by ", row.words);
+  }
+  if (!words.empty()) f.claim(words);
+  return is_done;
 }
 
 bool SpectralStep::by_svd(const Matrix& J, const SpectralFilter& filter, const Vector& w,
@@ -239,13 +359,6 @@ bool SpectralStep::by_qr(const Matrix& J, const SpectralFilter& filter, const Ve
   return true;
 }
 
-bool SpectralStep::by_pivots(const Matrix& J, const SpectralFilter& filter, const Vector& w,
-                             Real factor, Vector& out) {
-  if (!least_squares(J, w, filter.cutoff, result_)) return false;
-  out += factor * result_;
-  return true;
-}
-
 SpectralStep::Outcome SpectralStep::by_gram(Way& way, Meter& f, Linearization& at,
                                             const SpectralFilter& filter, const Vector& w,
                                             Real factor, Vector& out) {
@@ -257,7 +370,12 @@ SpectralStep::Outcome SpectralStep::by_gram(Way& way, Meter& f, Linearization& a
       way == Way::cholesky ? solve_damped(filter) : solve_filtered(filter, is_wide, w.norm());
   if (!is_solved) return Outcome::failed;
   if (wanted_ == Way::automatic && was_too_small_ && way == Way::layers) way = Way::split;
-  if (way == Way::split && !solve_split(filter, w)) return Outcome::failed;
+  if (way == Way::split) {
+    if (!split_.solve(layered_, eigen_, filter, spectrum_, w, result_)) return Outcome::failed;
+    sigma_ = split_.sigma();
+    along_ = split_.along();
+    judge(Way::split, filter, true, w.norm());
+  }
   if (wanted_ == Way::automatic && was_too_small_ && f.is_granted(Oracle::jacobian))
     return Outcome::too_small;
   if (!is_wide) {
@@ -301,14 +419,6 @@ bool SpectralStep::solve_filtered(const SpectralFilter& filter, bool is_wide, Re
   result_.noalias() = eigen_.V * along_;
   if (is_wide) along_.array() *= sigma_.array();  // of the step, as it is where J is tall
   judge(Way::gram, filter, is_wide, length);
-  return true;
-}
-
-bool SpectralStep::solve_split(const SpectralFilter& filter, const Vector& w) {
-  if (!split_.solve(layered_, eigen_, filter, spectrum_, w, result_)) return false;
-  sigma_ = split_.sigma();
-  along_ = split_.along();
-  judge(Way::split, filter, true, w.norm());
   return true;
 }
 

@@ -2,17 +2,118 @@
 // compute it.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <string>
 #include <string_view>
 
 #include "core/archive.h"
 #include "core/decompose.h"
-#include "optimizers/lanczos_step.h"
 #include "optimizers/layered_jacobian.h"
 #include "optimizers/meter.h"
-#include "optimizers/spectral_filter.h"
 
 namespace isoline::optimizers {
+
+// The filter of the singular values of J = U diag(σ) Vᵀ: every spectral method steps by
+// Δθ = −η V f(σ) Uᵀ g, and every f here is one formula,
+//
+//   f(σ) = σ (σ² + μ)^(−(κ+1)/2)  where σ > τ σ₁,  else 0,
+//
+// Hansen (1998), chapter 4, for κ = 1: Tikhonov with μ, the truncated inverse without.
+
+// The reference of a filter.
+struct Spectrum {
+  Real largest = 0;      // σ₁
+  Real mean_square = 0;  // the mean diagonal of K = JJᵀ, which is ‖J‖²/(m·B)
+};
+
+struct SpectralFilter {
+  enum class Unit { largest, mean };  // of μ: σ₁², or the mean diagonal of K
+
+  Real kappa;           // κ
+  Real cutoff = 0;      // τ
+  bool clamps = false;  // of σ > 0 those up to the cut-off count as it, instead of nothing
+  Real damping = 0;     // μ, in its unit
+  Unit unit = Unit::largest;
+
+  Real mu(const Spectrum& of) const {
+    return damping * (unit == Unit::largest ? of.largest * of.largest : of.mean_square);
+  }
+  Real operator()(Real sigma, const Spectrum& of) const {
+    if (damping > 0) return sigma * over_sigma(sigma, of);
+    return power(sigma, of, kappa);
+  }
+  // f(σ)/σ, which is what a function of JJᵀ or JᵀJ has to be.
+  Real over_sigma(Real sigma, const Spectrum& of) const {
+    if (damping > 0) return std::pow(sigma * sigma + mu(of), -(kappa + 1) / 2);
+    if (clamps) return sigma > 0 ? power(sigma, of, kappa) / sigma : 0;
+    return power(sigma, of, kappa + 1);
+  }
+  // Whether σ adds to the step.
+  bool keeps(Real sigma, const Spectrum& of) const {
+    return clamps ? sigma > 0 : sigma > cutoff * of.largest;
+  }
+
+ private:
+  Real power(Real sigma, const Spectrum& of, Real exponent) const {
+    if (clamps && sigma > 0) return std::pow(std::max(sigma, cutoff * of.largest), -exponent);
+    return sigma > cutoff * of.largest ? std::pow(sigma, -exponent) : 0;
+  }
+};
+
+// σ^(−κ), discarded up to the cut-off: truncated Gauss-Newton for κ = 1.
+inline SpectralFilter power_filter(Real kappa, Real cutoff) {
+  return {.kappa = kappa, .cutoff = cutoff};
+}
+// σ/(σ² + μ), μ as a share of the mean diagonal of K: fixed damping, and SPRING's.
+inline SpectralFilter tikhonov_filter(Real damping) {
+  return {.kappa = 1, .damping = damping, .unit = SpectralFilter::Unit::mean};
+}
+// σ/(σ² + μ)^¾ for κ = ½, μ as a share of σ₁²: the half-inverse that decays where σ vanishes.
+inline SpectralFilter decaying_filter(Real kappa, Real damping) {
+  return {.kappa = kappa, .damping = damping};
+}
+
+// V f(σ) Uᵀ w from products with J and Jᵀ alone: Golub-Kahan bidiagonalization, Golub, Kahan
+// (1965), which is Lanczos' process on JᵀJ, or on JJᵀ where that is smaller, without squaring
+// anything. With A S = T B for orthonormal S and T, B bidiagonal, and f(σ)/σ = h(σ²),
+//   h(AᵀA) s₁ ≈ S h(BᵀB) e₁;
+// Higham (2008), §13.2. S is kept and orthogonalized against itself, T is not (Simon, Zha, 2000).
+
+struct KrylovLimits {
+  Real tolerance = 1e-3;  // on the estimated relative error of the step
+  Index vectors = 300;    // most of them, and fewer where they would take more than 512 MiB
+};
+
+class LanczosStep {
+ public:
+  // out += factor · V f(σ) Uᵀ w, w (m·B), out (n); false where a product is not finite. Ends at the
+  // tolerance, at the limits, or where the budget is spent; error() says how near it came.
+  bool add(Meter& f, Linearization& at, const SpectralFilter& filter, const KrylovLimits& limits,
+           const Vector& w, Real factor, Vector& out);
+  Index vectors() const { return vectors_; }
+  // ‖Δ − Δ'‖/‖Δ‖ against the step Δ' of two thirds of the vectors: about the error of Δ', which
+  // that of Δ is below.
+  Real error() const { return error_; }
+
+ private:
+  void start(Linearization& at, const Vector& w, Index most);
+  bool extend(Linearization& at);  // by one vector; false where the space is exhausted
+  void solve(const SpectralFilter& filter, Index size, Vector& out);
+  Real distance(const Vector& coefficients) const;
+  void apply(Linearization& at, bool pushes, VectorRef v, Vector& out);
+
+  bool is_over_parameters_ = false;  // A = J, else Jᵀ
+  bool is_exhausted_ = false;        // no product leaves S
+  Index vectors_ = 0, unknowns_ = 0;
+  Real error_ = 0, length_ = 0;      // ‖s‖ of the vector that S starts with
+  Matrix S_;                         // (r, most), r = min(m·B, n)
+  std::vector<Real> alpha_, beta_;   // of B's diagonal and the one above it
+  Vector t_, last_t_, s_, overlap_;  // (max(m·B, n)) twice, (r), (vectors)
+  Vector solution_, earlier_;        // coefficients of the step in S
+  Matrix cotangent_;                 // (m, B)
+  Svd svd_;
+};
 
 enum class Way {
   automatic,
@@ -29,18 +130,6 @@ Way way_named(std::string_view name);  // "auto", and each as it is called here
 
 // The factorization used, in words: "the thin SVD of J".
 std::string_view way_text(Way way);
-
-// The choice of `automatic`. A Gram matrix squares the condition number. It is used if the
-// estimated relative error of the step is at most 2e-9, and if the smallest σ that matters is at
-// least 1e-5 of the largest (1e-7 if split in two). It is not tried if the cut-off is so near its
-// rounding that this could not be detected.
-inline constexpr Real kMostErrorByGram = 2e-9, kLeastShareByGram = 1e-5, kLeastShareBySplit = 1e-7;
-inline constexpr Real kLeastCutoffByGram = 1e-7;
-
-// For `automatic`: whether every spectrum excludes a Gram matrix.
-bool never_by_gram(const SpectralFilter& filter);
-// Whether one number is enough of a spectrum: Tikhonov's filter with μ in units of the mean.
-bool is_tikhonov(const SpectralFilter& filter);
 
 // The oracles that a method with a SpectralStep needs, by its factorization.
 OracleSet needs_of(Way way, const SpectralFilter& filter, const Problem& problem);
@@ -93,13 +182,10 @@ class SpectralStep {
   void persist(Archive& archive) { archive(was_too_small_, ways_taken_); }
 
  private:
-  Way choose(const Meter& f, const SpectralFilter& filter, bool is_wide) const;
   bool by_svd(const Matrix& J, const SpectralFilter& filter, const Vector& w, Real factor,
               Vector& out);
   bool by_qr(const Matrix& J, const SpectralFilter& filter, const Vector& w, Real factor,
              Vector& out);
-  bool by_pivots(const Matrix& J, const SpectralFilter& filter, const Vector& w, Real factor,
-                 Vector& out);
   // By K = JJᵀ where J is wide, else by JᵀJ; too_small: to be done again by QR. `way` becomes
   // Way::split where it was automatic and is needed.
   enum class Outcome { done, failed, too_small };
@@ -108,9 +194,7 @@ class SpectralStep {
   void form_gram(bool is_layered, bool is_wide, Linearization& at, const Vector& w);
   bool solve_filtered(const SpectralFilter& filter, bool is_wide, Real length);
   bool solve_damped(const SpectralFilter& filter);
-  bool solve_split(const SpectralFilter& filter, const Vector& w);
   void judge(Way way, const SpectralFilter& filter, bool is_wide, Real length);
-  void say(Meter& f, Way way);
 
   Way wanted_ = Way::automatic;
   KrylovLimits limits_;

@@ -14,66 +14,6 @@
 #include "optimizers/optimizer.h"
 
 namespace isoline::optimizers {
-namespace {
-
-struct WolfeSearch {
-  Real c1 = 1e-4, c2 = 0.9;
-  int most_trials = 25;
-
-  struct Trial {
-    Real length = 0, value = 0, slope = 0;  // α, φ(α), φ'(α)
-  };
-
-  // evaluate(α) -> Trial; is_over() -> bool, called before each. True if both conditions hold at
-  // `found`; otherwise `found` is the best trial that lowers φ enough, or has length 0 if there is
-  // none.
-  template <class Evaluate, class IsOver>
-  bool operator()(const Trial& start, Real first, Evaluate&& evaluate, IsOver&& is_over,
-                  Trial& found) const {
-    Trial low = start, high = start;
-    bool is_bracketed = false;
-    Real length = first;
-    found = start;
-    for (int i = 0; i < most_trials && length > 0 && !is_over(); ++i) {
-      const Trial at = evaluate(length);
-      const bool is_low_enough = at.value <= start.value + c1 * length * start.slope;
-      if (is_low_enough && std::abs(at.slope) <= c2 * std::abs(start.slope)) {
-        found = at;
-        return true;
-      }
-      if (is_low_enough && at.value < found.value) found = at;
-      if (!is_low_enough || at.value >= low.value) {  // nan as well
-        high = at;
-        is_bracketed = true;
-      } else {
-        const Real away = is_bracketed ? high.length - low.length : 1;
-        if (at.slope * away >= 0) {
-          high = low;
-          is_bracketed = true;
-        }
-        low = at;
-      }
-      constexpr Real kGrowth = 4;
-      length = is_bracketed ? between(low, high) : kGrowth * length;
-    }
-    return false;
-  }
-
- private:
-  // Ibid., eq. 3.59, at least a tenth of the bracket from either end; its middle where an end is
-  // not finite.
-  static Real between(const Trial& low, const Trial& high) {
-    constexpr Real kMargin = 0.1;
-    const Real gap = high.length - low.length;
-    const Real d1 = low.slope + high.slope - 3 * (high.value - low.value) / gap;
-    const Real root = std::copysign(std::sqrt(d1 * d1 - low.slope * high.slope), gap);
-    const Real share = 1 - (high.slope + root - d1) / (high.slope - low.slope + 2 * root);
-    if (!std::isfinite(share)) return low.length + 0.5 * gap;
-    return low.length + std::clamp(share, kMargin, 1 - kMargin) * gap;
-  }
-};
-
-}  // namespace
 
 void update_self_scaled(Matrix& H, const Vector& s, const Vector& y, Real bend, Vector& Hy,
                         Vector& v) {
@@ -139,8 +79,7 @@ struct SelfScaledBroyden {
       s.is_scaled = false;
       slope = lengthen();
     }
-    WolfeSearch::Trial found;
-    search(f, theta, s, slope, found);
+    const Trial found = search(f, theta, s, slope);
     if (found.length == 0 && f.is_spent()) return Status::running;  // which the harness ends
     if (found.length == 0) {
       f.claim("the line search found no lower loss");
@@ -150,25 +89,63 @@ struct SelfScaledBroyden {
     return Status::running;
   }
 
-  // Has length 1 at first; along the gradient, which has no other unit, of a step of length 1.
-  void search(Meter& f, const Vector& theta, State& s, Real slope,
-              WolfeSearch::Trial& found) const {
-    const auto evaluate = [&](Real length) -> WolfeSearch::Trial {
+  struct Trial {
+    Real length = 0, value = 0, slope = 0;  // α, φ(α), φ'(α)
+  };
+
+  // To the strong Wolfe conditions, from length 1, but at first along the gradient, which has no
+  // other unit, from a step of length 1. If no trial meets both conditions, the best that lowers φ
+  // enough, or length 0 without one.
+  Trial search(Meter& f, const Vector& theta, State& s, Real along_slope) const {
+    constexpr int kMostTrials = 25;
+    const auto evaluate = [&](Real length) -> Trial {
       s.candidate = theta + length * s.along;
       f.linearize(s.candidate, s.at);
       s.at.gradient(s.trial_gradient);
       return {length, s.at.loss(), s.trial_gradient.dot(s.along)};
     };
-    const Real first = s.is_scaled ? 1 : std::min(Real(1), 1 / s.along.norm());
-    const WolfeSearch wolfe{.c1 = sufficient_decrease, .c2 = curvature};
-    const WolfeSearch::Trial start{.length = 0, .value = s.loss, .slope = slope};
-    const bool is_wolfe = wolfe(
-        start, first, evaluate, [&] { return f.is_spent(); }, found);
+    const Trial start{.length = 0, .value = s.loss, .slope = along_slope};
+    Trial found = start;
+    Real length = s.is_scaled ? 1 : std::min(Real(1), 1 / s.along.norm());
+    Trial low = start, high = start;
+    bool is_bracketed = false;
+    for (int i = 0; i < kMostTrials && length > 0 && !f.is_spent(); ++i) {
+      const Trial at = evaluate(length);
+      const bool is_low_enough =
+          at.value <= start.value + sufficient_decrease * length * start.slope;
+      if (is_low_enough && std::abs(at.slope) <= curvature * std::abs(start.slope)) return at;
+      if (is_low_enough && at.value < found.value) found = at;
+      if (!is_low_enough || at.value >= low.value) {  // nan as well
+        high = at;
+        is_bracketed = true;
+      } else {
+        const Real away = is_bracketed ? high.length - low.length : 1;
+        if (at.slope * away >= 0) {
+          high = low;
+          is_bracketed = true;
+        }
+        low = at;
+      }
+      constexpr Real kGrowth = 4;
+      length = is_bracketed ? between(low, high) : kGrowth * length;
+    }
     // The gradient is that of the last trial, which a search that failed may have gone past.
-    if (!is_wolfe && found.length > 0) found = evaluate(found.length);
+    return found.length > 0 ? evaluate(found.length) : found;
   }
 
-  void move(Vector& theta, State& s, const WolfeSearch::Trial& found, Real slope) const {
+  // Ibid., eq. 3.59, at least a tenth of the bracket from either end; its middle where an end is
+  // not finite.
+  static Real between(const Trial& low, const Trial& high) {
+    constexpr Real kMargin = 0.1;
+    const Real gap = high.length - low.length;
+    const Real d1 = low.slope + high.slope - 3 * (high.value - low.value) / gap;
+    const Real root = std::copysign(std::sqrt(d1 * d1 - low.slope * high.slope), gap);
+    const Real share = 1 - (high.slope + root - d1) / (high.slope - low.slope + 2 * root);
+    if (!std::isfinite(share)) return low.length + 0.5 * gap;
+    return low.length + std::clamp(share, kMargin, 1 - kMargin) * gap;
+  }
+
+  void move(Vector& theta, State& s, const Trial& found, Real slope) const {
     theta = s.candidate;
     s.y = s.trial_gradient - s.gradient;
     s.along *= found.length;  // s

@@ -33,8 +33,7 @@ class Examination {
   std::vector<Finding> findings;
 
   void repeatability() {
-    Point again;
-    problem_.forward(theta_, again);
+    const Point again = point_at(theta_);
     add("forward gives the same bits twice",
         same_bits(again.y, at_.y) && again.loss == at_.loss ? 0 : 1, 0,
         "forward must not be random");
@@ -45,18 +44,12 @@ class Examination {
     const Vector v = direction();
     const Matrix u = cotangent();
     const bool pushes = offers(Oracle::pushforward), pulls = offers(Oracle::pullback);
-    const Matrix Jv = pushes ? push(v) : Matrix();
+    const Matrix Jv = pushes ? push(v, at_) : Matrix();
     const Matrix JTu = pulls ? Matrix(pull(u, at_)) : Matrix();
-    Point elsewhere;
-    problem_.forward(near_start(), elsewhere);
-    Point again;
-    problem_.forward(theta_, again);
+    point_at(near_start());
+    Point again = point_at(theta_);
     bool same = same_bits(again.y, at_.y);
-    if (pushes) {
-      Matrix out(problem_.outputs(), problem_.samples());
-      problem_.pushforward(v, out, again);
-      same = same && same_bits(out, Jv);
-    }
+    if (pushes) same = same && same_bits(push(v, again), Jv);
     if (pulls) same = same && same_bits(pull(u, again), JTu);
     add("the same call gives the same bits after other calls", same ? 0 : 1, 0,
         "runs must be repeatable bit for bit");
@@ -65,7 +58,7 @@ class Examination {
   void adjoint() {
     const Vector v = direction();
     const Matrix u = cotangent();
-    const Matrix Jv = push(v);
+    const Matrix Jv = push(v, at_);
     const Real scale = u.norm() * Jv.norm() + v.norm() * pull(u, at_).norm();
     const Real gap = std::abs(u.cwiseProduct(Jv).sum() - v.dot(pull(u, at_)));
     const bool is_single = problem_.network().is_single_precision();
@@ -79,7 +72,7 @@ class Examination {
   void taylor() {
     Real h = kFirstStep;
     const Vector v = smooth_direction(h, kHalvings);
-    const Matrix Jv = push(v);
+    const Matrix Jv = push(v, at_);
     const Real floor = 1e4 * kEpsilon * (at_.y.norm() + Jv.norm());
     const Real slope = order_of([&](Real step) { return remainder(v, Jv, step); }, h, floor);
     add("the remainder after J v is of second order", std::abs(slope - 2), 0.1,
@@ -94,8 +87,7 @@ class Examination {
     const Real change = pull(u, at_).dot(v);
     const Real floor = 1e4 * kEpsilon * (u.norm() * at_.y.norm() + std::abs(change));
     const auto remainder_at = [&](Real step) {
-      Point at;
-      problem_.forward(theta_ + step * v, at);
+      const Point at = point_at(theta_ + step * v);
       return std::abs(u.cwiseProduct(at.y - at_.y).sum() - step * change);
     };
     const Real slope = order_of(remainder_at, h, floor);
@@ -119,7 +111,7 @@ class Examination {
     const Matrix u = cotangent();
     Matrix J;
     problem_.jacobian(J, at_);
-    const Vector Jv = offers(Oracle::pushforward) ? Vector(push(v).reshaped()) : Vector();
+    const Vector Jv = offers(Oracle::pushforward) ? Vector(push(v, at_).reshaped()) : Vector();
     const Vector JTu = offers(Oracle::pullback) ? pull(u, at_) : Vector();
     if (offers(Oracle::pushforward))
       add("J v by the matrix is J v by the product", relative((J * v - Jv).norm(), Jv.norm()),
@@ -142,8 +134,7 @@ class Examination {
       asymmetry += (H.middleCols(b * k, k) - H.middleCols(b * k, k).transpose()).norm();
     add("Σ wᵢ ∇²Pᵢ is symmetric", relative(asymmetry, H.norm()), 1e-14, kRounding);
     const Vector JTw = pull(w, at_);
-    const Vector difference =
-        (pull_at(theta_ + h_ * v, w) - pull_at(theta_ - h_ * v, w)) / (2 * h_);
+    const Vector difference = change_along(v, [&](Point& at) { return pull(w, at); });
     const Vector Hv = H * v;
     add("Σ wᵢ ∇²Pᵢ v is the change of Jᵀw along v",
         relative((difference - Hv).norm(), Hv.norm() + JTw.norm()), 1e-6, kDifferences);
@@ -155,14 +146,7 @@ class Examination {
     const Vector v = smooth_direction();
     Matrix H;
     problem_.hessian(H, at_);
-    Point plus, minus;
-    problem_.forward(theta_ + h_ * v, plus);
-    problem_.forward(theta_ - h_ * v, minus);
-    const Vector difference = (loss_gradient(plus) - loss_gradient(minus)) / (2 * h_);
-    const Vector Hv = H * v;
-    add("∇²L v is the change of ∇L along v",
-        relative((difference - Hv).norm(), Hv.norm() + loss_gradient(at_).norm()), 1e-6,
-        kDifferences);
+    add_change_of_gradient("∇²L v is the change of ∇L along v", v, H * v);
   }
 
   void hessian_product() {
@@ -170,20 +154,14 @@ class Examination {
     const Vector v = smooth_direction();
     Vector Hv(problem_.unknowns());
     problem_.hessian_product(v, Hv, at_);
-    Point plus, minus;
-    problem_.forward(theta_ + h_ * v, plus);
-    problem_.forward(theta_ - h_ * v, minus);
-    const Vector difference = (loss_gradient(plus) - loss_gradient(minus)) / (2 * h_);
-    add("the product with ∇²L is the change of ∇L along v",
-        relative((difference - Hv).norm(), Hv.norm() + loss_gradient(at_).norm()), 1e-6,
-        kDifferences);
+    add_change_of_gradient("the product with ∇²L is the change of ∇L along v", v, Hv);
   }
 
   // For a y that some x reaches. Uses the physics alone, without the network.
   void inverse() {
     if (problem_.inverse_kind() != Inverse::exact) return;
-    Point reached, back;
-    problem_.forward(near_start(), reached);
+    const Point reached = point_at(near_start());
+    Point back;
     Matrix x(problem_.inputs(), problem_.samples());
     const bool success = problem_.local_inverse(reached.y, x, at_).all();
     add("the inverse succeeds where y is reachable", success ? 0 : 1, 0,
@@ -219,8 +197,7 @@ class Examination {
   }
 
   void solution() {
-    Point start;
-    problem_.forward(problem_.start(), start);
+    const Point start = point_at(problem_.start());
     if (problem_.minimum()) {
       const Real minimum = *problem_.minimum(), error = problem_.minimum_error();
       add("the loss is above the declared minimum around the start",
@@ -237,7 +214,8 @@ class Examination {
           "errors in x are relative to it");
     if (problem_.truth() && !std::isnan(problem_.x_error(*problem_.truth())))
       add("the error in x of the truth is zero, or the floor where data of another solver have one",
-          (problem_.x_error(*problem_.truth()) - truth_floor()) /
+          (problem_.x_error(*problem_.truth()) -
+           (problem_.minimum() ? 0 : problem_.x_floor(problem_.batch()))) /
               std::max(1.0, problem_.truth()->norm()),
           1e-14, kRounding);
   }
@@ -289,12 +267,7 @@ class Examination {
         "the differentiable pieces that the problem declares must have an extent");
     return v;
   }
-  Vector smooth_direction() {
-    Real h = h_;
-    Vector v = smooth_direction(h, 0);
-    h_ = h;
-    return v;
-  }
+  Vector smooth_direction() { return smooth_direction(h_, 0); }
   bool is_smooth_along(const Vector& v, Real h, int halvings) const {
     if (!has_pieces(at_)) return true;
     Point at;
@@ -323,9 +296,6 @@ class Examination {
   }
   Vector near_start() { return near(problem_.start(), problem_.start_scale(), stream_); }
 
-  // The declared floor, where no x attains the minimum for certain.
-  Real truth_floor() const { return problem_.minimum() ? 0 : problem_.x_floor(problem_.batch()); }
-
   // (PᵀP)³ of noise of 0.1
   Matrix smoothed() {
     Matrix x = 0.1 * stream_.normal_vector(problem_.inputs() * problem_.samples())
@@ -338,9 +308,9 @@ class Examination {
     return x;
   }
 
-  Matrix push(VectorRef v) {
+  Matrix push(VectorRef v, Point& at) const {
     Matrix Jv(problem_.outputs(), problem_.samples());
-    problem_.pushforward(v, Jv, at_);
+    problem_.pushforward(v, Jv, at);
     return Jv;
   }
   Vector pull(BatchRef w, Point& at) const {
@@ -348,25 +318,30 @@ class Examination {
     problem_.pullback(w, JTw, at);
     return JTw;
   }
-  Vector pull_at(VectorRef theta, BatchRef w) const {
-    Point at;
-    problem_.forward(theta, at);
-    return pull(w, at);
-  }
   Vector loss_gradient(Point& at) const {
     Matrix g(problem_.outputs(), problem_.samples());
     problem_.cotangent(at, g);
     return pull(g, at);
   }
-  Real loss(VectorRef theta) const {
+  Point point_at(VectorRef theta) const {
     Point at;
     problem_.forward(theta, at);
-    return at.loss;
+    return at;
   }
+  Real loss(VectorRef theta) const { return point_at(theta).loss; }
   Real remainder(VectorRef v, BatchRef Jv, Real h) const {
-    Point at;
-    problem_.forward(theta_ + h * v, at);
-    return (at.y - at_.y - h * Jv).norm();
+    return (point_at(theta_ + h * v).y - at_.y - h * Jv).norm();
+  }
+  template <class Quantity>
+  Vector change_along(const Vector& v, const Quantity& of) const {
+    Point plus = point_at(theta_ + h_ * v), minus = point_at(theta_ - h_ * v);
+    return (of(plus) - of(minus)) / (2 * h_);
+  }
+  void add_change_of_gradient(std::string property, const Vector& v, const Vector& Hv) {
+    const Vector difference = change_along(v, [&](Point& at) { return loss_gradient(at); });
+    add(std::move(property),
+        relative((difference - Hv).norm(), Hv.norm() + loss_gradient(at_).norm()), 1e-6,
+        kDifferences);
   }
 
   const Problem& problem_;

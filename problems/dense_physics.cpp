@@ -5,35 +5,9 @@
 
 namespace isoline::problems {
 
-void DensePhysics::second(VectorRef, VectorRef, BatchOut) const {
-  throw NotApplicable("the physics offers no second derivatives");
-}
-
-bool DensePhysics::invert(VectorRef, VectorRef, VectorOut) const { return false; }
-
 void DensePhysics::forward(BatchRef x, BatchRef, BatchOut y, Workspace&) const {
   for (Index b = 0; b < x.cols(); ++b) value(x.col(b), y.col(b));
 }
-
-const Matrix& DensePhysics::saved_jacobian(Workspace& w) const {
-  w.saved.resize(2);
-  Matrix& J = w.saved[0];
-  if (w.saved_is_current) return J;
-  J.setZero(outputs_, inputs_ * w.x.cols());
-  for (Index b = 0; b < w.x.cols(); ++b) derivative(w.x.col(b), J.middleCols(b * inputs_, inputs_));
-  w.saved_is_current = true;
-  return J;
-}
-
-void DensePhysics::pushforward(BatchRef v, BatchOut Jv, Workspace& w) const {
-  multiply_samples(saved_jacobian(w), v, Jv);
-}
-
-void DensePhysics::pullback(BatchRef u, BatchOut JTu, Workspace& w) const {
-  multiply_samples_transposed(saved_jacobian(w), u, JTu);
-}
-
-void DensePhysics::jacobian(BatchOut J, Workspace& w) const { J = saved_jacobian(w); }
 
 void DensePhysics::curvature(BatchRef u, BatchOut out, Workspace& w) const {
   out.setZero();
@@ -42,7 +16,7 @@ void DensePhysics::curvature(BatchRef u, BatchOut out, Workspace& w) const {
 }
 
 void DensePhysics::curvature_product(BatchRef u, BatchRef v, BatchOut out, Workspace& w) const {
-  w.saved.resize(2);
+  if (w.saved.size() < 2) w.saved.resize(2);
   Matrix& H = w.saved[1];  // (k, k), of one sample
   for (Index b = 0; b < u.cols(); ++b) {
     H.setZero(inputs_, inputs_);

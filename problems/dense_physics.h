@@ -6,27 +6,29 @@
 
 namespace isoline::problems {
 
-class DensePhysics : public Physics {
+class DensePhysics : public ByJacobian {
  public:
   DensePhysics(Index inputs, Index outputs) : inputs_(inputs), outputs_(outputs) {}
   Index inputs() const final { return inputs_; }
   Index outputs() const final { return outputs_; }
 
-  virtual void value(VectorRef x, VectorOut y) const = 0;           // (k) -> (m)
-  virtual void derivative(VectorRef x, BatchOut J) const = 0;       // J (m, k), given as zeros
-  virtual void second(VectorRef x, VectorRef u, BatchOut H) const;  // H (k, k), given as zeros
-  virtual bool invert(VectorRef y, VectorRef x0, VectorOut x) const;
+  virtual void value(VectorRef x, VectorOut y) const = 0;      // (k) -> (m)
+  virtual void derivative(VectorRef x, BatchOut J) const = 0;  // J (m, k), given as zeros
+  virtual void second(VectorRef, VectorRef, BatchOut) const {  // x, u, H (k, k), given as zeros
+    throw NotApplicable("the physics offers no second derivatives");
+  }
+  virtual bool invert(VectorRef /*y*/, VectorRef /*x0*/, VectorOut /*x*/) const { return false; }
 
   void forward(BatchRef x, BatchRef c, BatchOut y, Workspace& w) const final;
-  void pushforward(BatchRef v, BatchOut Jv, Workspace& w) const final;
-  void pullback(BatchRef u, BatchOut JTu, Workspace& w) const final;
-  void jacobian(BatchOut J, Workspace& w) const final;
   void curvature(BatchRef u, BatchOut out, Workspace& w) const final;
   void curvature_product(BatchRef u, BatchRef v, BatchOut out, Workspace& w) const final;
   Success local_inverse(BatchRef y, BatchRef x0, BatchRef c, BatchOut x) const final;
 
  private:
-  const Matrix& saved_jacobian(Workspace& w) const;  // (m, k·B) at w.x, computed once a forward
+  void form_jacobian(Matrix& J, Workspace& w) const final {
+    for (Index b = 0; b < w.x.cols(); ++b)
+      derivative(w.x.col(b), J.middleCols(b * inputs_, inputs_));
+  }
 
   Index inputs_, outputs_;
 };

@@ -21,9 +21,7 @@
 
 #include "core/fourier.h"
 #include "networks/mean_matched.h"
-#include "problems/exact_data.h"
 #include "problems/learning.h"
-#include "problems/random_fields.h"
 
 namespace isoline::problems {
 
@@ -66,7 +64,43 @@ class Heat final : public SelfAdjointPhysics {
   }
   // x becomes what the best cut-off gives without rounding; the error that rounding adds to it is
   // returned. truth, target, start and x are one sample each, (N²).
-  Real cut_off(VectorRef truth, VectorRef target, VectorRef start, VectorOut x) const;
+  Real cut_off(VectorRef truth, VectorRef target, VectorRef start, VectorOut x) const {
+    struct Mode {
+      Real ell = 0, noise = 0, missing = 0;  // squared norms, of both halves of the spectrum
+    };
+    const Real cells = fourier_.round_trip();
+    constexpr Real kUnit = std::numeric_limits<Real>::epsilon() / 2;
+    const Real noise = std::pow(kUnit * target.norm(), 2) / cells;
+    x = start - truth;
+    fourier_.forward(x);
+    auto& D = fourier_.spectrum();
+    std::vector<Mode> modes;
+    for (Index j = 0; j < D.cols(); ++j)
+      for (Index i = 0; i < D.rows(); ++i) {
+        const Real count = i == 0 || 2 * i == N_ ? 1 : 2;  // with its conjugate
+        modes.push_back({ell_(i, j), count * noise * std::exp(2 * ell_(i, j)),
+                         count * std::norm(D(i, j)) / cells});
+      }
+    std::ranges::sort(modes, std::ranges::greater{}, &Mode::ell);
+    for (std::size_t i = modes.size() - 1; i-- > 0;)
+      modes[i].noise += modes[i + 1].noise;  // and after
+    Mode best = modes.back();
+    Real lost = 0, least = std::numeric_limits<Real>::infinity();
+    for (std::size_t i = 0; i < modes.size(); ++i) {
+      const bool is_cut =
+          i == 0 || modes[i].ell != modes[i - 1].ell;  // modes of one ℓ stay together
+      if (is_cut && modes[i].noise + lost < least) {
+        least = modes[i].noise + lost;
+        best = modes[i];
+      }
+      lost += modes[i].missing;
+    }
+    for (Index j = 0; j < D.cols(); ++j)
+      for (Index i = 0; i < D.rows(); ++i) D(i, j) *= ell_(i, j) <= best.ell ? 0 : 1 / cells;
+    fourier_.inverse(x);
+    x += truth;
+    return std::sqrt(best.noise);
+  }
 
   Inverse inverse_kind() const override { return Inverse::damped; }
   Index inverse_price() const override { return 2; }  // P(x₀), and as much again to invert
@@ -112,45 +146,29 @@ class Heat final : public SelfAdjointPhysics {
 // then pass for evidence. A network's d does not vanish, and they train without it.
 constexpr Real kNoiseFloor = 1e-8;
 
-Real Heat::cut_off(VectorRef truth, VectorRef target, VectorRef start, VectorOut x) const {
-  struct Mode {
-    Real ell = 0, noise = 0, missing = 0;  // squared norms, of both halves of the spectrum
-  };
-  const Real cells = fourier_.round_trip();
-  constexpr Real kUnit = std::numeric_limits<Real>::epsilon() / 2;
-  const Real noise = std::pow(kUnit * target.norm(), 2) / cells;
-  x = start - truth;
-  fourier_.forward(x);
-  auto& D = fourier_.spectrum();
-  std::vector<Mode> modes;
-  for (Index j = 0; j < D.cols(); ++j)
-    for (Index i = 0; i < D.rows(); ++i) {
-      const Real count = i == 0 || 2 * i == N_ ? 1 : 2;  // with its conjugate
-      modes.push_back({ell_(i, j), count * noise * std::exp(2 * ell_(i, j)),
-                       count * std::norm(D(i, j)) / cells});
+// A sum of 4 to 10 rectangles with edges one cell soft. Lengths are those of a grid of 64, times
+// N/64. (N²)
+Vector soft_rectangles(Index N, RandomStream& stream) {
+  constexpr Index kSlots = 10;  // all are sampled; only the first `count` have a strength
+  const Real radius = std::numbers::sqrt2 / 2;  // in cells: the width of a soft edge
+  const Real unit = static_cast<Real>(N) / 64;
+  const auto count = static_cast<Index>(4 + 7 * stream.uniform());
+  Matrix field = Matrix::Zero(N, N);
+  for (Index slot = 0; slot < kSlots; ++slot) {
+    Eigen::Array2d centre, half;
+    for (Real& c : centre) c = unit * stream.uniform(6.4, 57.6);
+    for (Real& h : half) h = unit * stream.uniform(0, 10);
+    const Real drawn = stream.uniform(), strength = slot < count ? drawn : 0;
+    centre = centre.max(half).min(static_cast<Real>(N) - half);
+    for (Index j = 0; j < N; ++j) {
+      for (Index i = 0; i < N; ++i) {
+        const Eigen::Array2d cell(static_cast<Real>(i) + 0.5, static_cast<Real>(j) + 0.5);
+        const Real outside = ((cell - centre).abs() - half).maxCoeff();
+        field(i, j) += strength * std::clamp(0.5 - outside / radius, 0.0, 1.0);
+      }
     }
-  std::ranges::sort(modes, std::ranges::greater{}, &Mode::ell);
-  for (std::size_t i = modes.size() - 1; i-- > 0;)
-    modes[i].noise += modes[i + 1].noise;  // and after
-  Mode best = modes.back();
-  Real lost = 0, least = std::numeric_limits<Real>::infinity();
-  for (std::size_t i = 0; i < modes.size(); ++i) {
-    const bool is_cut = i == 0 || modes[i].ell != modes[i - 1].ell;  // modes of one ℓ stay together
-    if (is_cut && modes[i].noise + lost < least) {
-      least = modes[i].noise + lost;
-      best = modes[i];
-    }
-    lost += modes[i].missing;
   }
-  for (Index j = 0; j < D.cols(); ++j)
-    for (Index i = 0; i < D.rows(); ++i) D(i, j) *= ell_(i, j) <= best.ell ? 0 : 1 / cells;
-  fourier_.inverse(x);
-  x += truth;
-  return std::sqrt(best.noise);
-}
-
-Field field_of(Index N) {
-  return {.rows = N, .columns = N, .x = {"temperature before"}, .y = {"temperature after"}};
+  return field.reshaped();
 }
 
 // A network starts nowhere: the modes that are cut off are 0. What rounding adds is left out, which
@@ -163,33 +181,34 @@ Real learned_floor(const Heat& physics, const Batch& batch) {
   return summed_error(x, batch);
 }
 
-// The mean of x* is that of y*, which the network is given: x ← N(y*) + mean(y*) − mean(N(y*)).
-ProblemParts learn_heat(const Options& o, const Draw& draw) {
-  const auto physics = std::make_shared<const Heat>(o.N, 0);
-  const auto sample =
-      sample_of(physics, [N = o.N](RandomStream& stream) { return soft_rectangles(N, stream); });
-  const NetworkShape shape{.inputs = o.N * o.N, .outputs = o.N * o.N, .grid = o.N};
-  return learn(o.learning, shape, draw,
-               {.physics = std::make_unique<Heat>(o.N, 0),
-                .network = std::make_unique<MeanMatched>(make_network(o.learning.network, shape)),
-                .x_error = summed_error,
-                .x_floor = [physics](const Batch& batch) { return learned_floor(*physics, batch); },
-                .samples = {.validation = 64, .draw = sample},
-                .field = field_of(o.N)});
-}
-
+// The mean of x* is that of y*, which a network is given: x ← N(y*) + mean(y*) − mean(N(y*)).
 ProblemParts make_heat(const Options& o, const Draw& draw) {
-  if (o.learning.is_on()) return learn_heat(o, draw);
+  const Index N = o.N;
+  const Field field{
+      .rows = N, .columns = N, .x = {"temperature before"}, .y = {"temperature after"}};
+  if (o.learning.is_on()) {
+    const auto physics = std::make_shared<const Heat>(N, 0);
+    const NetworkShape shape{.inputs = N * N, .outputs = N * N, .grid = N};
+    const auto sample =
+        sample_of(physics, [N](RandomStream& stream) { return soft_rectangles(N, stream); });
+    return learn(
+        o.learning, shape, draw,
+        {.physics = std::make_unique<Heat>(N, 0),
+         .network = std::make_unique<MeanMatched>(make_network(o.learning.network, shape)),
+         .x_error = summed_error,
+         .x_floor = [physics](const Batch& batch) { return learned_floor(*physics, batch); },
+         .samples = {.validation = 64, .draw = sample},
+         .field = field});
+  }
   RandomStream stream = draw.stream("target");
-  ProblemParts parts = from_exact_data(std::make_unique<Heat>(o.N, kNoiseFloor),
-                                       soft_rectangles(o.N, stream), field_of(o.N), draw);
+  ProblemParts parts = from_exact_data(std::make_unique<Heat>(N, kNoiseFloor),
+                                       soft_rectangles(N, stream), field, draw);
   const Vector truth = parts.truth->col(0);
   Vector x(truth.size());
   const Real rounding =
-      Heat(o.N, kNoiseFloor).cut_off(truth, parts.target.col(0), parts.start.drawn, x);
-  parts.x_floor = [floor = std::hypot((x - truth).norm(), rounding)](const Batch&) {
-    return floor;
-  };
+      Heat(N, kNoiseFloor).cut_off(truth, parts.target.col(0), parts.start.drawn, x);
+  const Real floor = std::hypot((x - truth).norm(), rounding);
+  parts.x_floor = [floor](const Batch&) { return floor; };
   return parts;
 }
 

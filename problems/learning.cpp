@@ -15,23 +15,13 @@ namespace {
 Matrix hidden_values(const Problem& problem, Point& at) {
   std::vector<LayerFactor> layers;
   problem.network().layer_factors(Matrix::Zero(problem.inputs(), at.y.cols()), layers, at.network);
-  Index neurons = 0;
-  for (std::size_t l = 1; l < layers.size(); ++l) neurons += layers[l].inputs.rows();
-  Matrix values(neurons, at.y.cols());
-  Index first = 0;
+  Matrix values(0, at.y.cols());
   for (std::size_t l = 1; l < layers.size(); ++l) {
-    values.middleRows(first, layers[l].inputs.rows()) = layers[l].inputs;
-    first += layers[l].inputs.rows();
+    const Matrix& layer = layers[l].inputs;
+    values.conservativeResize(values.rows() + layer.rows(), values.cols());
+    values.bottomRows(layer.rows()) = layer;
   }
   return values;
-}
-
-// Neurons of the last hidden layer, which are the last of the hidden values.
-Index last_neurons(const Network& network) {
-  Index neurons = 0;
-  for (const networks::Block& block : network.layout())
-    if (block.kind == networks::Block::Kind::weight) neurons = block.columns;
-  return neurons;
 }
 
 // The count first, then the means of the neurons shown, then their spreads.
@@ -185,7 +175,9 @@ Series hidden_activity(const Network& network) {
 
 Series saturation(const Network& network, Index shown) {
   if (!network.has_layer_factors()) return {};
-  const Index last = last_neurons(network);
+  Index last = 0;  // neurons of the last hidden layer, which are the last of the hidden values
+  for (const networks::Block& block : network.layout())
+    if (block.kind == networks::Block::Kind::weight) last = block.columns;
   Series series{.names = {"saturated neurons"},
                 .evaluate = [last](const Problem& problem, VectorRef, Point& at, VectorOut values) {
                   saturation_of(hidden_values(problem, at), last, values);
@@ -196,6 +188,12 @@ Series saturation(const Network& network, Index shown) {
   return series;
 }
 
+void add_neurons(ProblemParts& parts) {
+  const Network& network = *parts.network;
+  parts.series = joined(std::move(parts.series),
+                        joined(hidden_activity(network), saturation(network, /*shown=*/0)));
+}
+
 Series path(std::vector<std::string> names, std::function<Index(const Batch& batch)> which) {
   return {.names = std::move(names),
           .evaluate = [which = std::move(which)](const Problem&, VectorRef, Point& at,
@@ -204,7 +202,9 @@ Series path(std::vector<std::string> names, std::function<Index(const Batch& bat
           }};
 }
 
-Series half_squared_error() {
+// ½Σ(x − x*)² over the components, the mean over samples: what the published curves of grids show
+// beside Σ|x − x*|.
+static Series half_squared_error() {
   return {.names = {"½Σ(x − x*)²"},
           .evaluate = [](const Problem&, VectorRef, Point& at, VectorOut values) {
             values[0] =
@@ -212,7 +212,11 @@ Series half_squared_error() {
           }};
 }
 
-Series batch_noise() {
+// How far the gradients in θ of two batches differ at the same θ: of L, and of what SIP descends,
+// (1/B) Σ ½‖x − x̃‖² with x̃ = P⁻¹(y*; x) held. The batches are the validation in parts of the size
+// of a training batch, at most a quarter of it. `length` is the standard deviation of the
+// gradients' norms over their mean, `direction` 1 − the mean cosine of two of them.
+static Series batch_noise() {
   const auto parts = std::make_shared<Parts>();
   return {
       .names = {"noise of ∇L: length", "noise of ∇L: direction", "noise of U: length",
@@ -237,7 +241,19 @@ Series spectrum(Index grid) {
 
 // Learning problems from their options.
 
-using networks::make_network;
+ProblemParts from_exact_data(std::unique_ptr<Physics> physics, const Vector& truth,
+                             const Field& field, const Draw& draw) {
+  Workspace w;
+  Matrix target(physics->outputs(), 1);
+  physics->forward(truth, Matrix(0, 1), target, w);
+  return {.physics = std::move(physics),
+          .start = draw.start(Vector::Zero(truth.size())),
+          .target = target,
+          .minimum = 0,
+          .truth = truth,
+          .x_error = [truth](BatchRef x, const Batch&) { return (x - truth).norm(); },
+          .field = field};
+}
 
 Real summed_error(BatchRef x, const Batch& batch) {
   return (x - batch.truth).cwiseAbs().sum() / static_cast<Real>(x.cols());
@@ -254,7 +270,7 @@ std::function<void(RandomStream&, Index, Batch&)> sample_of(
 
 ProblemParts learn(const Learning& options, const NetworkShape& shape, const Draw& draw,
                    ProblemParts parts) {
-  if (!parts.network) parts.network = make_network(options.network, shape);
+  if (!parts.network) parts.network = networks::make_network(options.network, shape);
   RandomStream stream = draw.stream("network");
   parts.start = parts.network->start(stream);
   parts.samples.batch = options.batch;

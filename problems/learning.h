@@ -2,7 +2,6 @@
 // They are taken at kept iterations, off the clock, and no method sees them.
 #pragma once
 
-#include "core/learning_options.h"
 #include "core/options.h"
 #include "problems/problem.h"
 
@@ -21,19 +20,10 @@ Series hidden_activity(const Network& network);
 // this, since some saturate at 1 and others at −1. Nor can a spread of 0 alone: a neuron with small
 // weights has it, too, and still learns.
 Series saturation(const Network& network, Index shown);
+void add_neurons(ProblemParts& parts);  // both, without single neurons
 
 // The components of y that are named, of the sample that `which` chooses.
 Series path(std::vector<std::string> names, std::function<Index(const Batch& batch)> which);
-
-// ½Σ(x − x*)² over the components, the mean over samples: what the published curves of grids show
-// beside Σ|x − x*|.
-Series half_squared_error();
-
-// How far the gradients in θ of two batches differ at the same θ: of L, and of what SIP descends,
-// (1/B) Σ ½‖x − x̃‖² with x̃ = P⁻¹(y*; x) held. The batches are the validation in parts of the size
-// of a training batch, at most a quarter of it. `length` is the standard deviation of the
-// gradients' norms over their mean, `direction` 1 − the mean cosine of two of them.
-Series batch_noise();
 
 // The shares of the power in bands of the wave number k = |k|, in cycles per cell: of x* − x, of
 // the gradient ∂L/∂x, and of the update U = P⁻¹(y*; x) − x; means over samples, without the
@@ -63,9 +53,13 @@ inline void fields(Learning& o, auto& field) {
         "0: new samples in each step; N: the same N samples in every step of mode=learn");
   field(kWatchOption, o.watch, {"", "noise", "spectrum"},
         "additional series of mode=learn: noise: differences of gradients between batches; "
-        "spectrum, for grids: "
-        "the share of power by wave number");
+        "spectrum, for grids: the share of power by wave number");
 }
+
+// Finding an x* (k) again from its exact data, y* = P(x*), of physics that are one to one, with 0
+// as the standard start: the error is ‖x − x*‖. Both x and y are fields.
+ProblemParts from_exact_data(std::unique_ptr<Physics> physics, const Vector& truth,
+                             const Field& field, const Draw& draw);
 
 // The published error of grids: |x − x*| summed over cells, the mean over samples.
 Real summed_error(BatchRef x, const Batch& batch);

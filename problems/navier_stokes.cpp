@@ -41,8 +41,7 @@ void fields(Options& o, auto& field) {
   field("viscosity", o.viscosity, at_least(0), "viscosity ν, 0 as published");
   field("ground-truth", o.ground_truth, {"staggered", "collocated"},
         "the generator of the data: the solver itself, or one on a collocated grid, as published, "
-        "whose "
-        "data cannot be fitted exactly");
+        "whose data cannot be fitted exactly");
   field("rescale", o.rescale, {"component", "none"},
         "component: each component of the velocity is brought back to its energy after every step, "
         "as published");

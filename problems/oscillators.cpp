@@ -1,6 +1,7 @@
 // The oscillators' steps, their derivatives, and the data.
 #include "problems/oscillators.h"
 
+#include "core/decompose.h"
 #include "problems/learning.h"
 #include "problems/sample_lanes.h"
 
@@ -61,9 +62,6 @@ struct Steps {
   Eigen::Map<Lanes> control(Index step) const { return lanes_at(lanes, step); }
 };
 
-constexpr const char* kFirstX1 = "x1 of the first sample";
-constexpr const char* kFirstX2 = "x2 of the first sample";
-
 State state_of(BatchRef states, Index first, Index count) {
   State s;
   gather(states, first, count, s);
@@ -122,8 +120,29 @@ void Oscillators::pullback(BatchRef u, BatchOut JTu, Workspace& w) const {
   });
 }
 
-ProblemParts return_to_start(const ReturnOptions& o, std::unique_ptr<Physics> physics,
-                             const Draw& draw) {
+namespace {
+
+template <bool is_chain>
+struct ReturnOptions {
+  std::string loss;
+  Index epoch = 4096;
+  Learning learning{
+      .network = is_chain ? "mlp[layers=20-20-20,activation=tanh,precision=double,init=glorot]"
+                          : "mlp[layers=20-20-20,activation=relu,precision=double,init=glorot]",
+      .batch = is_chain ? 32 : 128};
+};
+template <bool is_chain>
+void fields(ReturnOptions<is_chain>& o, auto& field) {
+  field("loss", o.loss, {"", "square"}, "square: ‖y − y*‖², as published, instead of half of it");
+  field(kEpochOption, o.epoch, between(0, 1e6),
+        "N: mode=learn takes the same N samples batch by batch, again and again; 0: new "
+        "samples in each step");
+  fields(o.learning, field);
+}
+
+// Data and start of the problem over that physics: y* is the initial state, sampled from U[0, 1)⁴,
+// and the network's input; the standard start of one problem is u = 0.
+ProblemParts return_to_start(const auto& o, std::unique_ptr<Physics> physics, const Draw& draw) {
   const Index controls = physics->inputs();
   ProblemParts parts{.physics = std::move(physics),
                      .loss = std::make_unique<HalfSquared>(o.loss == "square" ? 2 : 1)};
@@ -142,12 +161,123 @@ ProblemParts return_to_start(const ReturnOptions& o, std::unique_ptr<Physics> ph
                      batch.context.col(b) = batch.input.col(b) = batch.target.col(b);
                    }};
   parts = learn(o.learning, {.inputs = 4, .outputs = controls}, draw, std::move(parts));
-  const Network& network = *parts.network;
+  add_neurons(parts);
   const auto first = [](const Batch&) -> Index { return 0; };
   parts.series = joined(std::move(parts.series),
-                        joined(hidden_activity(network), saturation(network, /*shown=*/0)));
-  parts.series = joined(std::move(parts.series), path({kFirstX1, kFirstX2}, first));
+                        path({"x1 of the first sample", "x2 of the first sample"}, first));
   return parts;
+}
+
+// The linear chain of the Physics-based Deep Learning book, chapter on half-inverse gradients: two
+// masses on springs, coupled by a third, one of them pushed,
+//
+//   ẋ = v,  v̇₁ = −x₁ + 0.2 (x₂ − x₁),  v̇₂ = −x₂ − 0.2 (x₂ − x₁) + u(t),
+//
+// over 24 Runge-Kutta steps of 0.5 in each of which u is constant. They shall return to where they
+// began. P is affine in u, P(u; c) = A u + Φ c with A (4, 24) and the initial state c, so its
+// inverse is x₀ + A⁺(y − P(x₀; c)), the control nearest x₀; the book cuts singular values of A off
+// at 1e-5 of the largest.
+constexpr Index kChainSteps = 24;
+
+class LinearChain final : public Oscillators {
+ public:
+  LinearChain() : Oscillators({.linear = 0.2, .cubic = 0, .gain = 1}, kChainSteps, 0.5) {
+    Workspace w;
+    Matrix A(4, kChainSteps), Phi(4, 4);
+    forward(Matrix::Identity(kChainSteps, kChainSteps), Matrix::Zero(4, kChainSteps), A, w);
+    forward(Matrix::Zero(kChainSteps, 4), Matrix::Identity(4, 4), Phi, w);
+    Svd svd;
+    require(thin_svd(A, svd), "the chain's Jacobian has no singular values");
+    constexpr Real kCutoff = 1e-5;
+    const Vector kept =
+        (svd.sigma.array() > kCutoff * svd.sigma[0]).select(svd.sigma.cwiseInverse(), 0);
+    A_plus_ = svd.Vt.transpose() * kept.asDiagonal() * svd.U.transpose();
+    A_plus_A_ = A_plus_ * A;
+    A_plus_Phi_ = A_plus_ * Phi;
+  }
+
+  bool has_curvature() const override { return true; }
+  void curvature(BatchRef, BatchOut out, Workspace&) const override { out.setZero(); }
+  void curvature_product(BatchRef, BatchRef, BatchOut out, Workspace&) const override {
+    out.setZero();
+  }
+
+  Inverse inverse_kind() const override { return Inverse::exact; }
+  Success local_inverse(BatchRef y, BatchRef x0, BatchRef c, BatchOut x) const override {
+    x = x0;
+    x.noalias() += A_plus_ * y;
+    x.noalias() -= A_plus_A_ * x0;
+    x.noalias() -= A_plus_Phi_ * c;
+    return Success::Constant(y.cols(), true);
+  }
+
+ private:
+  Matrix A_plus_, A_plus_A_, A_plus_Phi_;  // (T, 4), (T, T), (T, 4)
+};
+
+ProblemParts make_linear_chain(const ReturnOptions<true>& o, const Draw& draw) {
+  const auto physics = std::make_shared<const LinearChain>();
+  ProblemParts parts = return_to_start(o, std::make_unique<LinearChain>(), draw);
+  parts.x_error = [physics](BatchRef x, const Batch& batch) {
+    Matrix nearest(x.rows(), x.cols());
+    physics->local_inverse(batch.target, x, batch.context, nearest);
+    return (nearest - x).colwise().norm().mean();
+  };
+  return parts;
+}
+
+// The nonlinear coupled oscillators of Schnell, Holl, Thuerey (2022), published scripts: two masses
+// on springs of their own, coupled by the cube of their distance, one of them pushed,
+//
+//   ẋ = v,  v̇₁ = −x₁ + (x₂ − x₁)³,  v̇₂ = −x₂ − (x₂ − x₁)³ + 3u(t),
+//
+// over 96 Runge-Kutta steps of 0.125 in each of which u is constant. They shall return to where
+// they began. The scripts' network rectifies (ReLU), the book's is of hyperbolic tangents.
+ProblemParts make_coupled_oscillators(const ReturnOptions<false>& o, const Draw& draw) {
+  constexpr Forces kForces{.linear = 0, .cubic = 1, .gain = 3};
+  return return_to_start(o, std::make_unique<Oscillators>(kForces, 96, 0.125), draw);
+}
+
+std::vector<Panel> panels_of(const char* curves) {
+  return {{.title = curves, .kind = "curve"},
+          {.title = "Saturated neurons", .kind = "series", .quantity = "saturated neurons"},
+          {.title = "Path of the first sample",
+           .kind = "path",
+           .quantity = "x1 of the first sample|x2 of the first sample"}};
+}
+
+}  // namespace
+
+void register_oscillators(ProblemRegistry& registry) {
+  registry.add(problem_entry(
+      {.name = "linear-chain",
+       .title = "Linear chain",
+       .group = Group::physics,
+       .formula = "ẍ₁ = −x₁ + 0.2 (x₂ − x₁),  ẍ₂ = −x₂ − 0.2 (x₂ − x₁) + u(t),  y* = the initial "
+                  "state",
+       .source = "Thuerey et al., Physics-based Deep Learning, chapter on half-inverse gradients; "
+                 "Schnell, Holl, Thuerey (2022)",
+       .note = "Published as a learning problem, with the loss ‖y − y*‖², loss=square here; by "
+               "default half of that, so that 2η here equals η there. mode=direct finds "
+               "the 24 controls of one initial state. Infinitely many of them return to it, and "
+               "the error in x is the distance from the nearest.",
+       .aim = Aim::loss,  // any control that returns will do
+       .panels = panels_of("Learning curves")},
+      make_linear_chain));
+  registry.add(problem_entry(
+      {.name = "coupled-oscillators",
+       .title = "Coupled oscillators",
+       .group = Group::physics,
+       .formula = "ẍ₁ = −x₁ + (x₂ − x₁)³,  ẍ₂ = −x₂ − (x₂ − x₁)³ + 3u(t),  y* = the initial state",
+       .source = "Schnell, Holl, Thuerey (2022), published scripts",
+       .note = "Published as a learning problem, with the loss ‖y − y*‖², loss=square here; by "
+               "default half of that, so that 2η here equals η there. mode=direct finds "
+               "the 96 controls of one initial state. The network is the scripts'; the book's has "
+               "activation=tanh.",
+       .aim = Aim::loss,  // any control that returns will do
+       .in_all = false,
+       .panels = panels_of("Fig. 2b: learning curves")},
+      make_coupled_oscillators));
 }
 
 }  // namespace isoline::problems

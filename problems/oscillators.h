@@ -3,9 +3,7 @@
 // Schnell, Holl, Thuerey (2022), published scripts, and the Physics-based Deep Learning book.
 #pragma once
 
-#include <memory>
-
-#include "problems/learning.h"
+#include "problems/physics.h"
 
 namespace isoline::problems {
 
@@ -32,23 +30,5 @@ class Oscillators : public Physics {
   Index steps_;  // T
   Real dt_;      // Δt
 };
-
-struct ReturnOptions {
-  std::string loss;
-  Index epoch = 4096;
-  Learning learning;
-};
-inline void fields(ReturnOptions& o, auto& field) {
-  field("loss", o.loss, {"", "square"}, "square: ‖y − y*‖², as published, instead of half of it");
-  field(kEpochOption, o.epoch, between(0, 1e6),
-        "N: mode=learn takes the same N samples batch by batch, again and again; 0: new "
-        "samples in each step");
-  fields(o.learning, field);
-}
-
-// Data and start of the problem over that physics: y* is the initial state, sampled from U[0, 1)⁴,
-// and the network's input; the standard start of one problem is u = 0.
-ProblemParts return_to_start(const ReturnOptions& options, std::unique_ptr<Physics> physics,
-                             const Draw& draw);
 
 }  // namespace isoline::problems

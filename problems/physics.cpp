@@ -22,10 +22,6 @@ void Physics::jacobian(BatchOut J, Workspace& w) const {
   }
 }
 
-void Physics::curvature(BatchRef, BatchOut, Workspace&) const {
-  throw NotApplicable("the physics offers no second derivatives");
-}
-
 void Physics::curvature_product(BatchRef u, BatchRef v, BatchOut out, Workspace& w) const {
   const Index k = inputs();
   w.dense.resize(k, k * u.cols());
@@ -34,16 +30,24 @@ void Physics::curvature_product(BatchRef u, BatchRef v, BatchOut out, Workspace&
     out.col(b).noalias() = w.dense.middleCols(b * k, k) * v.col(b);
 }
 
-Success Physics::local_inverse(BatchRef y, BatchRef, BatchRef, BatchOut) const {
-  return Success::Constant(y.cols(), false);
+const Matrix& ByJacobian::saved_jacobian(Workspace& w) const {
+  if (w.saved.size() < 2) w.saved.resize(2);
+  Matrix& J = w.saved[0];
+  if (w.saved_is_current) return J;
+  J.setZero(outputs(), inputs() * w.x.cols());
+  form_jacobian(J, w);
+  w.saved_is_current = true;
+  return J;
 }
 
-void multiply_samples(const Matrix& J, BatchRef v, BatchOut Jv) {
+void ByJacobian::pushforward(BatchRef v, BatchOut Jv, Workspace& w) const {
+  const Matrix& J = saved_jacobian(w);
   const Index k = v.rows();
   for (Index b = 0; b < v.cols(); ++b) Jv.col(b).noalias() = J.middleCols(b * k, k) * v.col(b);
 }
 
-void multiply_samples_transposed(const Matrix& J, BatchRef u, BatchOut JTu) {
+void ByJacobian::pullback(BatchRef u, BatchOut JTu, Workspace& w) const {
+  const Matrix& J = saved_jacobian(w);
   const Index k = JTu.rows();
   for (Index b = 0; b < u.cols(); ++b)
     JTu.col(b).noalias() = J.middleCols(b * k, k).transpose() * u.col(b);

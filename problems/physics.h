@@ -112,19 +112,33 @@ class Physics {
 
   // Σᵢ uᵢ ∇²Pᵢ of each sample, side by side: (k, k·B), u (m, B).
   virtual bool has_curvature() const { return false; }
-  virtual void curvature(BatchRef u, BatchOut out, Workspace& w) const;
+  virtual void curvature(BatchRef, BatchOut, Workspace&) const {
+    throw NotApplicable("the physics offers no second derivatives");
+  }
   // (Σᵢ uᵢ ∇²Pᵢ) v of each sample, (k, B). By default through the matrices.
   virtual void curvature_product(BatchRef u, BatchRef v, BatchOut out, Workspace& w) const;
 
   // The x nearest x0 with P(x) = y, for every sample that has one.
   virtual Inverse inverse_kind() const { return Inverse::none; }
   virtual Index inverse_price() const { return 1; }  // in forwards
-  virtual Success local_inverse(BatchRef y, BatchRef x0, BatchRef c, BatchOut x) const;
+  virtual Success local_inverse(BatchRef y, BatchRef /*x0*/, BatchRef /*c*/, BatchOut /*x*/) const {
+    return Success::Constant(y.cols(), false);
+  }
 };
 
-// Products of the Jacobians of samples side by side, J (m, k·B).
-void multiply_samples(const Matrix& J, BatchRef v, BatchOut Jv);
-void multiply_samples_transposed(const Matrix& J, BatchRef u, BatchOut JTu);
+// Products by the Jacobian, which is formed once a forward pass, in w.saved[0]; w.saved[1] is free.
+class ByJacobian : public Physics {
+ public:
+  void pushforward(BatchRef v, BatchOut Jv, Workspace& w) const override;
+  void pullback(BatchRef u, BatchOut JTu, Workspace& w) const override;
+  void jacobian(BatchOut J, Workspace& w) const override { J = saved_jacobian(w); }
+
+ protected:
+  virtual void form_jacobian(Matrix& J, Workspace& w) const = 0;  // (m, k·B) at w.x, given as zeros
+
+ private:
+  const Matrix& saved_jacobian(Workspace& w) const;
+};
 
 // y = A x with A = Aᵀ, whose products are the forward pass again.
 class SelfAdjointPhysics : public Physics {

@@ -49,21 +49,7 @@ isoline_sizes sizes_of(const PluginInstance& instance) {
   return sizes;
 }
 
-Inverse kind_of(const PluginInstance& instance, std::uint32_t told) {
-  if (!instance.of().can(ISOLINE_INVERSE)) return Inverse::none;
-  switch (told) {
-    case ISOLINE_EXACT:
-      return Inverse::exact;
-    case ISOLINE_DAMPED:
-      return Inverse::damped;
-    case ISOLINE_ESTIMATE:
-      return Inverse::estimate;
-    default:
-      return Inverse::approximate;
-  }
-}
-
-class PluginPhysics final : public Physics {
+class PluginPhysics final : public ByJacobian {
  public:
   PluginPhysics(const PluginComponent& component, const OptionValues& options, std::uint64_t seed)
       : instance_(component, options, seed), sizes_(sizes_of(instance_)) {}
@@ -77,18 +63,23 @@ class PluginPhysics final : public Physics {
     return {.has_pushforward = of.can(ISOLINE_PUSHFORWARD) || of.can(ISOLINE_JACOBIAN),
             .has_pullback = of.can(ISOLINE_PULLBACK) || of.can(ISOLINE_JACOBIAN)};
   }
-  Inverse inverse_kind() const override { return kind_of(instance_, sizes_.inverse); }
+  Inverse inverse_kind() const override {  // of the same numbers
+    static_assert(ISOLINE_EXACT == static_cast<int>(Inverse::exact) &&
+                  ISOLINE_APPROXIMATE == static_cast<int>(Inverse::approximate));
+    return instance_.of().can(ISOLINE_INVERSE) ? static_cast<Inverse>(sizes_.inverse)
+                                               : Inverse::none;
+  }
 
   void forward(BatchRef x, BatchRef, BatchOut y, Workspace& w) const override {
     w.saved.resize(2);
-    w.saved[0].resize(static_cast<Index>(sizes_.kept), x.cols());
+    w.saved[1].resize(static_cast<Index>(sizes_.kept), x.cols());
     for (Index b = 0; b < x.cols(); ++b)
-      judge(table().forward(self(), x.col(b).data(), y.col(b).data(), w.saved[0].col(b).data()),
+      judge(table().forward(self(), x.col(b).data(), y.col(b).data(), w.saved[1].col(b).data()),
             y.col(b));
   }
 
   void pushforward(BatchRef v, BatchOut Jv, Workspace& w) const override {
-    if (!instance_.of().can(ISOLINE_PUSHFORWARD)) return multiply_samples(saved_jacobian(w), v, Jv);
+    if (!instance_.of().can(ISOLINE_PUSHFORWARD)) return ByJacobian::pushforward(v, Jv, w);
     for (Index b = 0; b < v.cols(); ++b)
       judge(table().pushforward(self(), w.x.col(b).data(), kept(w, b), v.col(b).data(),
                                 Jv.col(b).data()),
@@ -96,8 +87,7 @@ class PluginPhysics final : public Physics {
   }
 
   void pullback(BatchRef u, BatchOut JTu, Workspace& w) const override {
-    if (!instance_.of().can(ISOLINE_PULLBACK))
-      return multiply_samples_transposed(saved_jacobian(w), u, JTu);
+    if (!instance_.of().can(ISOLINE_PULLBACK)) return ByJacobian::pullback(u, JTu, w);
     for (Index b = 0; b < u.cols(); ++b)
       judge(table().pullback(self(), w.x.col(b).data(), kept(w, b), u.col(b).data(),
                              JTu.col(b).data()),
@@ -105,10 +95,7 @@ class PluginPhysics final : public Physics {
   }
 
   void jacobian(BatchOut J, Workspace& w) const override {
-    if (instance_.of().can(ISOLINE_JACOBIAN))
-      J = saved_jacobian(w);
-    else
-      Physics::jacobian(J, w);
+    instance_.of().can(ISOLINE_JACOBIAN) ? ByJacobian::jacobian(J, w) : Physics::jacobian(J, w);
   }
 
   Success local_inverse(BatchRef y, BatchRef x0, BatchRef, BatchOut x) const override {
@@ -121,18 +108,13 @@ class PluginPhysics final : public Physics {
  private:
   const isoline_component& table() const { return instance_.table(); }
   void* self() const { return instance_.self(); }
-  const double* kept(const Workspace& w, Index b) const { return w.saved[0].col(b).data(); }
+  const double* kept(const Workspace& w, Index b) const { return w.saved[1].col(b).data(); }
 
-  const Matrix& saved_jacobian(Workspace& w) const {  // (m, k·B) at w.x, computed once a forward
-    Matrix& J = w.saved[1];
-    if (w.saved_is_current) return J;
-    J.setZero(outputs(), inputs() * w.x.cols());
+  void form_jacobian(Matrix& J, Workspace& w) const override {
     for (Index b = 0; b < w.x.cols(); ++b) {
       BatchOut of_sample = J.middleCols(b * inputs(), inputs());
       judge(table().jacobian(self(), w.x.col(b).data(), kept(w, b), of_sample.data()), of_sample);
     }
-    w.saved_is_current = true;
-    return J;
   }
 
   PluginInstance instance_;

@@ -34,10 +34,6 @@ Problem::Problem(ProblemParts parts) : parts_(std::move(parts)) {
           "a field over time needs its history, of two rows at least, and no other field has one");
 }
 
-Real Problem::x_error(BatchRef x, const Batch& batch) const {
-  return parts_.x_error ? parts_.x_error(x, batch) : std::nan("");
-}
-
 // L at y = 0 if there is a signal y*, otherwise at the standard start; f_L itself if it is more
 // than rounding compared with that.
 Real Problem::loss_scale(const Batch& batch) const {
@@ -73,10 +69,6 @@ void Problem::draw_batch(std::int64_t step, Batch& out) const {
   std::int64_t first = samples.data > 0 ? 0 : step * count;
   if (samples.epoch > 0) first %= samples.epoch;
   draw("training", static_cast<std::uint64_t>(first), count, out);
-}
-
-void Problem::draw_validation(Batch& out) const {
-  draw("validation", 0, parts_.samples.validation, out);
 }
 
 void Problem::draw(std::string_view purpose, std::uint64_t first, Index count, Batch& out) const {
@@ -155,28 +147,18 @@ void Problem::evaluate_physics(const Batch& batch, Point& at) const {
   at.loss = parts_.loss->value(at.y, batch.target);
 }
 
-Real Problem::loss_of(BatchRef y) const { return parts_.loss->value(y, batch_.target); }
-
-void Problem::cotangent(const Point& at, BatchOut g) const {
-  parts_.loss->cotangent(at.y, at.batch->target, g);
-}
-
-void Problem::loss_curvature(const Point& at, BatchRef dy, BatchOut dg) const {
-  parts_.loss->curvature(at.y, at.batch->target, dy, dg);
-}
-
-void Problem::residual(const Point& at, VectorOut r) const {
-  r = (at.y - at.batch->target).reshaped() / std::sqrt(static_cast<Real>(at.batch->samples()));
-}
-
 // Where the network is the identity nothing lies between x and θ, not even a copy: on large grids
 // each costs a twentieth of a transform.
 void Problem::pullback(BatchRef w, VectorOut out, Point& at) const {
   if (has_identity_network())
     return parts_.physics->pullback(w, Eigen::Map<Matrix>(out.data(), out.size(), 1), at.physics);
+  parts_.network->pullback(pulled_to_x(w, at), out, at.network);
+}
+
+const Matrix& Problem::pulled_to_x(BatchRef w, Point& at) const {
   at.scratch_x.resize(inputs(), w.cols());
   parts_.physics->pullback(w, at.scratch_x, at.physics);
-  parts_.network->pullback(at.scratch_x, out, at.network);
+  return at.scratch_x;
 }
 
 void Problem::pushforward(VectorRef v, BatchOut out, Point& at) const {
@@ -188,37 +170,11 @@ void Problem::pushforward(VectorRef v, BatchOut out, Point& at) const {
   parts_.physics->pushforward(at.scratch_x, out, at.physics);
 }
 
-void Problem::physics_pullback(BatchRef w, BatchOut out, Point& at) const {
-  parts_.physics->pullback(w, out, at.physics);
-}
-
-void Problem::layer_factors(BatchRef w, std::vector<LayerFactor>& out, Point& at) const {
-  at.scratch_x.resize(inputs(), w.cols());
-  parts_.physics->pullback(w, at.scratch_x, at.physics);
-  parts_.network->layer_factors(at.scratch_x, out, at.network);
-}
-
-void Problem::layer_moments(BatchRef w, std::vector<LayerMoments>& out, VectorOut JTw,
-                            Point& at) const {
-  at.scratch_x.resize(inputs(), w.cols());
-  parts_.physics->pullback(w, at.scratch_x, at.physics);
-  parts_.network->layer_moments(at.scratch_x, out, JTw, at.network);
-}
-
-void Problem::network_pullback(BatchRef w, VectorOut out, Point& at) const {
-  parts_.network->pullback(w, out, at.network);
-}
-
 void Problem::jacobian(Matrix& J, Point& at) const {
   J.resize(at.y.size(), unknowns());
   if (has_identity_network()) return parts_.physics->jacobian(J, at.physics);
   sensitivity(at.dy_dx, at);
   parts_.network->jacobian(at.dy_dx, J, at.network);
-}
-
-void Problem::sensitivity(Matrix& dy_dx, Point& at) const {
-  dy_dx.resize(outputs(), at.x().size());
-  parts_.physics->jacobian(dy_dx, at.physics);
 }
 
 // With x' = N'v and y' = P'x':  ∇²L v = (d/dε) N'ᵀ u,  u = P'ᵀ g,  u' = P'ᵀ L''y' + Σ gᵢ ∇²Pᵢ x'.
@@ -250,14 +206,6 @@ void Problem::hessian(Matrix& H, Point& at) const {
   for (Index j = 0; j < n; ++j)
     parts_.loss->curvature(at.y, at.batch->target, at.J.col(j), at.weighted.col(j));
   product(Form::AH_B, at.J, at.weighted, H, 1);
-}
-
-void Problem::curvature(BatchRef w, BatchOut out, Point& at) const {
-  parts_.physics->curvature(w, out, at.physics);
-}
-
-Success Problem::local_inverse(BatchRef y, BatchOut x, Point& at) const {
-  return parts_.physics->local_inverse(y, at.x(), at.batch->context, x);
 }
 
 Vector near(const Vector& standard, StartScale scale, RandomStream& noise) {

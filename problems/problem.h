@@ -2,6 +2,7 @@
 // problem is one with the identity network. Const: what depends on θ lives in a Point.
 #pragma once
 
+#include <cmath>
 #include <concepts>
 #include <functional>
 #include <memory>
@@ -129,7 +130,9 @@ class Problem {
   Inverse inverse_kind() const { return parts_.physics->inverse_kind(); }
   Products products() const { return parts_.physics->products(); }
   bool is_elsewhere() const { return parts_.physics->is_elsewhere(); }
-  Real x_error(BatchRef x, const Batch& batch) const;  // nan where no solution is known
+  Real x_error(BatchRef x, const Batch& batch) const {  // nan where no solution is known
+    return parts_.x_error ? parts_.x_error(x, batch) : std::nan("");
+  }
   Real x_error(BatchRef x) const { return x_error(x, batch_); }
 
   // The scales for distances from f_L and from x*, on the validation samples. They do not depend on
@@ -140,7 +143,7 @@ class Problem {
 
   // For a learning problem: the batch of a step, counted from 0, and the validation samples.
   void draw_batch(std::int64_t step, Batch& out) const;
-  void draw_validation(Batch& out) const;
+  void draw_validation(Batch& out) const { draw("validation", 0, parts_.samples.validation, out); }
 
   OracleSet offers() const;
   OracleCounts prices() const;  // declared, in forwards
@@ -150,26 +153,50 @@ class Problem {
   // The physics again at a given x, network left out: for inverting the physics alone.
   void physics_forward(BatchRef x, const Batch& batch, Point& at) const;
 
-  Real loss_of(BatchRef y) const;                                        // L at any y, (m, B)
-  void cotangent(const Point& at, BatchOut g) const;                     // g = ∂L/∂y, (m, B)
-  void loss_curvature(const Point& at, BatchRef dy, BatchOut dg) const;  // (∂²L/∂y²) dy
-  void residual(const Point& at, VectorOut r) const;                  // r = (y − y*)/√B, (m·B)
+  Real loss_of(BatchRef y) const {  // L at any y, (m, B)
+    return parts_.loss->value(y, batch_.target);
+  }
+  void cotangent(const Point& at, BatchOut g) const {  // g = ∂L/∂y, (m, B)
+    parts_.loss->cotangent(at.y, at.batch->target, g);
+  }
+  void loss_curvature(const Point& at, BatchRef dy, BatchOut dg) const {  // (∂²L/∂y²) dy
+    parts_.loss->curvature(at.y, at.batch->target, dy, dg);
+  }
+  void residual(const Point& at, VectorOut r) const {  // r = (y − y*)/√B, (m·B)
+    r = (at.y - at.batch->target).reshaped() / std::sqrt(static_cast<Real>(at.batch->samples()));
+  }
   void pullback(BatchRef w, VectorOut out, Point& at) const;          // Jᵀ w, (m, B) -> (n)
   void pushforward(VectorRef v, BatchOut out, Point& at) const;       // J v, (n) -> (m, B)
-  void physics_pullback(BatchRef w, BatchOut out, Point& at) const;   // (m, B) -> (k, B)
-  void network_pullback(BatchRef w, VectorOut out, Point& at) const;  // (k, B) -> (n)
-  void layer_factors(BatchRef w, std::vector<LayerFactor>& out, Point& at) const;  // w (m, B)
-  void layer_moments(BatchRef w, std::vector<LayerMoments>& out, VectorOut JTw, Point& at) const;
-  void jacobian(Matrix& J, Point& at) const;                          // (m·B, n)
-  void sensitivity(Matrix& dy_dx, Point& at) const;                   // (m, k·B)
+  void physics_pullback(BatchRef w, BatchOut out, Point& at) const {  // (m, B) -> (k, B)
+    parts_.physics->pullback(w, out, at.physics);
+  }
+  void network_pullback(BatchRef w, VectorOut out, Point& at) const {  // (k, B) -> (n)
+    parts_.network->pullback(w, out, at.network);
+  }
+  void layer_factors(BatchRef w, std::vector<LayerFactor>& out, Point& at) const {  // w (m, B)
+    parts_.network->layer_factors(pulled_to_x(w, at), out, at.network);
+  }
+  void layer_moments(BatchRef w, std::vector<LayerMoments>& out, VectorOut JTw, Point& at) const {
+    parts_.network->layer_moments(pulled_to_x(w, at), out, JTw, at.network);
+  }
+  void jacobian(Matrix& J, Point& at) const;          // (m·B, n)
+  void sensitivity(Matrix& dy_dx, Point& at) const {  // (m, k·B)
+    dy_dx.resize(outputs(), at.x().size());
+    parts_.physics->jacobian(dy_dx, at.physics);
+  }
   void hessian_product(VectorRef v, VectorOut out, Point& at) const;  // ∇²L v, (n)
-  void hessian(Matrix& H, Point& at) const;                   // ∇²L, (n, n), identity network
-  void curvature(BatchRef w, BatchOut out, Point& at) const;  // (k, k·B)
-  Success local_inverse(BatchRef y, BatchOut x, Point& at) const;
+  void hessian(Matrix& H, Point& at) const;                    // ∇²L, (n, n), identity network
+  void curvature(BatchRef w, BatchOut out, Point& at) const {  // (k, k·B)
+    parts_.physics->curvature(w, out, at.physics);
+  }
+  Success local_inverse(BatchRef y, BatchOut x, Point& at) const {
+    return parts_.physics->local_inverse(y, at.x(), at.batch->context, x);
+  }
 
  private:
   void draw(std::string_view purpose, std::uint64_t first, Index count, Batch& out) const;
   void evaluate_physics(const Batch& batch, Point& at) const;  // y and L at at.x()
+  const Matrix& pulled_to_x(BatchRef w, Point& at) const;      // (m, B) -> (k, B), in at.scratch_x
 
   ProblemParts parts_;
   Batch batch_;

@@ -70,7 +70,7 @@ std::span<const Real> numbers_of(const Matrix& array) {
   return {array.data(), static_cast<std::size_t>(array.size())};
 }
 
-class ProcessPhysics final : public Physics {
+class ProcessPhysics final : public ByJacobian {
  public:
   ProcessPhysics(std::shared_ptr<Session> session, const ProblemHandshake& said)
       : session_(std::move(session)),
@@ -106,16 +106,14 @@ class ProcessPhysics final : public Physics {
       if (!box_.holds(x.col(b))) y.col(b).setConstant(std::numeric_limits<Real>::quiet_NaN());
   }
   void pushforward(BatchRef v, BatchOut Jv, Workspace& w) const override {
-    if (asks_pushforward_) return ask(Verb::pushforward, v, Jv, point_of(w));
-    multiply_samples(saved_jacobian(w), v, Jv);
+    asks_pushforward_ ? ask(Verb::pushforward, v, Jv, point_of(w))
+                      : ByJacobian::pushforward(v, Jv, w);
   }
   void pullback(BatchRef u, BatchOut JTu, Workspace& w) const override {
-    if (asks_pullback_) return ask(Verb::pullback, u, JTu, point_of(w));
-    multiply_samples_transposed(saved_jacobian(w), u, JTu);
+    asks_pullback_ ? ask(Verb::pullback, u, JTu, point_of(w)) : ByJacobian::pullback(u, JTu, w);
   }
   void jacobian(BatchOut J, Workspace& w) const override {
-    if (!has_jacobian_) return Physics::jacobian(J, w);
-    J = saved_jacobian(w);
+    has_jacobian_ ? ByJacobian::jacobian(J, w) : Physics::jacobian(J, w);
   }
 
   Success local_inverse(BatchRef y, BatchRef x0, BatchRef, BatchOut x) const override {
@@ -154,14 +152,8 @@ class ProcessPhysics final : public Physics {
     answer = point.out;
   }
 
-  const Matrix& saved_jacobian(Workspace& w) const {
-    w.saved.resize(1);
-    Matrix& J = w.saved[0];
-    if (w.saved_is_current) return J;
-    J.resize(outputs_, inputs_ * w.x.cols());
+  void form_jacobian(Matrix& J, Workspace& w) const override {
     ask(Verb::jacobian, Matrix(0, 0), J, point_of(w));
-    w.saved_is_current = true;
-    return J;
   }
 
   std::shared_ptr<Session> session_;

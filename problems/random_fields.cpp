@@ -30,27 +30,4 @@ Vector smooth_noise(Index N, Real scale, Real smoothness, RandomStream& stream) 
   return field * (std::sqrt(static_cast<Real>(N * N)) / field.norm());
 }
 
-Vector soft_rectangles(Index N, RandomStream& stream) {
-  constexpr Index kSlots = 10;  // all are sampled; only the first `count` have a strength
-  const Real radius = std::numbers::sqrt2 / 2;  // in cells: the width of a soft edge
-  const Real unit = static_cast<Real>(N) / 64;
-  const auto count = static_cast<Index>(4 + 7 * stream.uniform());
-  Matrix field = Matrix::Zero(N, N);
-  for (Index slot = 0; slot < kSlots; ++slot) {
-    Eigen::Array2d centre, half;
-    for (Real& c : centre) c = unit * stream.uniform(6.4, 57.6);
-    for (Real& h : half) h = unit * stream.uniform(0, 10);
-    const Real drawn = stream.uniform(), strength = slot < count ? drawn : 0;
-    centre = centre.max(half).min(static_cast<Real>(N) - half);
-    for (Index j = 0; j < N; ++j) {
-      for (Index i = 0; i < N; ++i) {
-        const Eigen::Array2d cell(static_cast<Real>(i) + 0.5, static_cast<Real>(j) + 0.5);
-        const Real outside = ((cell - centre).abs() - half).maxCoeff();
-        field(i, j) += strength * std::clamp(0.5 - outside / radius, 0.0, 1.0);
-      }
-    }
-  }
-  return field.reshaped();
-}
-
 }  // namespace isoline::problems

@@ -9,8 +9,4 @@ namespace isoline::problems {
 // and by 0 where |κ|² ≤ 0.1; then of mean 0 and standard deviation 1. (N²)
 Vector smooth_noise(Index N, Real scale, Real smoothness, RandomStream& stream);
 
-// A sum of 4 to 10 rectangles with edges one cell soft. Lengths are those of a grid of 64, times
-// N/64. (N²)
-Vector soft_rectangles(Index N, RandomStream& stream);
-
 }  // namespace isoline::problems

@@ -95,36 +95,34 @@ class WavePacket final : public DensePhysics {
 
   // So many tries of a step of the least squares ‖P(x) − y‖² from x0, at most 1 long, damped the
   // more where it doesn't descend; whether x is finite.
-  bool fit(VectorRef y, VectorRef x0, int steps, VectorOut x) const;
+  bool fit(VectorRef y, VectorRef x0, int steps, VectorOut x) const {
+    x = x0;
+    Vector r(kTimes), left(kTimes), moved(4);  // y − P(x) before and after a step; the moved x
+    Matrix J(kTimes, 4), A(4, 4), step(4, 1);
+    Real damping = 1e-3;  // of JᵀJ's diagonal
+    value(x, r);
+    r = y - r;
+    for (int i = 0; i < steps; ++i) {
+      derivative(x, J);
+      A.noalias() = J.transpose() * J;
+      A.diagonal() *= 1 + damping;
+      step.noalias() = J.transpose() * r;
+      if (!solve_positive_definite(A, step)) break;
+      moved = x + step / std::max(1.0, step.norm());
+      value(moved, left);
+      left = y - left;
+      const bool descends = left.squaredNorm() < r.squaredNorm();
+      damping *= descends ? 0.1 : 10;
+      if (!descends) continue;
+      x = moved;
+      r = left;
+    }
+    return is_finite(x);
+  }
 
  private:
   static constexpr Index kSteps = 5;
 };
-
-bool WavePacket::fit(VectorRef y, VectorRef x0, int steps, VectorOut x) const {
-  x = x0;
-  Vector r(kTimes), left(kTimes), moved(4);  // y − P(x) before and after a step; the moved x
-  Matrix J(kTimes, 4), A(4, 4), step(4, 1);
-  Real damping = 1e-3;  // of JᵀJ's diagonal
-  value(x, r);
-  r = y - r;
-  for (int i = 0; i < steps; ++i) {
-    derivative(x, J);
-    A.noalias() = J.transpose() * J;
-    A.diagonal() *= 1 + damping;
-    step.noalias() = J.transpose() * r;
-    if (!solve_positive_definite(A, step)) break;
-    moved = x + step / std::max(1.0, step.norm());
-    value(moved, left);
-    left = y - left;
-    const bool descends = left.squaredNorm() < r.squaredNorm();
-    damping *= descends ? 0.1 : 10;
-    if (!descends) continue;
-    x = moved;
-    r = left;
-  }
-  return is_finite(x);
-}
 
 // x and its mirror images in w and ω make the same signal.
 Real distance(VectorRef x, VectorRef truth) {

@@ -10,6 +10,8 @@
 #include <numbers>
 #include <numeric>
 #include <optional>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 #include "benchmarks/audit/audit_problems.h"
@@ -22,7 +24,6 @@
 namespace isoline::benchmarks {
 namespace {
 
-constexpr double kAuditSeconds = 60;        // an optimizer; nearly all take a hundredth of a second
 constexpr std::int64_t kStepsOfPath = 5;    // of invariance: few, so that rounding stays small
 constexpr std::int64_t kStepsOfCount = 10;  // of the oracles
 constexpr std::int64_t kStepsOfApproach = 1000;
@@ -34,34 +35,6 @@ struct Path {
   OracleCounts counts{};
   std::int64_t iterations = 0;
 };
-
-class Subject {
- public:
-  Subject(const Catalog& catalog, const OptimizerEntry& entry, OptionValues options)
-      : catalog_(catalog), entry_(entry), options_(std::move(options)) {}
-
-  std::string why_inapplicable(const Problem& problem) const;
-  OracleSet needs(const Problem& problem) const;
-
-  // As far as it comes: a method that throws has gone as far as its trace.
-  Path run(const Problem& problem, std::int64_t iterations) const;
-
-  // The first step that changes θ; nothing if there is no such step.
-  std::optional<Vector> first_step(const Problem& problem) const;
-
- private:
-  const Catalog& catalog_;
-  const OptimizerEntry& entry_;
-  const OptionValues options_;
-};
-
-constexpr std::int64_t kStepsToMove = 8;  // in which a first step may be rejected
-
-OracleSet every_oracle() {
-  OracleSet all;
-  for (std::size_t kind = 0; kind < kOracles; ++kind) all.add(static_cast<Oracle>(kind));
-  return all;
-}
 
 // Keeps θ after every step; for the solver of a library, as many steps as the trace can store.
 class Recorded final : public Optimizer {
@@ -83,39 +56,46 @@ class Recorded final : public Optimizer {
   std::vector<Vector>& path_;
 };
 
-std::string Subject::why_inapplicable(const Problem& problem) const {
-  return optimizers::why_inapplicable(entry_, options_, problem);
-}
+struct Subject {
+  const Catalog& catalog;
+  const OptimizerEntry& entry;
+  const OptionValues options;
 
-OracleSet Subject::needs(const Problem& problem) const {
-  return needs_of(entry_, options_, problem);
-}
-
-Path Subject::run(const Problem& problem, std::int64_t iterations) const {
-  const auto trace = std::make_unique<Trace>();  // large
-  Path path;
-  try {
-    const auto method = entry_.make(options_, catalog_.optimizers);
-    Recorded recorded(*method, path.x);
-    Meter meter(problem, {.iterations = iterations, .target = 0}, every_oracle(), *trace);
-    Checkpoint checkpoint;
-    drive(recorded, meter, problem.start(), checkpoint);
-  } catch (const std::exception&) {  // what it did until then is judged
+  std::string why_inapplicable(const Problem& problem) const {
+    return optimizers::why_inapplicable(entry, options, problem);
   }
-  path.counts = trace->last.counts;
-  path.iterations = trace->last.iteration;
-  if (path.x.empty())
-    for (int i = 0; i < trace->points; ++i)
-      path.x.emplace_back(Eigen::Map<const Vector>(trace->path_x[i], trace->path_inputs));
-  return path;
-}
 
-std::optional<Vector> Subject::first_step(const Problem& problem) const {
-  if (!why_inapplicable(problem).empty()) return std::nullopt;
-  for (const Vector& x : run(problem, kStepsToMove).x)
-    if (x != problem.start()) return x - problem.start();
-  return std::nullopt;
-}
+  // As far as it comes: a method that throws has gone as far as its trace.
+  Path run(const Problem& problem, std::int64_t iterations) const {
+    const auto trace = std::make_unique<Trace>();  // large
+    OracleSet every_oracle;
+    for (const OracleRow& row : kOracleTable) every_oracle.add(row.kind);
+    Path path;
+    try {
+      const auto method = entry.make(options, catalog.optimizers);
+      Recorded recorded(*method, path.x);
+      Meter meter(problem, {.iterations = iterations, .target = 0}, every_oracle, *trace);
+      Checkpoint checkpoint;
+      drive(recorded, meter, problem.start(), checkpoint);
+    } catch (const std::exception&) {  // what it did until then is judged
+    }
+    path.counts = trace->last.counts;
+    path.iterations = trace->last.iteration;
+    if (path.x.empty())
+      for (int i = 0; i < trace->points; ++i)
+        path.x.emplace_back(Eigen::Map<const Vector>(trace->path_x[i], trace->path_inputs));
+    return path;
+  }
+
+  // The first step that changes θ; nothing if there is no such step.
+  std::optional<Vector> first_step(const Problem& problem) const {
+    constexpr std::int64_t kStepsToMove = 8;  // in which a first step may be rejected
+    if (!why_inapplicable(problem).empty()) return std::nullopt;
+    for (const Vector& x : run(problem, kStepsToMove).x)
+      if (x != problem.start()) return x - problem.start();
+    return std::nullopt;
+  }
+};
 
 // --- measurements
 
@@ -145,42 +125,31 @@ ScalingLaw scaling_law(const Subject& subject, Problem (*make)(Real)) {
   return law;
 }
 
-Real extent(const std::vector<Vector>& path) {
-  Real largest = 0;
-  for (const Vector& x : path) largest = std::max(largest, (x - path.front()).norm());
-  return largest;
-}
-
 // The largest distance of the paths, relative to the longer; one that has ended stays where it is.
 Real deviation(const std::vector<Vector>& a, const std::vector<Vector>& b) {
   if (a.empty() || b.empty()) return kUnknown;
-  Real largest = 0;
+  Real largest = 0, longest = 0;
   for (std::size_t i = 0; i < std::max(a.size(), b.size()); ++i) {
-    const Real gap = (a[std::min(i, a.size() - 1)] - b[std::min(i, b.size() - 1)]).norm();
+    const Vector &x = a[std::min(i, a.size() - 1)], &y = b[std::min(i, b.size() - 1)];
+    const Real gap = (x - y).norm();
     if (!std::isfinite(gap)) return std::numeric_limits<Real>::infinity();
     largest = std::max(largest, gap);
+    longest = std::max({longest, (x - a.front()).norm(), (y - b.front()).norm()});
   }
-  const Real longest = std::max(extent(a), extent(b));
   return longest > 0 ? largest / longest : kUnknown;
 }
 
-void measure_input_changes(const Subject& subject, AuditedOptimizer& audited) {
-  const std::vector<Vector> path = subject.run(bent_problem(), kStepsOfPath).x;
+// By the path in other units, which is turned back where these are of x.
+void measure_changes(const Subject& subject, const Problem& problem,
+                     Problem (*changed)(const Change&), bool is_of_x, AuditedOptimizer& audited) {
+  const std::vector<Vector> path = subject.run(problem, kStepsOfPath).x;
   for (std::size_t kind = 0; kind < kChanges; ++kind) {
     const Change change = change_of(kind);
-    std::vector<Vector> back;
-    for (const Vector& x : subject.run(changed_input(change), kStepsOfPath).x)
-      back.push_back(change.forward(x));
-    audited.deviations[kind] = deviation(path, back);
+    std::vector<Vector> other = subject.run(changed(change), kStepsOfPath).x;
+    for (Vector& x : other)
+      if (is_of_x) x = change.forward(x);
+    audited.deviations[(is_of_x ? 0 : kChanges) + kind] = deviation(path, other);
   }
-}
-
-void measure_output_changes(const Subject& subject, const Problem& problem,
-                            Problem (*changed)(const Change&), AuditedOptimizer& audited) {
-  const std::vector<Vector> path = subject.run(problem, kStepsOfPath).x;
-  for (std::size_t kind = 0; kind < kChanges; ++kind)
-    audited.deviations[kChanges + kind] =
-        deviation(path, subject.run(changed(change_of(kind)), kStepsOfPath).x);
 }
 
 Approach approach(const Subject& subject, const Vicinity& vicinity) {
@@ -205,7 +174,7 @@ Real angle(const Subject& subject, const Composition& composition) {
 
 void count_oracles(const Subject& subject, const Problem& problem, AuditedOptimizer& audited) {
   const Path path = subject.run(problem, kStepsOfCount);
-  const OracleSet declared = subject.needs(problem);
+  const OracleSet declared = needs_of(subject.entry, subject.options, problem);
   audited.iterations = path.iterations;
   for (std::size_t kind = 0; kind < kOracles; ++kind) {
     const std::string name(kOracleNames[kind]);
@@ -219,15 +188,6 @@ void count_oracles(const Subject& subject, const Problem& problem, AuditedOptimi
   }
 }
 
-// Declared of rescaled inputs, component by component: the first of the changes. To keep more than
-// was declared is no false declaration.
-void compare_invariance(bool is_declared, AuditedOptimizer& audited) {
-  const Real found = audited.deviations.front();
-  if (!is_declared || std::isnan(found) || found <= kInvariantDeviation) return;
-  audited.flags.push_back(fmt::format(
-      "declares that rescaled inputs do not change its path, but they move it by {:.2g}", found));
-}
-
 OptionValues options_without_floors(const OptimizerEntry& entry) {
   OptionValues options;
   for (const OptionField& field : entry.options)
@@ -239,8 +199,8 @@ OptionValues options_without_floors(const OptimizerEntry& entry) {
 void audit_direct(const Subject& subject, AuditedOptimizer& audited) {
   audited.scalings = {scaling_law(subject, scaled_loss), scaling_law(subject, scaled_output),
                       scaling_law(subject, scaled_input), scaling_law(subject, slope)};
-  measure_input_changes(subject, audited);
-  measure_output_changes(subject, bent_problem(), changed_output, audited);
+  measure_changes(subject, bent_problem(), changed_input, true, audited);
+  measure_changes(subject, bent_problem(), changed_output, false, audited);
   audited.regular = approach(subject, regular_vicinity());
   audited.singular = approach(subject, singular_vicinity());
   audited.linear_angle = angle(subject, linear_composition());
@@ -255,18 +215,17 @@ void audit_teacher(const Subject& subject, AuditedOptimizer& audited) {
   audited.scalings[static_cast<std::size_t>(Scaled::loss)] = scaling_law(subject, taught_loss);
   audited.scalings[static_cast<std::size_t>(Scaled::output)] = scaling_law(subject, taught_output);
   audited.deviations.fill(kUnknown);
-  measure_output_changes(subject, taught_problem(), taught_change, audited);
+  measure_changes(subject, taught_problem(), taught_change, false, audited);
   count_oracles(subject, taught_problem(), audited);
 }
 
 // --- fits
 
-struct Line {
-  Real slope = kUnknown, residual = kUnknown;
-};
-
-// Least squares, summed one by one: vectorized sums would depend on where the points lie in memory.
-Line line_through(const std::vector<Real>& x, const std::vector<Real>& y) {
+// The slope of log10 y over log10 x and the residual, by least squares, summed one by one:
+// vectorized sums would depend on where the points lie in memory.
+std::pair<Real, Real> line_through(std::vector<Real> x, std::vector<Real> y) {
+  for (std::vector<Real>* values : {&x, &y})
+    for (Real& value : *values) value = std::log10(value);
   const auto count = static_cast<Real>(x.size());
   const Real x_mean = std::accumulate(x.begin(), x.end(), 0.0) / count;
   const Real y_mean = std::accumulate(y.begin(), y.end(), 0.0) / count;
@@ -275,17 +234,11 @@ Line line_through(const std::vector<Real>& x, const std::vector<Real>& y) {
     spread += (x[i] - x_mean) * (x[i] - x_mean);
     shared += (x[i] - x_mean) * (y[i] - y_mean);
   }
-  if (spread == 0) return {};
+  if (spread == 0) return {kUnknown, kUnknown};
   const Real slope = shared / spread;
   for (std::size_t i = 0; i < x.size(); ++i)
     squares += std::pow(y[i] - y_mean - slope * (x[i] - x_mean), 2);
   return {slope, std::sqrt(squares / count)};
-}
-
-std::vector<Real> decades(const std::vector<Real>& values) {
-  std::vector<Real> logarithms;
-  for (const Real value : values) logarithms.push_back(std::log10(value));
-  return logarithms;
 }
 
 bool is_positive(Real value) { return std::isfinite(value) && value > 0; }
@@ -295,7 +248,7 @@ bool is_positive(Real value) { return std::isfinite(value) && value > 0; }
 AuditedOptimizer audit_optimizer(const Catalog& catalog, const std::string& name) {
   const OptimizerEntry& entry = catalog.optimizers.at(name);
   const Component component = complete_optimizer(catalog, name, options_without_floors(entry));
-  const Subject subject(catalog, entry, component.options);
+  const Subject subject{catalog, entry, component.options};
   AuditedOptimizer audited{.name = name, .spec = component.spec};
   audited.reason = subject.why_inapplicable(bent_problem());
   if (audited.reason.empty()) {
@@ -306,18 +259,24 @@ AuditedOptimizer audit_optimizer(const Catalog& catalog, const std::string& name
   } else {
     return audited;
   }
-  compare_invariance(entry.is_input_scale_invariant, audited);
+  // Declared of rescaled inputs, component by component: the first of the changes. To keep more
+  // than was declared is no false declaration.
+  const Real found = audited.deviations.front();
+  if (entry.is_input_scale_invariant && found > kInvariantDeviation)
+    audited.flags.push_back(fmt::format(
+        "declares that rescaled inputs do not change its path, but they move it by {:.2g}", found));
   return audited;
 }
 
 std::vector<AuditedOptimizer> audit_all(const Catalog& catalog,
                                         const std::vector<std::string>& names) {
+  constexpr double kAuditSeconds = 60;  // an optimizer; nearly all take a hundredth of a second
   std::vector<AuditedOptimizer> all;
   for (const std::string& name : names) {
     const auto [text, failure] = isolated_text(
         [&] { return json_text(to_json(audit_optimizer(catalog, name))); }, kAuditSeconds);
     if (text)
-      all.push_back(audited_from_json(parse_json(*text, name)));
+      all.push_back(audited_from_text(*text, name));
     else
       all.push_back({.name = name,
                      .spec = name,
@@ -336,10 +295,8 @@ void write_audit(const std::vector<AuditedOptimizer>& all, const std::filesystem
 
 PowerLaw power_law(const std::vector<Real>& scales, std::vector<Real> values) {
   PowerLaw law{.values = std::move(values)};
-  if (!std::ranges::all_of(law.values, is_positive)) return law;
-  const Line line = line_through(decades(scales), decades(law.values));
-  law.exponent = line.slope;
-  law.residual = line.residual;
+  if (std::ranges::all_of(law.values, is_positive))
+    std::tie(law.exponent, law.residual) = line_through(scales, law.values);
   return law;
 }
 
@@ -359,10 +316,8 @@ Approach approach_of(const std::vector<Real>& errors, Real floor) {
   const Real last =
       approach.is_exact ? errors[static_cast<std::size_t>(approach.steps)] : errors.back();
   approach.remaining = std::isfinite(last) ? last / errors.front() : kUnknown;
-  if (before.size() < 2 || !(approach.remaining <= kNear)) return approach;
-  const Line line = line_through(decades(before), decades(after));
-  approach.order = line.slope;
-  approach.residual = line.residual;
+  if (before.size() >= 2 && approach.remaining <= kNear)
+    std::tie(approach.order, approach.residual) = line_through(before, after);
   return approach;
 }
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "benchmarks/plan/catalog.h"
-#include "core/records/audited.h"
+#include "core/records/sheet.h"
 
 namespace isoline::benchmarks {
 

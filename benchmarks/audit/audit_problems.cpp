@@ -18,64 +18,61 @@ using problems::Inverse;
 using problems::Loss;
 namespace {
 
-class Affine final : public Link {
- public:
-  Affine(const Matrix& A, const Vector& b) : A_(A), b_(b), inverse_(inverse_of(A)) {}
-  Vector value(VectorRef x) const override { return A_ * x + b_; }
-  Matrix derivative(VectorRef) const override { return A_; }
-  Matrix second(VectorRef, VectorRef) const override { return Matrix::Zero(A_.cols(), A_.cols()); }
-  bool invert(VectorRef y, VectorRef, Eigen::Ref<Vector> x) const override {
-    x = inverse_ * (y - b_);
-    return true;
-  }
+Matrix inverse_of(const Matrix& A) {
+  if (A.size() == 1) return A.cwiseInverse();
+  const Real determinant = A(0, 0) * A(1, 1) - A(0, 1) * A(1, 0);
+  Matrix inverse(2, 2);
+  inverse << A(1, 1), -A(0, 1), -A(1, 0), A(0, 0);
+  inverse /= determinant;
+  return inverse;
+}
 
-  static Matrix inverse_of(const Matrix& A) {
-    if (A.size() == 1) return A.cwiseInverse();
-    const Real determinant = A(0, 0) * A(1, 1) - A(0, 1) * A(1, 0);
-    Matrix inverse(2, 2);
-    inverse << A(1, 1), -A(0, 1), -A(1, 0), A(0, 0);
-    inverse /= determinant;
-    return inverse;
-  }
-
- private:
-  Matrix A_;
-  Vector b_;
-  Matrix inverse_;
-};
+Link affine(const Matrix& A, const Vector& b) {
+  return {
+      .value = [=](VectorRef x) -> Vector { return A * x + b; },
+      .derivative = [=](VectorRef) { return A; },
+      .second = [=](VectorRef, VectorRef) -> Matrix { return Matrix::Zero(A.cols(), A.cols()); },
+      .invert =
+          [=, inverse = inverse_of(A)](VectorRef y, VectorRef, Eigen::Ref<Vector> x) {
+            x = inverse * (y - b);
+            return true;
+          }};
+}
 
 // (sinh x₁, sinh x₂ + x₁²/2)
-class Bend final : public Link {
- public:
-  Vector value(VectorRef x) const override {
-    return Eigen::Vector2d(std::sinh(x[0]), std::sinh(x[1]) + 0.5 * x[0] * x[0]);
-  }
-  Matrix derivative(VectorRef x) const override {
-    return Eigen::Matrix2d{{std::cosh(x[0]), 0}, {x[0], std::cosh(x[1])}};
-  }
-  Matrix second(VectorRef x, VectorRef u) const override {
-    return Eigen::Matrix2d{{u[0] * std::sinh(x[0]) + u[1], 0}, {0, u[1] * std::sinh(x[1])}};
-  }
-  bool invert(VectorRef y, VectorRef, Eigen::Ref<Vector> x) const override {
-    x[0] = std::asinh(y[0]);
-    x[1] = std::asinh(y[1] - 0.5 * x[0] * x[0]);
-    return true;
-  }
-};
+Link bend() {
+  return {.value = [](VectorRef x) -> Vector {
+            return Eigen::Vector2d(std::sinh(x[0]), std::sinh(x[1]) + 0.5 * x[0] * x[0]);
+          },
+          .derivative = [](VectorRef x) -> Matrix {
+            return Eigen::Matrix2d{{std::cosh(x[0]), 0}, {x[0], std::cosh(x[1])}};
+          },
+          .second = [](VectorRef x, VectorRef u) -> Matrix {
+            return Eigen::Matrix2d{{u[0] * std::sinh(x[0]) + u[1], 0}, {0, u[1] * std::sinh(x[1])}};
+          },
+          .invert =
+              [](VectorRef y, VectorRef, Eigen::Ref<Vector> x) {
+                x[0] = std::asinh(y[0]);
+                x[1] = std::asinh(y[1] - 0.5 * x[0] * x[0]);
+                return true;
+              }};
+}
 
 // (x₁, x₂²)
-class Fold final : public Link {
- public:
-  Vector value(VectorRef x) const override { return Eigen::Vector2d(x[0], x[1] * x[1]); }
-  Matrix derivative(VectorRef x) const override { return Eigen::Matrix2d{{1, 0}, {0, 2 * x[1]}}; }
-  Matrix second(VectorRef, VectorRef u) const override {
-    return Eigen::Matrix2d{{0, 0}, {0, 2 * u[1]}};
-  }
-  bool invert(VectorRef y, VectorRef x0, Eigen::Ref<Vector> x) const override {
-    x << y[0], std::copysign(std::sqrt(y[1]), x0[1]);
-    return y[1] >= 0;
-  }
-};
+Link fold() {
+  return {.value = [](VectorRef x) -> Vector { return Eigen::Vector2d(x[0], x[1] * x[1]); },
+          .derivative = [](VectorRef x) -> Matrix {
+            return Eigen::Matrix2d{{1, 0}, {0, 2 * x[1]}};
+          },
+          .second = [](VectorRef, VectorRef u) -> Matrix {
+            return Eigen::Matrix2d{{0, 0}, {0, 2 * u[1]}};
+          },
+          .invert =
+              [](VectorRef y, VectorRef x0, Eigen::Ref<Vector> x) {
+                x << y[0], std::copysign(std::sqrt(y[1]), x0[1]);
+                return y[1] >= 0;
+              }};
+}
 
 class ChainPhysics final : public DensePhysics {
  public:
@@ -84,8 +81,7 @@ class ChainPhysics final : public DensePhysics {
   void derivative(VectorRef x, BatchOut J) const override {
     const std::vector<Vector> at = stations(x);
     Matrix product = Matrix::Identity(inputs(), inputs());
-    for (std::size_t i = 0; i < links_.size(); ++i)
-      product = links_[i]->derivative(at[i]) * product;
+    for (std::size_t i = 0; i < links_.size(); ++i) product = links_[i].derivative(at[i]) * product;
     J = product;
   }
   bool has_curvature() const override { return true; }
@@ -95,9 +91,9 @@ class ChainPhysics final : public DensePhysics {
     Matrix sum = Matrix::Zero(inputs(), inputs());
     Vector pulled = u;
     for (std::size_t i = links_.size(); i-- > 0;) {
-      const Matrix J = links_[i]->derivative(at[i]);
+      const Matrix J = links_[i].derivative(at[i]);
       sum = J.transpose() * sum * J;
-      sum += links_[i]->second(at[i], pulled);
+      sum += links_[i].second(at[i], pulled);
       pulled = (J.transpose() * pulled).eval();
     }
     H = sum;
@@ -108,7 +104,7 @@ class ChainPhysics final : public DensePhysics {
     Vector current = y;
     for (std::size_t i = links_.size(); i-- > 0;) {
       Vector before = at[i];
-      if (!links_[i]->invert(current, at[i], before)) return false;
+      if (!links_[i].invert(current, at[i], before)) return false;
       current = before;
     }
     x = current;
@@ -118,7 +114,7 @@ class ChainPhysics final : public DensePhysics {
  private:
   std::vector<Vector> stations(VectorRef x) const {  // what each link is given
     std::vector<Vector> at{x};
-    for (const auto& link : links_) at.push_back(link->value(at.back()));
+    for (const auto& link : links_) at.push_back(link.value(at.back()));
     return at;
   }
 
@@ -133,18 +129,10 @@ class Height final : public Loss {
   void curvature(BatchRef, BatchRef, BatchRef, BatchOut dg) const override { dg.setZero(); }
 };
 
-std::shared_ptr<const Link> affine(const Matrix& A, const Vector& b) {
-  return std::make_shared<Affine>(A, b);
-}
-std::shared_ptr<const Link> scale(Real s) {
-  return affine(s * Matrix::Identity(2, 2), Vector::Zero(2));
-}
-
 const Eigen::Vector2d kBentStart(1.0, 0.9), kBentSolution(0.6, 0.4);
 
 Chain bent() {
-  return {std::make_shared<Bend>(),
-          affine(Eigen::Matrix2d{{1.5, 0.5}, {-0.2, 1}}, Eigen::Vector2d(0.3, -0.7))};
+  return {bend(), affine(Eigen::Matrix2d{{1.5, 0.5}, {-0.2, 1}}, Eigen::Vector2d(0.3, -0.7))};
 }
 
 // No minimum is declared, so that no run stops early.
@@ -187,7 +175,7 @@ Problem taught(Real weight, const Matrix& A, const Vector& b) {
 
 }  // namespace
 
-Vector Change::backward(VectorRef x) const { return Affine::inverse_of(A) * (x - b); }
+Vector Change::backward(VectorRef x) const { return inverse_of(A) * (x - b); }
 
 Change change_of(std::size_t kind) {
   const Real angle = 0.7;  // of the rotation, in radians: far from any symmetry
@@ -205,17 +193,18 @@ Change change_of(std::size_t kind) {
 
 Vector value_of(const Chain& chain, VectorRef x) {
   Vector value = x;
-  for (const auto& link : chain) value = link->value(value);
+  for (const auto& link : chain) value = link.value(value);
   return value;
 }
 
 Problem bent_problem() { return scaled_loss(1); }
 Problem scaled_loss(Real c) { return make(bent(), kBentStart, kBentSolution, c); }
 Problem scaled_output(Real s) {
-  return make(joined(bent(), {scale(s)}), kBentStart, kBentSolution);
+  return changed_output({s * Matrix::Identity(2, 2), Vector::Zero(2)});
 }
 Problem scaled_input(Real s) {
-  return make(joined({scale(s)}, bent()), kBentStart / s, kBentSolution / s);
+  const Link scale = affine(s * Matrix::Identity(2, 2), Vector::Zero(2));
+  return make(joined({scale}, bent()), kBentStart / s, kBentSolution / s);
 }
 
 Problem slope(Real alpha) {
@@ -246,7 +235,7 @@ Vicinity regular_vicinity() {
 }
 
 Vicinity singular_vicinity() {
-  const Chain chain{affine(Matrix::Identity(2, 2), -kBentSolution), std::make_shared<Fold>()};
+  const Chain chain{affine(Matrix::Identity(2, 2), -kBentSolution), fold()};
   return {make(chain, kBentSolution + Eigen::Vector2d(0.1, 0.08), kBentSolution), kBentSolution};
 }
 
@@ -254,6 +243,6 @@ Composition linear_composition() {
   return composition({affine(Eigen::Matrix2d{{1, 0.8}, {-0.3, 0.5}}, Eigen::Vector2d(0.1, 0.2))});
 }
 
-Composition curved_composition() { return composition({std::make_shared<Bend>()}); }
+Composition curved_composition() { return composition({bend()}); }
 
 }  // namespace isoline::benchmarks

@@ -2,7 +2,7 @@
 // links, so that a change of units is one link more, and derivatives and inverse stay exact.
 #pragma once
 
-#include <memory>
+#include <functional>
 #include <vector>
 
 #include "problems/problem.h"
@@ -12,15 +12,13 @@ namespace isoline::benchmarks {
 using problems::Problem;
 
 // One invertible map, with its derivatives.
-class Link {
- public:
-  virtual ~Link() = default;
-  virtual Vector value(VectorRef x) const = 0;
-  virtual Matrix derivative(VectorRef x) const = 0;
-  virtual Matrix second(VectorRef x, VectorRef u) const = 0;  // Σ uᵢ ∇²Pᵢ
-  virtual bool invert(VectorRef y, VectorRef x0, Eigen::Ref<Vector> x) const = 0;  // near x0
+struct Link {
+  std::function<Vector(VectorRef x)> value;
+  std::function<Matrix(VectorRef x)> derivative;
+  std::function<Matrix(VectorRef x, VectorRef u)> second;                       // Σ uᵢ ∇²Pᵢ
+  std::function<bool(VectorRef y, VectorRef x0, Eigen::Ref<Vector> x)> invert;  // near x0
 };
-using Chain = std::vector<std::shared_ptr<const Link>>;  // the first is applied first
+using Chain = std::vector<Link>;  // the first is applied first
 
 // x = A x' + b
 struct Change {

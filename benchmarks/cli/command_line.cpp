@@ -1,16 +1,14 @@
 // The one place where CLI11 parses: the program, its verbs and what is wrong with a command.
-#include "benchmarks/cli/command_line.h"
-
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <charconv>
 #include <cmath>
 #include <optional>
 
+#include "benchmarks/cli/verb.h"
 #include "core/errors.h"
 #include "core/records/provenance.h"
 #include "core/spec.h"
@@ -36,6 +34,82 @@ constexpr const char* kExamples =
     "  isoline help run                       the options of a verb, with examples\n\n"
     "Exit codes: 0 good, 1 wrong usage, 2 worse or failed, 3 better only, 4 not comparable,\n"
     "130 interrupted.";
+
+template <class Number>
+std::optional<Number> number_in(std::string_view text) {
+  Number value{};
+  const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || stop != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
+constexpr double kKilo = 1024;
+constexpr std::string_view kUnits = "kmgt";
+
+// The unit that the text ends with, which is taken off: "", "b", "g", "gb" or "gib".
+double unit_of(std::string& text) {
+  for (const std::string_view end : {"ib", "b"})
+    if (text.ends_with(end)) {
+      text.resize(text.size() - end.size());
+      break;
+    }
+  const std::size_t unit = text.empty() ? kUnits.npos : kUnits.find(text.back());
+  if (unit == kUnits.npos) return 1;
+  text.pop_back();
+  return std::pow(kKilo, unit + 1);
+}
+
+// Complete numbers: no sign is dropped and nothing clamped. UsageError, which begins with `option`,
+// if the text is not a number or is out of range.
+std::int64_t read_whole(const std::string& option, const std::string& text, WholeRange range) {
+  const auto value = number_in<std::int64_t>(text);
+  require(value && *value >= range.low && *value <= range.high, [&] {
+    return fmt::format("{} must be a whole number from {} to {}, got '{}'", option, range.low,
+                       count_text(static_cast<std::uint64_t>(range.high)), text);
+  });
+  return *value;
+}
+
+std::uint64_t read_seed(const std::string& option, const std::string& text) {
+  const auto value = number_in<std::uint64_t>(text);
+  require(value.has_value(), [&] {
+    return fmt::format("{} must be a whole number from 0 to {}, got '{}'", option,
+                       std::numeric_limits<std::uint64_t>::max(), text);
+  });
+  return *value;
+}
+
+double read_real(const std::string& option, const std::string& text, const Range& range) {
+  const auto value = number_in<double>(text);
+  require(value && contains(range, *value), [&] {
+    return fmt::format("{} must be a number in {}, got '{}'", option, range_text(range), text);
+  });
+  return *value;
+}
+
+// Seconds, of "2m".
+double read_time(const std::string& option, const std::string& text) {
+  try {
+    return parse_duration(text);
+  } catch (const UsageError& error) {
+    throw UsageError(fmt::format("{}: {}", option, error.what()));
+  }
+}
+
+// "2GB", "1.5GiB" or bytes; a unit is 1024 of the one before. Less than 16MB starts no cell.
+std::int64_t read_bytes(const std::string& option, const std::string& text) {
+  const double least = 16 * kKilo * kKilo, most = std::pow(kKilo, 5);
+  std::string amount = text;
+  for (char& letter : amount)
+    letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
+  const double unit = unit_of(amount);
+  const auto value = number_in<double>(amount);
+  const double bytes = value ? *value * unit : -1;
+  require(bytes >= least && bytes <= most, [&] {
+    return fmt::format("{} must be from 16MB to 1024TB, such as 2GB, got '{}'", option, text);
+  });
+  return static_cast<std::int64_t>(bytes);
+}
 
 std::string refuse_empty(std::string& text) { return text.empty() ? "it must not be empty" : ""; }
 
@@ -63,39 +137,6 @@ void whole_number(CLI::App& verb, const char* name, Value& value, const char* ab
   CLI::Option* made = number(verb, name, "INT", value, about,
                              [range](auto& of, auto& text) { return read_whole(of, text, range); });
   if (value >= range.low) made->default_str(std::to_string(value));
-}
-
-template <class Number>
-std::optional<Number> number_in(std::string_view text) {
-  Number value{};
-  const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || stop != text.data() + text.size()) return std::nullopt;
-  return value;
-}
-
-struct Unit {
-  std::string_view name;
-  double bytes;
-};
-constexpr double kKilo = 1024;
-constexpr std::array<Unit, 4> kUnits = {{{"k", kKilo},
-                                         {"m", kKilo* kKilo},
-                                         {"g", kKilo* kKilo* kKilo},
-                                         {"t", kKilo* kKilo* kKilo* kKilo}}};
-
-// The unit that the text ends with, which is taken off: "", "b", "g", "gb" or "gib".
-double unit_of(std::string& text) {
-  for (const std::string_view end : {"ib", "b"})
-    if (text.ends_with(end)) {
-      text.resize(text.size() - end.size());
-      break;
-    }
-  for (const auto& [name, bytes] : kUnits)
-    if (text.ends_with(name)) {
-      text.resize(text.size() - name.size());
-      return bytes;
-    }
-  return 1;
 }
 
 std::vector<std::string> option_names(const CLI::App& verb) {
@@ -130,7 +171,7 @@ bool is_a(const CLI::ParseError& error) {
 class CommandLine {
  public:
   // `runs`: or only reads.
-  CommandLine(const std::string& program, std::vector<Verb> verbs, Session& session, bool runs);
+  CommandLine(const std::string& program, Session& session, bool runs);
   int read(int count, char** arguments);  // and runs; the exit code
 
  private:
@@ -148,10 +189,9 @@ class CommandLine {
   int exit_code_ = kGood;
 };
 
-CommandLine::CommandLine(const std::string& program, std::vector<Verb> verbs, Session& session,
-                         bool runs)
+CommandLine::CommandLine(const std::string& program, Session& session, bool runs)
     : program_(program),
-      verbs_(std::move(verbs)),
+      verbs_(all_verbs()),
       session_(session),
       runs_(runs),
       app_(kAbout, program) {
@@ -177,7 +217,9 @@ void CommandLine::declare(const Verb& verb) {
   CLI::App& declared = *app_.add_subcommand(verb.name, verb.summary);
   VerbArguments arguments(declared, session_);
   if (verb.declare) verb.declare(arguments);
-  declared.footer(verb_notes(verb))->group("Verbs");
+  const char* between = verb.notes.empty() ? "" : "\n\n";
+  declared.footer(fmt::format("Examples:\n{}{}{}", verb.examples, between, verb.notes))
+      ->group("Verbs");
   declared.callback([this, &verb] {
     if (!helped_.empty()) require_verb(helped_);
     if (runs_) exit_code_ = verb.run(session_);
@@ -228,22 +270,12 @@ int CommandLine::read(int count, char** arguments) {
 }  // namespace
 
 int parse_and_run(const std::string& program, int count, char** arguments, Session& session) {
-  return CommandLine(program, all_verbs(), session, true).read(count, arguments);
+  return CommandLine(program, session, true).read(count, arguments);
 }
 
 void parse_only(const std::string& program, int count, char** arguments) {
   Session none("", {});
-  CommandLine(program, all_verbs(), none, false).read(count, arguments);
-}
-
-void read_arguments(const std::string& program, const Verb& verb,
-                    const std::vector<std::string>& words, Session& session) {
-  std::vector<std::string> all = {program, verb.name};
-  all.insert(all.end(), words.begin(), words.end());
-  std::vector<char*> arguments;
-  for (std::string& word : all) arguments.push_back(word.data());
-  CommandLine(program, {verb}, session, false)
-      .read(static_cast<int>(arguments.size()), arguments.data());
+  CommandLine(program, none, false).read(count, arguments);
 }
 
 std::vector<Verb> all_verbs() {
@@ -263,11 +295,6 @@ std::vector<Verb> all_verbs() {
                      return kGood;
                    }});
   return verbs;
-}
-
-std::string verb_notes(const Verb& verb) {
-  const std::string examples = "Examples:\n" + verb.examples;
-  return verb.notes.empty() ? examples : examples + "\n\n" + verb.notes;
 }
 
 std::string program_examples() { return kExamples; }
@@ -368,56 +395,6 @@ void VerbArguments::plugins() {
         "Shared library with further problems and optimizers; may be used "
         "more than once")
       .one_each();
-}
-
-// --- numbers
-
-std::int64_t read_whole(const std::string& option, const std::string& text, WholeRange range) {
-  const auto value = number_in<std::int64_t>(text);
-  require(value && *value >= range.low && *value <= range.high, [&] {
-    return fmt::format("{} must be a whole number from {} to {}, got '{}'", option, range.low,
-                       count_text(static_cast<std::uint64_t>(range.high)), text);
-  });
-  return *value;
-}
-
-std::uint64_t read_seed(const std::string& option, const std::string& text) {
-  const auto value = number_in<std::uint64_t>(text);
-  require(value.has_value(), [&] {
-    return fmt::format("{} must be a whole number from 0 to {}, got '{}'", option,
-                       std::numeric_limits<std::uint64_t>::max(), text);
-  });
-  return *value;
-}
-
-double read_real(const std::string& option, const std::string& text, const Range& range) {
-  const auto value = number_in<double>(text);
-  require(value && contains(range, *value), [&] {
-    return fmt::format("{} must be a number in {}, got '{}'", option, range_text(range), text);
-  });
-  return *value;
-}
-
-double read_time(const std::string& option, const std::string& text) {
-  try {
-    return parse_duration(text);
-  } catch (const UsageError& error) {
-    throw UsageError(fmt::format("{}: {}", option, error.what()));
-  }
-}
-
-std::int64_t read_bytes(const std::string& option, const std::string& text) {
-  constexpr double kLeast = 16 * kKilo * kKilo, kMost = kKilo * kUnits.back().bytes;
-  std::string amount = text;
-  for (char& letter : amount)
-    letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
-  const double unit = unit_of(amount);
-  const auto value = number_in<double>(amount);
-  const double bytes = value ? *value * unit : -1;
-  require(bytes >= kLeast && bytes <= kMost, [&] {
-    return fmt::format("{} must be from 16MB to 1024TB, such as 2GB, got '{}'", option, text);
-  });
-  return static_cast<std::int64_t>(bytes);
 }
 
 }  // namespace isoline::benchmarks

@@ -6,7 +6,6 @@
 #include <algorithm>
 
 #include "benchmarks/plan/suite.h"
-#include "benchmarks/run/certificate.h"
 #include "benchmarks/run/progress.h"
 #include "benchmarks/run/run_plan.h"
 #include "benchmarks/shard/split.h"
@@ -18,17 +17,6 @@ namespace isoline::benchmarks {
 namespace {
 
 namespace fs = std::filesystem;
-
-void declare_what_is_kept(VerbArguments& verb, RunArguments& given) {
-  verb.flag("--no-report", given.no_report, "Write no report");
-  verb.flag("--keep-output", given.keeps_output,
-            "Keep the output of each cell in its record, up to 64 KiB");
-  verb.flag("--fields", given.keeps_fields,
-            "Keep x of grid problems at six iterations for every seed (default: for seed 0 only)");
-  verb.flag("--spectrum", given.keeps_spectra,
-            "Keep the singular values of J = ∂y/∂θ at iterations 0, 1, 2, 4, 8, … and the last; "
-            "finished cells without them are repeated");
-}
 
 void override_blocks(const RunArguments& given, Suite& suite) {
   const std::uint64_t most_seeds = given.allow_large ? kMostWhereLarge : kMostSeeds;
@@ -82,7 +70,14 @@ void declare_run(VerbArguments& verb, RunArguments& given) {
   verb.memory("--memory", given.memory_bytes,
               "Memory limit of a cell, 256MB or more (default: 4GB)");
   declare_what_is_done(verb, given);
-  declare_what_is_kept(verb, given);
+  verb.flag("--no-report", given.no_report, "Write no report");
+  verb.flag("--keep-output", given.keeps_output,
+            "Keep the output of each cell in its record, up to 64 KiB");
+  verb.flag("--fields", given.keeps_fields,
+            "Keep x of grid problems at six iterations for every seed (default: for seed 0 only)");
+  verb.flag("--spectrum", given.keeps_spectra,
+            "Keep the singular values of J = ∂y/∂θ at iterations 0, 1, 2, 4, 8, … and the last; "
+            "finished cells without them are repeated");
   verb.text("--shard", given.shard,
             "Run one shard, such as 3/16, into shards/3-of-16 of the result folder; auto: "
             "the shard of this task of a SLURM array, or of ISOLINE_SHARD");
@@ -169,15 +164,6 @@ Preview preview_of(const PlannedRun& all, const RunArguments& given,
   }
   return preview(session.catalog(), all.requests, folders, EarlierTimes(record_outlines(timed)),
                  {.force = given.force, .reuse = given.reuse, .retry = statuses_of(given.retry)});
-}
-
-ShardPlan shard_plan(const PlannedRun& all, std::size_t count, Preview& shown) {
-  ShardPlan plan{.weights = keep_predictions(all.folder, shown),
-                 .shards = std::vector<PreviewCounts>(count)};
-  const std::vector<double> weights = weights_of(all.requests, all.folder);
-  const std::vector<std::size_t> shards = split(all.requests, weights, count);
-  for (std::size_t i = 0; i < shards.size(); ++i) plan.shards[shards[i]].add(shown.cells[i]);
-  return plan;
 }
 
 }  // namespace isoline::benchmarks

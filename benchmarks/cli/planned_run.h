@@ -1,5 +1,5 @@
 // The run that a command line requests: its cells, its name, the folder of its records, and its
-// division into shards. `run`, `plan` and `submit` parse it in the same way.
+// division into shards. `run` and `plan` parse it in the same way.
 #pragma once
 
 #include <filesystem>
@@ -56,13 +56,5 @@ void print_counts(const Preview& shown, int jobs);
 Preview preview_of(const PlannedRun& all, const RunArguments& given,
                    const std::vector<std::string>& earlier,
                    const std::vector<std::filesystem::path>& folders, Session& session);
-
-struct ShardPlan {
-  Weights weights = Weights::written;
-  std::vector<PreviewCounts> shards;
-};
-
-// Divides the cells; writes the folder's predictions where it has none.
-ShardPlan shard_plan(const PlannedRun& all, std::size_t count, Preview& shown);
 
 }  // namespace isoline::benchmarks

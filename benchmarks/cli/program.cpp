@@ -9,8 +9,8 @@
 #include <filesystem>
 #include <new>
 
-#include "benchmarks/cli/command_line.h"
-#include "benchmarks/plan/build_parts.h"
+#include "benchmarks/cli/verb.h"
+#include "benchmarks/plan/catalog.h"
 #include "benchmarks/run/isolate.h"
 #include "core/errors.h"
 #include "core/records/provenance.h"

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "benchmarks/plan/claim_cells.h"
 #include "benchmarks/run/progress.h"
 #include "benchmarks/run/runner.h"
 #include "core/shell.h"
@@ -106,14 +107,10 @@ int exit_code_of(const Outcome& outcome) {
   return is_whole && outcome.failures.empty() && outcome.conflicts.empty() ? kGood : kWorse;
 }
 
-std::vector<reports::Judgement> judged(const std::vector<Claim>& claims,
-                                       const std::vector<Record>& runs) {
-  return reports::judge(json_of(claims), runs);
-}
-
 void write_and_print(const reports::Study& study, const std::filesystem::path& out,
                      Session& session, const Reporting& how) {
-  std::vector<reports::Judgement> claims = judged(builtin_claims_of(session.catalog()), study.runs);
+  std::vector<reports::Judgement> claims =
+      reports::judge(json_of(builtin_claims_of(session.catalog())), study.runs);
   std::erase_if(claims, [](const reports::Judgement& judgement) { return !judgement.is_covered; });
   reports::Document document =
       reports::document_of(reports::compare_optimizers(study, how.yardstick), std::move(claims));

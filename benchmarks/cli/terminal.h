@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "benchmarks/cli/verb.h"
-#include "benchmarks/plan/claim_cells.h"
 #include "core/threads.h"
 #include "reports/report.h"
 
@@ -35,8 +34,5 @@ struct Reporting {
 };
 void write_and_print(const reports::Study& study, const std::filesystem::path& out,
                      Session& session, const Reporting& how = {});
-
-std::vector<reports::Judgement> judged(const std::vector<Claim>& claims,
-                                       const std::vector<Record>& runs);
 
 }  // namespace isoline::benchmarks

@@ -107,6 +107,15 @@ void register_verbs(VerbRegistry& registry);  // generated: one call per file
 // All verbs, in the order of the help; `help` and `version` are the last.
 std::vector<Verb> all_verbs();
 
+// Runs the verb that the arguments name and returns its exit code; UsageError where they are wrong.
+// `program` is what the user called.
+int parse_and_run(const std::string& program, int count, char** arguments, Session& session);
+
+// The same without running it.
+void parse_only(const std::string& program, int count, char** arguments);
+
+std::string program_examples();
+
 inline constexpr const char* kFolders = "Result folders of `isoline run`";
 
 }  // namespace isoline::benchmarks

@@ -5,54 +5,112 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
-#include <csignal>
+#include <compare>
 #include <map>
 #include <mutex>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
+#include <string_view>
+#include <tuple>
 
-#include "benchmarks/merge/record_union.h"
+#include "benchmarks/run/process_group.h"
 #include "core/errors.h"
 #include "core/files.h"
 #include "core/json.h"
-#include "core/records/audited.h"
 #include "core/records/json_view.h"
-#include "core/records/plan.h"
 #include "core/records/record.h"
+#include "core/records/request.h"
+#include "core/records/sheet.h"
+#include "core/text.h"
 
 namespace isoline::benchmarks {
 namespace fs = std::filesystem;
 
 namespace {
 
-volatile std::sig_atomic_t is_ending_asked = 0;
+bool is_nondeterministic(const Json& record) { return record.at("nondeterministic").get<bool>(); }
 
-// While it lives, Ctrl-C and a polite kill raise a flag and do no more, so that what is half made
-// is removed before the program ends.
-class EndingGuard {
- public:
-  EndingGuard() {
-    is_ending_asked = 0;
-    struct sigaction action {};
-    action.sa_handler = [](int) { is_ending_asked = 1; };
-    for (std::size_t i = 0; i < kSignals.size(); ++i) sigaction(kSignals[i], &action, &old_[i]);
-  }
-  ~EndingGuard() {
-    for (std::size_t i = 0; i < kSignals.size(); ++i) sigaction(kSignals[i], &old_[i], nullptr);
-  }
-  EndingGuard(const EndingGuard&) = delete;
-  EndingGuard& operator=(const EndingGuard&) = delete;
+// Runs that ended by themselves come after those that a clock ended, then the latest; the text
+// decides what is left, so that the order of the folders decides nothing.
+auto rank_of(const Json& record) {
+  Json rest = record;
+  for (const char* united : {"repeat_wall_seconds", "fields", "spectrum"}) rest.erase(united);
+  const Json run = record.at("provenance").value("run", Json::object());
+  return std::tuple(!is_nondeterministic(record),
+                    run.is_object() ? run.value("started", std::string()) : std::string(),
+                    json_text(rest));
+}
 
- private:
-  static constexpr std::array<int, 3> kSignals{SIGINT, SIGTERM, SIGHUP};
-  std::array<struct sigaction, kSignals.size()> old_{};
-};
+Json united_timings(const Json& a, const Json& b) {
+  std::vector<Real> left = reals_of(a), right = reals_of(b), both;
+  const auto is_less = [](Real x, Real y) { return std::strong_order(x, y) < 0; };  // nan last
+  std::ranges::sort(left, is_less);
+  std::ranges::sort(right, is_less);
+  std::ranges::set_union(left, right, std::back_inserter(both), is_less);
+  return json_numbers(both);
+}
+
+std::string shown(const Json& value) {
+  constexpr std::size_t kMost = 60;
+  const std::string text = json_text(value);
+  return text.size() > kMost ? std::string(cut(text, kMost)) + "…" : text;
+}
+
+// "/summary/loss (1.5, 1.6), /status (…), and 3 more places".
+std::string first_differences(const Json& a, const Json& b) {
+  constexpr std::size_t kTold = 3;
+  const Json patch = Json::diff(a, b);
+  std::string text;
+  for (std::size_t i = 0; i < std::min(patch.size(), kTold); ++i) {
+    const Json::json_pointer place(patch[i].at("path").get<std::string>());
+    const auto at = [&](const Json& json) {
+      return json.contains(place) ? shown(json.at(place)) : std::string("absent");
+    };
+    text += fmt::format("{}{} ({}, {})", i == 0 ? "" : ", ", place.to_string(), at(a), at(b));
+  }
+  if (patch.size() > kTold) text += fmt::format(", and {} more places", patch.size() - kTold);
+  return text;
+}
+
+}  // namespace
+
+std::string unite_records(Json& record, const Json& other) {
+  const Json left = result_of(record), right = result_of(other);
+  const bool is_same = left == right;
+  if (!is_same && !is_nondeterministic(record) && !is_nondeterministic(other))
+    return first_differences(left, right);
+  const bool is_other = rank_of(record) < rank_of(other);
+  Json united = is_other ? other : record;
+  for (const char* asked : {"fields", "spectrum"})  // only one of the runs may have kept them
+    if (const Json& from = is_other ? record : other;
+        is_same && from.contains(asked) && !united.contains(asked))
+      united[asked] = from.at(asked);
+  united["repeat_wall_seconds"] =
+      united_timings(record.at("repeat_wall_seconds"), other.at("repeat_wall_seconds"));
+  record = std::move(united);
+  return "";
+}
+
+std::string fields_violation(const Json& record, const std::filesystem::path& file) {
+  if (!record.contains("fields")) return "";
+  try {
+    const Json& fields = record.at("fields");
+    require_sound({.iterations = fields.at("iterations"), .shape = fields.at("shape")});
+    const std::string bytes = read_text(field_path(file), kMostRecordBytes);
+    if (fields.at("digest") == digest(bytes)) return "";
+    return fmt::format("{} beside it is not the file of fields that it names",
+                       field_path(file).filename().string());
+  } catch (const UsageError& error) {
+    return fmt::format("its fields cannot be read: {}", error.what());
+  }
+}
+
+namespace {
 
 struct EndingAsked {};
 void go_on() {
-  if (is_ending_asked != 0) throw EndingAsked();
+  if (asked_to_end() != Asked::nothing) throw EndingAsked();
 }
 
 // By cell; the least where a digest has two.
@@ -208,7 +266,7 @@ class Merge {
 
   void merge_audits() {
     const auto audits = read_all<Json>("audit.json", [](const auto& text, const auto& origin) {
-      return audit_to_json(audit_from_json(parse_json(text, origin)));
+      return audit_to_json(audit_from_text(text, origin));
     });
     if (audits.empty()) return;
     std::map<std::string, Json> by_name;
@@ -254,7 +312,7 @@ MergeOutcome merge_folders(const std::vector<fs::path>& given, const fs::path& o
   require(!is_there(out) || (fs::is_directory(out, unknown) && names_in(out).empty()),
           [&] { return fmt::format("{} exists already: merge into a new folder", out.string()); });
   const fs::path place = fs::weakly_canonical(out), unfinished = temporary_of(place);
-  const EndingGuard guard;
+  const InterruptGuard guard;  // what is half made is removed before the program ends
   try {
     fs::remove_all(unfinished);
     fs::create_directories(unfinished);

@@ -1,14 +1,16 @@
-// Unites result folders: what comes out does not depend on their order or on how often one is
-// given.
+// Unites records and result folders: what comes out does not depend on their order or number.
 #pragma once
 
 #include <filesystem>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
 #include "core/threads.h"
 
 namespace isoline::benchmarks {
+
+using Json = nlohmann::json;
 
 // A file or an audit with different results in several folders.
 struct Conflict {
@@ -27,7 +29,7 @@ struct MergeOutcome {
 
 // Writes `out` completely or not at all; a UsageError if it has results already. Copies a file that
 // one folder has, or that is equal in all. Joins records with equal results, with the timings of
-// all (record_union.h), and plans, rates and audits; keeps the first component metadata. Anything
+// all (unite_records), and plans, rates and audits; keeps the first component metadata. Anything
 // else is a conflict. Names symbolic links in the folders and leaves them out. After Ctrl-C or
 // SIGTERM, nothing of `out` remains.
 MergeOutcome merge_folders(const std::vector<std::filesystem::path>& folders,
@@ -35,5 +37,15 @@ MergeOutcome merge_folders(const std::vector<std::filesystem::path>& folders,
 
 // "adam: 12 conflicts" and the first of its sentences, the optimizer with most conflicts first.
 std::string conflicts_text(const std::vector<Conflict>& conflicts);
+
+// Makes `record` the union with another record of its cell and build: the timings of both, each
+// value as often as the record that has it most often, and the fields and spectrum that either
+// keeps. Of the rest the later run's stays; a run that a clock or a kill ended gives way to one
+// that ended by itself. Where two results differ it returns the first places, "/summary/loss (1,
+// 2)", and changes nothing.
+std::string unite_records(Json& record, const Json& other);
+
+// The error in the file of fields that a record names; otherwise empty.
+std::string fields_violation(const Json& record, const std::filesystem::path& file);
 
 }  // namespace isoline::benchmarks

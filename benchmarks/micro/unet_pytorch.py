@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""One training step (forward and backward) of the U-net in PyTorch, beside which
-`isoline_micro --benchmark_filter=unet` stands. Prints milliseconds a step, the median and the best.
+"""The U-net in PyTorch, which the golden values of tests/networks/unet_test.cpp are from. Prints the
+milliseconds of a training step (forward and backward), the median and the best.
 
   unet_pytorch.py [--levels 4] [--filters 16] [--N 64] [--batch 128] [--padding circular]
                   [--threads 2] [--steps 10]

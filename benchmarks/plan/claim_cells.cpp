@@ -10,7 +10,7 @@
 #include "benchmarks/plan/catalog.h"
 #include "core/errors.h"
 #include "core/json.h"
-#include "core/records/schema.h"
+#include "core/records/json_view.h"
 #include "core/text.h"
 
 namespace isoline::benchmarks {

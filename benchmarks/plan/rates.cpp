@@ -11,9 +11,8 @@
 #include "benchmarks/plan/catalog.h"
 #include "core/errors.h"
 #include "core/json.h"
-#include "core/learning_options.h"
 #include "core/options.h"
-#include "core/records/schema.h"
+#include "core/records/json_view.h"
 #include "core/spec.h"
 
 namespace isoline::benchmarks {
@@ -94,12 +93,6 @@ void Rates::add(const Rates& other) {
 
 // Best losses: read, looked up, renewed.
 
-namespace {
-
-constexpr const char* kSchema = "isoline.best/1";
-
-}  // namespace
-
 const BestLosses& BestLosses::builtin() {
   static const BestLosses all =
       from_json(parse_json(std::string(embedded_best()), "best.json"), "best.json");
@@ -131,7 +124,7 @@ Json BestLosses::to_json() const {
     rows.push_back(
         {{"problem", row.problem}, {"options", isoline::to_json(row.options)}, {"losses", losses}});
   }
-  return {{"schema", kSchema}, {"rows", rows}};
+  return {{"schema", "isoline.best/1"}, {"rows", rows}};
 }
 
 std::size_t BestLosses::place_of(const Component& problem) const {

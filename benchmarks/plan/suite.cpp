@@ -11,7 +11,7 @@
 
 #include "benchmarks/plan/catalog.h"
 #include "core/json.h"
-#include "core/records/schema.h"
+#include "core/records/json_view.h"
 #include "core/spec.h"
 #include "core/text.h"
 
@@ -97,72 +97,6 @@ std::vector<Spec> parsed_specs(const std::vector<std::string>& texts, std::uint6
   return specs;
 }
 
-// The optimizers of a block. One component serves all problems that share its row of rates.
-class RatedOptimizers {
- public:
-  RatedOptimizers(const Catalog& catalog, const MatrixBlock& block, const Rates& rates)
-      : catalog_(catalog), rates_(rates), table_(block.rates) {}
-
-  // The row for the problem; null if it does not exist, or if the suite uses defaults.
-  const Rates::Row* row_for(const Component& problem, const std::string& optimizer) const {
-    return table_ == "none" ? nullptr : rates_.find(problem, optimizer, table_);
-  }
-  const Component& at(const Spec& spec, const Rates::Row* row) {
-    const auto [known, is_new] = made_.try_emplace({&spec, row});
-    if (is_new) known->second = with_rates(catalog_, spec, row);
-    return known->second;
-  }
-
- private:
-  const Catalog& catalog_;
-  const Rates& rates_;
-  const std::string& table_;
-  std::map<std::pair<const Spec*, const Rates::Row*>, Component> made_;
-};
-
-class Expansion {
- public:
-  Expansion(const Catalog& catalog, const Rates& rates, std::uint64_t most_settings)
-      : catalog_(catalog), rates_(rates), most_settings_(most_settings) {}
-
-  void add(const MatrixBlock& block) {
-    const std::vector<Spec> specs = parsed_specs(optimizer_specs(catalog_, block), most_settings_);
-    RatedOptimizers optimizers(catalog_, block, rates_);
-    for (const Spec& problem_spec : parsed_specs(problem_specs(catalog_, block), most_settings_)) {
-      const Component problem = complete_problem(catalog_, problem_spec);
-      std::map<std::string, const Rates::Row*> rows;
-      for (const Spec& spec : specs) {
-        const auto [row, is_new] = rows.try_emplace(spec.name);
-        if (is_new) row->second = optimizers.row_for(problem, spec.name);
-        add({.problem = problem,
-             .optimizer = optimizers.at(spec, row->second),
-             .budget = block.budget,
-             .threads = block.threads,
-             .rates = row->second ? row->second->origin : "",
-             .hard_seconds = block.hard_seconds},
-            block.seeds);
-      }
-    }
-  }
-  std::vector<Request> requests() && { return std::move(requests_); }
-
- private:
-  void add(Request request, const std::vector<std::uint64_t>& seeds) {
-    const CellNames names(request);
-    for (const std::uint64_t seed : seeds) {
-      request.seed = seed;
-      request.cell = names.of(seed);
-      if (known_.insert(request.cell).second) requests_.push_back(request);
-    }
-  }
-
-  const Catalog& catalog_;
-  const Rates& rates_;
-  std::uint64_t most_settings_;
-  std::unordered_set<std::string> known_;
-  std::vector<Request> requests_;
-};
-
 }  // namespace
 
 Component with_rates(const Catalog& catalog, const Spec& spec, const Rates::Row* row) {
@@ -198,9 +132,37 @@ std::vector<Request> expand(const Catalog& catalog, const Suite& suite, const Ra
                             std::uint64_t most) {
   const PlanSize size = size_of(catalog, suite);
   require(size.cells <= most, [&] { return too_large(size, most); });
-  Expansion expansion(catalog, rates, most);
-  for (const MatrixBlock& block : suite.blocks) expansion.add(block);
-  return std::move(expansion).requests();
+  std::vector<Request> requests;
+  std::unordered_set<std::string> known;
+  for (const MatrixBlock& block : suite.blocks) {
+    const std::vector<Spec> specs = parsed_specs(optimizer_specs(catalog, block), most);
+    // One component serves all problems that share its row of rates.
+    std::map<std::pair<const Spec*, const Rates::Row*>, Component> optimizers;
+    for (const Spec& problem_spec : parsed_specs(problem_specs(catalog, block), most)) {
+      const Component problem = complete_problem(catalog, problem_spec);
+      std::map<std::string, const Rates::Row*> rows;  // null: no row, or the suite uses defaults
+      for (const Spec& spec : specs) {
+        const auto [row, is_first] = rows.try_emplace(spec.name);
+        if (is_first && block.rates != "none")
+          row->second = rates.find(problem, spec.name, block.rates);
+        const auto [optimizer, is_new] = optimizers.try_emplace({&spec, row->second});
+        if (is_new) optimizer->second = with_rates(catalog, spec, row->second);
+        Request request{.problem = problem,
+                        .optimizer = optimizer->second,
+                        .budget = block.budget,
+                        .threads = block.threads,
+                        .rates = row->second ? row->second->origin : "",
+                        .hard_seconds = block.hard_seconds};
+        const CellNames names(request);
+        for (const std::uint64_t seed : block.seeds) {
+          request.seed = seed;
+          request.cell = names.of(seed);
+          if (known.insert(request.cell).second) requests.push_back(request);
+        }
+      }
+    }
+  }
+  return requests;
 }
 
 // Selectors and filters over the catalog.

@@ -1,18 +1,265 @@
-// Moves the components of a start by one unit in the last place each.
+// The run loop, its checkpoints, which are written whole and read only by the cell and build that
+// wrote them, and the record of what it left in its trace.
 #include "benchmarks/run/execute.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
+#include <csignal>
+#include <functional>
 #include <limits>
 #include <new>
-#include <stdexcept>
+#include <sstream>
+#include <utility>
 
+#include "benchmarks/plan/catalog.h"
+#include "benchmarks/plan/rates.h"
+#include "core/clock.h"
+#include "core/errors.h"
+#include "core/files.h"
 #include "core/foreign/line.h"
+#include "core/frames.h"
 #include "core/random.h"
+#include "core/records/provenance.h"
+#include "core/records/record.h"
+#include "core/status.h"
+#include "core/text.h"
 
 namespace isoline::benchmarks {
+namespace {
+
+volatile std::sig_atomic_t stop_requested = 0;
+
+void run(const Catalog& catalog, const Request& request, Trace& trace, Checkpoint& checkpoint,
+         Vector* returned, int perturbation) {
+  const Problem problem = make_problem(catalog, request.problem, request.seed);
+  const OptimizerEntry& entry = catalog.optimizers.at(request.optimizer.name);
+  const std::string reason = why_inapplicable(entry, request.optimizer.options, problem);
+  if (!reason.empty()) throw NotApplicable(reason);
+  const auto method = entry.make(request.optimizer.options, catalog.optimizers);
+  const OracleSet granted = needs_of(entry, request.optimizer.options, problem);
+  const auto privileges = optimizers::privileges_of(granted, problem.inverse_kind());
+  set_text(trace.privileges, fmt::format("{}", fmt::join(privileges, "\n")));
+  Meter meter(problem, request.budget, granted, trace);
+  Vector start = problem.start();
+  if (perturbation != 0) start = perturbed_start(std::move(start), request, perturbation);
+  const Vector theta = drive(*method, meter, std::move(start), checkpoint);
+  if (returned) *returned = theta;
+}
+
+// --- the record of a run from its trace
+
+std::vector<std::string> lines_of(const char* text) {
+  std::vector<std::string> lines;
+  std::istringstream in(valid_utf8(text));
+  for (std::string line; std::getline(in, line);) lines.push_back(line);
+  return lines;
+}
+
+// One number of each point of the trace.
+template <class Value>
+auto column_of(const Trace& trace, Value value) {
+  std::vector<std::decay_t<std::invoke_result_t<Value, const TracePoint&>>> column;
+  for (int i = 0; i < trace.points; ++i) column.push_back(std::invoke(value, trace.point[i]));
+  return column;
+}
+
+std::map<std::string, std::vector<Real>> series_of(const Trace& trace) {
+  std::map<std::string, std::vector<Real>> series;
+  const std::vector<std::string> names = lines_of(trace.series_names);
+  for (std::size_t i = 0; i < names.size(); ++i)  // two names that were no text may be one now
+    series[names[i]] = column_of(trace, [i](const TracePoint& point) { return point.series[i]; });
+  return series;
+}
+
+Grid grid_of(const Trace::Exhibit& shown) {
+  return {
+      shown.rows, shown.columns, {shown.value, shown.value + Index{shown.rows} * shown.columns}};
+}
+
+std::optional<FieldFrames> fields_of(const Trace::Frames& kept) {
+  const std::vector<std::size_t> chosen = chosen_frames(kept);
+  if (kept.rows == 0 || chosen.empty()) return std::nullopt;
+  FieldFrames frames;
+  const auto add = [&](const float* field) {  // stored column by column; a file holds rows
+    for (Index i = 0; i < kept.rows; ++i)
+      for (Index j = 0; j < kept.columns; ++j) frames.numbers.push_back(field[j * kept.rows + i]);
+  };
+  add(kept.target);
+  if (kept.has_truth) add(kept.truth);
+  for (const std::size_t place : chosen) {
+    frames.iterations.push_back(kept.iteration[place]);
+    add(kept.x[place]);
+  }
+  const auto cells = static_cast<std::size_t>(kept.rows) * static_cast<std::size_t>(kept.columns);
+  frames.shape = {static_cast<Index>(frames.numbers.size() / cells), kept.rows, kept.columns};
+  frames.digest = digest(field_file(frames));
+  return frames;
+}
+
+Spectrum spectrum_of(const Trace::Spectra& kept) {
+  Spectrum spectrum;
+  for (int i = 0; i < kept.taken; ++i) {
+    spectrum.iterations.push_back(kept.iteration[i]);
+    spectrum.sigma.emplace_back(kept.sigma[i], kept.sigma[i] + kept.values);
+  }
+  return spectrum;
+}
+
+Curve curve_of(const Trace& trace) {
+  Curve curve;
+  curve.iteration = column_of(trace, &TracePoint::iteration);
+  curve.work = column_of(trace, &TracePoint::work);
+  curve.wall_seconds = column_of(trace, &TracePoint::wall_seconds);
+  curve.processor_seconds = column_of(trace, &TracePoint::processor_seconds);
+  curve.loss = column_of(trace, &TracePoint::loss);
+  curve.x_error = column_of(trace, &TracePoint::x_error);
+  curve.gradient_norm = column_of(trace, &TracePoint::gradient_norm);
+  curve.step_norm = column_of(trace, &TracePoint::step_norm);
+  for (std::size_t i = 0; trace.is_learned && i < 2; ++i) {
+    const std::int64_t window = TracePoint::kWindows[i];
+    curve.batch_loss[window] =
+        column_of(trace, [i](const TracePoint& point) { return point.batch_loss[i]; });
+    curve.batch_x_error[window] =
+        column_of(trace, [i](const TracePoint& point) { return point.batch_x_error[i]; });
+  }
+  for (std::size_t kind = 0; kind < kOracles; ++kind) {
+    auto column = column_of(trace, [=](const TracePoint& point) { return point.counts[kind]; });
+    if (!column.empty() && column.back() > 0)
+      curve.counts[std::string(kOracleNames[kind])] = std::move(column);
+  }
+  return curve;
+}
+
+Hits hits_of(const Trace& trace) {
+  Hits hits;
+  for (std::size_t j = 0; j < kRungs; ++j) {
+    const TraceHit& hit = trace.hit[j];
+    const bool is_met = hit.iteration >= 0;
+    hits.target.push_back(rung(j));
+    hits.iteration.push_back(hit.iteration);
+    hits.work.push_back(is_met ? hit.work : -1);
+    hits.forwards.push_back(is_met ? hit.counts[0] : -1);
+    hits.wall_seconds.push_back(is_met ? hit.wall_seconds : std::nan(""));
+  }
+  for (std::size_t kind = 0; kind < kOracles; ++kind) {
+    std::vector<std::int64_t> column;
+    for (const TraceHit& hit : trace.hit)
+      column.push_back(hit.iteration >= 0 ? hit.counts[kind] : -1);
+    const bool is_asked = trace.last.counts[kind] > 0 || std::ranges::max(column) > 0;
+    if (is_asked) hits.counts[std::string(kOracleNames[kind])] = std::move(column);
+  }
+  return hits;
+}
+
+Trajectory trajectory_of(const Trace& trace) {
+  Trajectory path;
+  for (int i = 0; i < trace.points; ++i) {
+    path.x.emplace_back(trace.path_x[i], trace.path_x[i] + trace.path_inputs);
+    path.y.emplace_back(trace.path_y[i], trace.path_y[i] + trace.path_outputs);
+  }
+  return path;
+}
+
+Summary summary_of(const Trace& trace) {
+  const TracePoint& last = trace.last;
+  const bool has_points = trace.points > 0;
+  return {.iterations = last.iteration,
+          .work = last.work,
+          .rejected_steps = trace.rejected_steps,
+          .start_loss = trace.start_loss,
+          .loss = has_points ? last.loss : std::nan(""),
+          .best_loss = trace.best_loss,
+          .start_x_error = trace.start_x_error,
+          .x_error = has_points ? last.x_error : std::nan(""),
+          .gradient_norm = has_points ? last.gradient_norm : std::nan(""),
+          .wall_seconds = last.wall_seconds,
+          .processor_seconds = last.processor_seconds,
+          .peak_memory_bytes = trace.peak_memory_bytes};
+}
+
+// The criterion of the run, and its result: f ≤ f_L + τ s, and the error in x, at the returned
+// point. A run that broke off returned none.
+void add_verdicts(const Trace& trace, Record& record) {
+  const auto known = [](Real value) {
+    return std::isnan(value) ? std::nullopt : std::optional(value);
+  };
+  const bool has_returned = !is_failure(trace.status) && trace.points > 0;
+  const auto meets = [&](Real value, Real goal) {  // infinity at most infinity says nothing
+    return has_returned && std::isfinite(value) && std::isfinite(goal) && value <= goal;
+  };
+  record.aim = trace.aim;
+  record.minimum = known(trace.minimum);
+  record.scale = known(trace.scale);
+  record.x_scale = known(trace.x_scale);
+  record.x_floor = trace.x_floor;
+  for (const auto& [name, tau] : kVerified) {
+    auto &verified = record.verified[name], &found = record.found[name];
+    if (record.minimum) verified = meets(trace.last.loss, trace.minimum + tau * trace.scale);
+    if (record.x_scale)
+      found = meets(trace.last.x_error, x_goal(tau, trace.x_scale, trace.x_floor));
+  }
+}
+
+}  // namespace
+
+Checkpoint::Checkpoint(std::filesystem::path path, std::string identity, double every_seconds)
+    : path_(std::move(path)),
+      identity_("isoline.checkpoint/2 " + std::move(identity) + "\n"),
+      every_seconds_(every_seconds),
+      last_nanoseconds_(monotonic_nanoseconds()) {
+  stop_requested = 0;
+  std::signal(SIGTERM, [](int) { stop_requested = 1; });
+}
+
+bool Checkpoint::restore(Optimizer& method, Meter& meter, Vector& theta) {
+  constexpr std::size_t kDigits = 16;  // of the digest before the state
+  if (path_.empty()) return false;
+  std::string bytes;
+  try {
+    bytes = read_text(path_);
+  } catch (const UsageError&) {
+    return false;
+  }
+  if (!bytes.starts_with(identity_)) return false;
+  const std::string sum = bytes.substr(identity_.size(), kDigits);
+  bytes.erase(0, identity_.size() + kDigits);
+  if (sum != digest(bytes)) return false;
+  try {
+    Archive archive(std::move(bytes));
+    method.start(meter, theta);
+    archive(theta);
+    require(theta.size() == meter.unknowns(), "it has another number of unknowns");
+    require(method.persist(archive), "the method stores no state");
+    meter.persist(archive);
+    require(archive.bytes_left() == 0, "it holds more than the state of this run");
+  } catch (const std::exception& cause) {
+    std::error_code error;
+    std::filesystem::rename(path_, path_.string() + ".damaged", error);
+    if (error) path_.clear();  // nor is it read again, or written over
+    throw DamagedCheckpoint(cause.what());
+  }
+  return true;
+}
+
+bool Checkpoint::save_if_due(Optimizer& method, Meter& meter, Vector& theta) {
+  if (path_.empty()) return false;
+  const std::int64_t now = monotonic_nanoseconds();
+  const bool is_due = 1e-9 * static_cast<double>(now - last_nanoseconds_) >= every_seconds_;
+  if (!is_due && !stop_requested) return false;
+  last_nanoseconds_ = now;
+  Archive archive;
+  archive(theta);
+  if (!method.persist(archive)) return stop_requested != 0;
+  meter.persist(archive);
+  try {
+    write_text(path_, identity_ + digest(archive.bytes()) + archive.bytes());
+  } catch (const std::exception&) {  // a full disk costs the checkpoint, not the run
+  }
+  return stop_requested != 0;
+}
 
 Vector perturbed_start(Vector start, const Request& request, int number) {
   constexpr Real kUnit = std::numeric_limits<Real>::epsilon();  // of 1
@@ -27,44 +274,6 @@ Vector perturbed_start(Vector start, const Request& request, int number) {
   return start;
 }
 
-// The run loop, and the verdict on it.
-
-using optimizers::BudgetSpent;
-using optimizers::privileges_of;
-namespace {
-
-void conclude(Trace& trace, Status status, std::string_view message) {
-  trace.status = status;
-  set_text(trace.message, message);
-}
-
-void run(const Catalog& catalog, const Request& request, Trace& trace, Checkpoint& checkpoint,
-         Vector* returned, int perturbation) {
-  const Problem problem = make_problem(catalog, request.problem, request.seed);
-  const OptimizerEntry& entry = catalog.optimizers.at(request.optimizer.name);
-  const std::string reason = why_inapplicable(entry, request.optimizer.options, problem);
-  if (!reason.empty()) throw NotApplicable(reason);
-  const auto method = entry.make(request.optimizer.options, catalog.optimizers);
-  const OracleSet granted = needs_of(entry, request.optimizer.options, problem);
-  set_text(trace.privileges,
-           fmt::format("{}", fmt::join(privileges_of(granted, problem.inverse_kind()), "\n")));
-  Meter meter(problem, request.budget, granted, trace);
-  Vector start = problem.start();
-  if (perturbation != 0) start = perturbed_start(std::move(start), request, perturbation);
-  const Vector theta = drive(*method, meter, std::move(start), checkpoint);
-  if (returned) *returned = theta;
-}
-
-// With other sizes the harness would read beyond the array.
-void require_size(const Vector& theta, const Meter& meter) {
-  if (theta.size() == meter.unknowns()) return;
-  throw std::runtime_error(fmt::format(
-      "the method changed the number of unknowns from {} to {}, which a step must not do",
-      meter.unknowns(), theta.size()));
-}
-
-}  // namespace
-
 Vector drive(Optimizer& method, Meter& meter, Vector theta, Checkpoint& checkpoint) {
   Status verdict = Status::running;
   Vector before;  // (n), where the step began
@@ -77,13 +286,16 @@ Vector drive(Optimizer& method, Meter& meter, Vector theta, Checkpoint& checkpoi
     while (verdict == Status::running) {
       before = theta;
       verdict = method.step(meter, theta);
-      require_size(theta, meter);
+      if (theta.size() != meter.unknowns())  // else the harness would read beyond the array
+        throw std::runtime_error(fmt::format(
+            "the method changed the number of unknowns from {} to {}, which a step must not do",
+            meter.unknowns(), theta.size()));
       if (method.reports_iterations()) break;
       const Status judged = meter.iterate(theta);
       if (judged != Status::running) verdict = judged;
       if (verdict == Status::running && checkpoint.save_if_due(method, meter, theta)) return theta;
     }
-  } catch (const BudgetSpent&) {  // during a step
+  } catch (const optimizers::BudgetSpent&) {  // during a step
     theta = before;
     verdict = Status::budget;
   }
@@ -92,6 +304,10 @@ Vector drive(Optimizer& method, Meter& meter, Vector theta, Checkpoint& checkpoi
 
 void execute(const Catalog& catalog, const Request& request, Trace& trace, Checkpoint checkpoint,
              Vector* returned, int perturbation) {
+  const auto conclude = [&](Status status, std::string_view message) {
+    trace.status = status;
+    set_text(trace.message, message);
+  };
   try {
     try {
       run(catalog, request, trace, checkpoint, returned, perturbation);
@@ -100,18 +316,55 @@ void execute(const Catalog& catalog, const Request& request, Trace& trace, Check
       run(catalog, request, trace, checkpoint, returned, perturbation);
     }
     if (trace.status == Status::running)
-      conclude(trace, Status::interrupted, "it was stopped, and saved its state");
+      conclude(Status::interrupted, "it was stopped, and saved its state");
   } catch (const NotApplicable& reason) {
-    conclude(trace, Status::inapplicable, reason.what());
+    conclude(Status::inapplicable, reason.what());
   } catch (const std::bad_alloc&) {
-    conclude(trace, Status::memory, "out of its memory limit");
+    conclude(Status::memory, "out of its memory limit");
   } catch (const KilledProgram& error) {
-    conclude(trace, Status::interrupted, error.what());
+    conclude(Status::interrupted, error.what());
   } catch (const std::exception& error) {
-    conclude(trace, Status::failed, error.what());
+    conclude(Status::failed, error.what());
   } catch (...) {
-    conclude(trace, Status::failed, "threw an object that is not a std::exception");
+    conclude(Status::failed, "threw an object that is not a std::exception");
   }
+}
+
+Record record_of(const Request& request, const Trace& trace) {
+  Record record;
+  record.request = request;
+  require(!request.cell.empty(), "a request is run without the name of its cell");
+  record.cell = request.cell;
+  record.build = build_digest(request);
+  record.build_parts = build_parts(request);
+  record.status = trace.status == Status::running ? Status::interrupted : trace.status;
+  record.message = valid_utf8(trace.message);
+  record.claimed = valid_utf8(trace.claimed);
+  add_verdicts(trace, record);
+  record.counts = trace.last.counts;
+  record.prices = trace.prices;
+  const std::optional<Real> best = BestLosses::builtin().find(request.problem, request.seed);
+  record.is_best_known = best && best == record.minimum;
+  record.criterion = digest_of(criterion_of(record));
+  record.summary = summary_of(trace);
+  record.curve = curve_of(trace);
+  if (record.minimum) record.hits = hits_of(trace);
+  if (trace.path_inputs > 0) record.trajectory = trajectory_of(trace);
+  record.series = series_of(trace);
+  if (trace.shown_x.rows > 0)
+    record.exhibit = Exhibit{.target = grid_of(trace.shown_target),
+                             .x = grid_of(trace.shown_x),
+                             .truth = grid_of(trace.shown_truth)};
+  record.fields = fields_of(trace.frames);
+  if (trace.spectra.are_wanted) record.spectrum = spectrum_of(trace.spectra);
+  record.privileges = lines_of(trace.privileges);
+  record.foreign = {request.problem.foreign, request.optimizer.foreign};
+  record.is_nondeterministic = trace.stopped_by_clock || record.status == Status::timeout ||
+                               record.status == Status::interrupted ||
+                               record.status == Status::memory;
+  if (trace.is_finished) record.repeat_wall_seconds = {trace.last.wall_seconds};
+  record.provenance.build = this_build();
+  return record;
 }
 
 }  // namespace isoline::benchmarks

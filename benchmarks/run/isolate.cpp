@@ -8,69 +8,144 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <array>
 #include <cerrno>
+#include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <cstring>
-#include <exception>
+#include <fstream>
 #include <new>
 #include <stdexcept>
 #include <string_view>
 #include <utility>
 #include <vector>
 
-#include "benchmarks/run/interrupts.h"
-#include "benchmarks/run/process_group.h"
 #include "core/clock.h"
-#include "core/foreign/child.h"
+#include "core/errors.h"
+#include "core/files.h"
+#include "core/foreign/foreign.h"
 #include "core/text.h"
 #include "core/threads.h"
 
 namespace isoline::benchmarks {
 namespace {
 
-std::vector<const SharedMemory*>& all_of_this_process() {
-  static std::vector<const SharedMemory*> all;
-  return all;
+double seconds_between(std::int64_t begin, std::int64_t end) {
+  return 1e-9 * static_cast<double>(end - begin);
 }
 
-}  // namespace
-
-SharedMemory::SharedMemory(std::size_t bytes)
-    : address_(mmap(nullptr, bytes, PROT_READ | PROT_WRITE,
-                    MAP_SHARED | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0)),
-      bytes_(bytes) {
-  if (address_ == MAP_FAILED) throw std::bad_alloc();
-  all_of_this_process().push_back(this);
-}
-
-SharedMemory::~SharedMemory() {
-  std::erase(all_of_this_process(), this);
-  munmap(address_, bytes_);
-}
-
-void SharedMemory::release_pages() { madvise(address_, bytes_, MADV_REMOVE); }
-
-void SharedMemory::keep_only(std::initializer_list<const SharedMemory*> kept) {
-  for (const SharedMemory* memory : all_of_this_process())
-    if (std::ranges::find(kept, memory) == kept.end()) munmap(memory->address_, memory->bytes_);
-}
-
-// The output of a child process, through a pipe that its parent empties.
-
-namespace {
-
-constexpr std::size_t kTail = 200;  // bytes of the end that are remembered
-constexpr int kWidePipe = 1 << 20;  // bytes: a cell that writes much does not wait for every read
-constexpr int kMostReads = 64;  // per read, so that a cell that writes forever does not block us
+// --- the output of a child process, through a pipe that its parent empties
 
 void close_one(int& descriptor) {
   if (descriptor >= 0) ::close(std::exchange(descriptor, -1));
 }
 
+// --- workers
+
+std::vector<void*>& all_shared_memory() {
+  static std::vector<void*> all;
+  return all;
+}
+
+void* mapped(std::size_t bytes) {
+  void* const address = mmap(nullptr, bytes, PROT_READ | PROT_WRITE,
+                             MAP_SHARED | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+  if (address == MAP_FAILED) throw std::bad_alloc();
+  all_shared_memory().push_back(address);
+  return address;
+}
+
+// A file of memory, which is read once the child said that it is whole.
+struct Answer {
+  Answer() = default;
+  ~Answer() { ::close(descriptor); }
+  Answer(const Answer&) = delete;
+  Answer& operator=(const Answer&) = delete;
+
+  const int descriptor = memfd_create("answer", MFD_CLOEXEC);
+  const std::string path = fmt::format("/proc/self/fd/{}", descriptor);
+};
+
 }  // namespace
+
+Limits limits_of(const Request& request, const Limits& standard, double declared_seconds) {
+  constexpr double kForeignStartup =
+      600;  // the process adapter waits this long, and gives up first
+  constexpr double kBudgetFactor = 2, kDeclaredFactor = 10;
+  Limits limits = standard;
+  if (request.problem.foreign || request.optimizer.foreign)
+    limits.startup_seconds = std::max(limits.startup_seconds, kForeignStartup);
+  const double budget = request.budget.seconds;
+  if (std::isfinite(budget)) {
+    limits.hard_seconds = kBudgetFactor * budget;
+    limits.startup_seconds = std::max(limits.startup_seconds, limits.hard_seconds);
+  } else if (request.hard_seconds > 0) {
+    limits.hard_seconds = request.hard_seconds;
+  } else if (std::isfinite(declared_seconds)) {
+    limits.hard_seconds = std::max(standard.hard_seconds, kDeclaredFactor * declared_seconds);
+  }
+  return limits;
+}
+
+double DeclaredTimes::of(const Request& request) {
+  constexpr double kWorkPerIteration = 3, kSecondsPerFlop = 1e-9, kCallSeconds = 1e-7;
+  const Component& problem = request.problem;
+  const auto [at, is_new] = sheets_.try_emplace(problem.spec);
+  Sheet& sheet = at->second;
+  if (is_new) try {
+      sheet = {.kind = "problem", .name = problem.name, .spec = problem.spec};
+      const auto path = folder_ / "components" / sheet.file_name();
+      sheet = sheet_from_text(read_text(path), path.string());
+    } catch (const UsageError&) {  // missing or damaged: it says nothing
+    }
+  const double forward_seconds = sheet.prices ? sheet.prices->forward_seconds : 0;
+  if (!(forward_seconds > 0)) return 0;
+  const auto iterations = static_cast<double>(request.budget.iterations),
+             n = static_cast<double>(sheet.unknowns);
+  const double work =
+      std::min(static_cast<double>(request.budget.work), kWorkPerIteration * iterations);
+  double seconds = work * (forward_seconds + kCallSeconds);
+  const OracleSet needs = catalog_.optimizers.at(request.optimizer.name).needs;
+  if (needs.contains(Oracle::jacobian) || needs.contains(Oracle::hessian))
+    seconds += std::min(iterations, work / std::max(1.0, n)) * kSecondsPerFlop * std::pow(n, 3);
+  return std::min(seconds, request.budget.seconds);
+}
+
+std::optional<LimitWatch::Breach> LimitWatch::check(const ProcessGroup::Usage& usage,
+                                                    bool has_asked_oracle,
+                                                    std::int64_t now_nanoseconds) {
+  constexpr double kLongestLook = 1;   // what is longer between two looks was no running
+  constexpr double kIdleShare = 0.01;  // of a core
+  awake_ += std::min(kLongestLook, seconds_between(last_nanoseconds_, now_nanoseconds));
+  last_nanoseconds_ = now_nanoseconds;
+  const Mark now{awake_, usage.processor_seconds / threads_};
+  if (usage.resident_bytes > limits_.memory_bytes)
+    return Breach{Status::memory,
+                  fmt::format("killed: more than {} MiB resident; --memory allows more",
+                              limits_.memory_bytes >> 20)};
+  if (has_asked_oracle && !std::exchange(has_begun_, true)) begun_ = now;
+  const double most = has_begun_ ? limits_.hard_seconds : limits_.startup_seconds;
+  const char* const until = has_begun_ ? "" : " without an oracle call";
+  if (now.processor - begun_.processor > most)
+    return Breach{Status::timeout,
+                  fmt::format("killed after {} s of processor time{}; a longer --time allows more",
+                              most, until)};
+  if (now.awake - begun_.awake > Limits::kWallFactor * most)
+    return Breach{
+        Status::timeout,
+        fmt::format("killed after {} s of wall time, {} times its limit of {} s of processor "
+                    "time{}; a longer --time allows more",
+                    Limits::kWallFactor * most, Limits::kWallFactor, most, until)};
+  const bool is_active =
+      (limits_.waits_for_others && usage.processes > 1) ||
+      (now.processor - active_.processor) * threads_ >= kIdleShare * limits_.idle_seconds;
+  if (is_active) active_ = now;
+  if (now.awake - active_.awake <= limits_.idle_seconds) return std::nullopt;
+  return Breach{
+      Status::timeout,
+      fmt::format("killed: it used less than 1 % of a core for {} s", limits_.idle_seconds), true};
+}
 
 void CapturedOutput::open() {
   close();
@@ -96,22 +171,20 @@ void CapturedOutput::redirect() const {
 void CapturedOutput::close_child_end() { close_one(write_end_); }
 
 void CapturedOutput::drain() {
-  if (read_end_ < 0) return;
+  constexpr std::size_t kTail = 200;  // bytes of the end that are remembered
+  constexpr int kWidePipe = 1 << 20;  // bytes: a child that writes much does not wait for us
+  constexpr int kMostReads = 64;      // so that one that writes forever does not hold us up
   std::array<char, 1 << 14> chunk;
-  for (int i = 0; i < kMostReads; ++i) {
+  for (int i = 0; i < kMostReads && read_end_ >= 0; ++i) {
     const ssize_t got = read(read_end_, chunk.data(), chunk.size());
     if (got <= 0) return;
     if (!is_widened_) is_widened_ = fcntl(read_end_, F_SETPIPE_SZ, kWidePipe) >= 0;
-    take(chunk.data(), static_cast<std::size_t>(got));
+    const auto count = static_cast<std::size_t>(got), kept = std::min(kMost - kept_.size(), count);
+    kept_.append(chunk.data(), kept);
+    left_out_ += count - kept;
+    tail_.append(chunk.data(), count);
+    if (tail_.size() > kTail) tail_.erase(0, tail_.size() - kTail);
   }
-}
-
-void CapturedOutput::take(const char* bytes, std::size_t count) {
-  const std::size_t room = kMost - kept_.size(), kept = std::min(room, count);
-  kept_.append(bytes, kept);
-  left_out_ += static_cast<std::int64_t>(count - kept);
-  tail_.append(bytes, count);
-  if (tail_.size() > kTail) tail_.erase(0, tail_.size() - kTail);
 }
 
 void CapturedOutput::close() {
@@ -126,68 +199,35 @@ std::string CapturedOutput::text() const {
 }
 
 std::string CapturedOutput::last_words() const {
-  std::string_view words = tail_;
-  const std::size_t end = words.find_last_not_of("\n\r\t ");
-  if (end == std::string_view::npos) return "";
-  words = words.substr(0, end + 1);
-  const std::size_t line = words.find_last_of('\n');
-  if (line != std::string_view::npos) words.remove_prefix(line + 1);
-  return valid_utf8(words);
+  const std::string_view words(tail_.data(), tail_.find_last_not_of("\n\r\t ") + 1);
+  return valid_utf8(words.substr(words.find_last_of('\n') + 1));  // or from its beginning
 }
 
-// Worker processes: a group, a shared trace, limits, and what an end means.
-
-namespace {
-
-struct Descriptor {
-  explicit Descriptor(int opened) : number(opened) {}
-  ~Descriptor() { ::close(number); }
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-
-  const int number;
-};
-
-void write_whole(std::string_view bytes, int descriptor) {
-  while (!bytes.empty()) {
-    const ssize_t written = write(descriptor, bytes.data(), bytes.size());
-    if (written < 0 && errno != EINTR) throw std::runtime_error(strerror(errno));
-    if (written > 0) bytes.remove_prefix(static_cast<std::size_t>(written));
-  }
-}
-
-std::string read_whole(int descriptor) {
-  std::string bytes(static_cast<std::size_t>(std::max<off_t>(0, lseek(descriptor, 0, SEEK_END))),
-                    '\0');
-  const ssize_t got = pread(descriptor, bytes.data(), bytes.size(), 0);
-  bytes.resize(static_cast<std::size_t>(std::max<ssize_t>(0, got)));
-  return bytes;
-}
-
-// Whatever the child wrote there is taken for a size only where it can be one.
-std::int64_t size_of(const Returned& returned) {
-  const std::int64_t size = returned.size;
-  return size > 0 && size <= Returned::kMost ? size : 0;
-}
-
-bool has_verdict(const Trace& trace) {
-  return trace.is_finished && trace.status != Status::running &&
-         trace.status != Status::interrupted;
-}
-
-}  // namespace
+Worker::Worker() : shared_(new (mapped(sizeof(Shared))) Shared) {}
 
 Worker::~Worker() {
   if (is_running()) interrupt();
+  std::erase(all_shared_memory(), shared_);
+  munmap(shared_, sizeof(Shared));
 }
 
-Index Worker::returned_size() const { return size_of(*returned_); }
+void Worker::keep_returned(std::span<const double> theta) {
+  if (theta.size() > Returned::kMost) return;
+  std::ranges::copy(theta, shared_->returned.theta);
+  shared_->returned.size = static_cast<std::int64_t>(theta.size());
+}
+
+// Whatever the child wrote there is taken for a size only where it can be one.
+Index Worker::returned_size() const {
+  const std::int64_t size = shared_->returned.size;
+  return size > 0 && size <= Returned::kMost ? size : 0;
+}
 
 void Worker::start(const std::function<void(Trace&)>& work, const Limits& limits, int threads) {
-  constexpr std::int64_t kLarge = 1 << 17;  // numbers: a MiB, which is given back
-  if (size_of(*returned_) > kLarge) returned_.memory().release_pages();
-  returned_.renew();
-  trace_.renew();
+  constexpr Index kLarge = 1 << 17;  // numbers: a MiB, which is given back
+  if (returned_size() > kLarge) madvise(&shared_->returned, sizeof(Returned), MADV_REMOVE);
+  new (&shared_->returned) Returned;
+  new (&shared_->trace) Trace;
   breach_.reset();
   asked_to_stop_ = 0;
   watch_ = LimitWatch(limits, threads, monotonic_nanoseconds());
@@ -199,11 +239,12 @@ void Worker::start(const std::function<void(Trace&)>& work, const Limits& limits
 void Worker::do_in_child(const std::function<void(Trace&)>& work, int threads) {
   output_.redirect();
   join_child_programs();
-  SharedMemory::keep_only({&trace_.memory(), &returned_.memory()});
+  for (void* const other : all_shared_memory())  // no cell can write into another's
+    if (other != shared_) munmap(other, sizeof(Shared));
   limit_memory(watch_.limits().memory_bytes);
   set_library_threads(threads);
   try {
-    work(*trace_);
+    work(shared_->trace);
   } catch (const std::bad_alloc&) {
     conclude(Status::memory, "out of its memory limit");
   } catch (const std::exception& error) {
@@ -211,13 +252,14 @@ void Worker::do_in_child(const std::function<void(Trace&)>& work, int threads) {
   } catch (...) {
     conclude(Status::failed, "an object that is not a std::exception");
   }
-  trace_->is_finished = true;
-  leave();
+  shared_->trace.is_finished = true;
+  std::fflush(stdout);
+  _exit(0);
 }
 
 void Worker::conclude(Status status, const std::string& message) {
-  trace_->status = status;
-  set_text(trace_->message, message);
+  shared_->trace.status = status;
+  set_text(shared_->trace.message, message);
 }
 
 bool Worker::poll() {
@@ -230,9 +272,14 @@ bool Worker::poll() {
   const std::int64_t now = monotonic_nanoseconds();
   if (breach_ || !watch_.is_due(now)) return false;
   const auto usage = group_.usage(watch_.limits().memory_bytes);
-  breach_ = watch_.check(usage, trace_->first_oracle_nanoseconds != 0, now);
+  breach_ = watch_.check(usage, trace().first_oracle_nanoseconds != 0, now);
   if (breach_) group_.kill();
   return false;
+}
+
+void Worker::wait(int milliseconds) const {
+  pollfd ending{descriptor(), POLLIN, 0};
+  ::poll(&ending, 1, milliseconds);
 }
 
 void Worker::ask_to_stop() {
@@ -242,69 +289,63 @@ void Worker::ask_to_stop() {
 }
 
 void Worker::interrupt() {
-  constexpr std::int64_t kGraceNanoseconds = 3'000'000'000;  // to keep its state
-  constexpr int kMilliseconds = 20;                          // between two looks at its output
+  constexpr double kGraceSeconds = 3;  // to keep its state
   ask_to_stop();
-  for (bool is_killed = false; !poll();) {
-    if (!is_killed && monotonic_nanoseconds() - asked_to_stop_ > kGraceNanoseconds) {
+  for (bool is_killed = false; !poll(); wait(kLookMilliseconds))
+    if (!is_killed && seconds_between(asked_to_stop_, monotonic_nanoseconds()) > kGraceSeconds) {
       group_.kill();
       is_killed = true;
     }
-    pollfd ending{descriptor(), POLLIN, 0};
-    ::poll(&ending, 1, kMilliseconds);
-  }
 }
 
 // Everything that had the trace is dead by now.
 void Worker::finish(const ProcessGroup::End& end) {
   output_.drain();
   output_.close();
-  const std::string defect = defect_of(*trace_);
-  if (!defect.empty()) trace_.renew();
-  trace_->peak_memory_bytes = end.peak_memory_bytes;
-  if (breach_) return conclude(breach_->status, breach_->message);
-  if (!defect.empty())
-    return conclude(Status::crashed, "it overwrote the trace of its run: " + defect);
-  if (asked_to_stop_ > 0) {
-    if (!has_verdict(*trace_)) conclude(Status::interrupted, "the run was interrupted");
-    return;
-  }
-  judge_end(end.wait_status);
-  if (trace_->is_finished && trace_->status == Status::memory)
+  Trace& trace = shared_->trace;
+  const std::string defect = defect_of(trace);
+  if (!defect.empty()) new (&trace) Trace;
+  trace.peak_memory_bytes = end.peak_memory_bytes;
+  const int signal = WIFSIGNALED(end.wait_status) ? WTERMSIG(end.wait_status) : 0;
+  if (breach_) {
+    conclude(breach_->status, breach_->message);
+  } else if (!defect.empty()) {
+    conclude(Status::crashed, "it overwrote the trace of its run: " + defect);
+  } else if (asked_to_stop_ > 0) {
+    const bool has_verdict =
+        trace.is_finished && trace.status != Status::running && trace.status != Status::interrupted;
+    if (!has_verdict) conclude(Status::interrupted, "the run was interrupted");
+  } else if (is_from_outside(signal)) {
+    conclude(Status::interrupted,
+             fmt::format("killed by {}, sent by another program", signal_name(signal)));
+  } else if (signal != 0 || !trace.is_finished) {
+    conclude(Status::crashed, end_of_process(end.wait_status));
+  } else if (trace.status == Status::memory) {
     conclude(Status::memory, fmt::format("out of its memory limit of {} MiB; --memory allows more",
                                          watch_.limits().memory_bytes >> 20));
+  }
 }
-
-void Worker::judge_end(int wait_status) {
-  const int signal = WIFSIGNALED(wait_status) ? WTERMSIG(wait_status) : 0;
-  if (is_from_outside(signal))
-    return conclude(Status::interrupted,
-                    fmt::format("killed by {}, sent by another program", signal_name(signal)));
-  if (signal != 0 || !trace_->is_finished) conclude(Status::crashed, end_of_process(wait_status));
-}
-
-// Text from a child process: in a file of memory, which is read once the child said that it is
-// whole.
 
 IsolatedText isolated_text(const std::function<std::string()>& work, double seconds,
                            std::int64_t memory_bytes, const std::function<void()>& waiting) {
   constexpr std::size_t kMost = std::size_t{1} << 30;
   constexpr double kIdleSeconds = 60;
-  constexpr int kMilliseconds = 20;  // how often limits are looked at
-  const Descriptor answer(memfd_create("answer", MFD_CLOEXEC));
+  const double idle_seconds = std::min(seconds, kIdleSeconds);
+  const Answer answer;
   Worker worker;
   try {
-    if (answer.number < 0) throw std::runtime_error(strerror(errno));
+    if (answer.descriptor < 0) throw std::runtime_error(strerror(errno));
     worker.start(
         [&](Trace& trace) {
           const std::string text = work();
           if (text.size() > kMost) throw std::runtime_error("its answer has more than 1 GiB");
-          write_whole(text, answer.number);
+          if (!(std::ofstream(answer.path, std::ios::binary) << text).flush())
+            throw std::runtime_error(strerror(errno));
           trace.status = Status::converged;
         },
         {.startup_seconds = seconds,
          .hard_seconds = seconds,
-         .idle_seconds = std::min(seconds, kIdleSeconds),
+         .idle_seconds = idle_seconds,
          .waits_for_others = false,
          .memory_bytes = memory_bytes},
         1);
@@ -317,19 +358,17 @@ IsolatedText isolated_text(const std::function<std::string()>& work, double seco
       return {{}, "this program was stopped"};
     }
     if (waiting) waiting();
-    pollfd ending{worker.descriptor(), POLLIN, 0};
-    ::poll(&ending, 1, kMilliseconds);
+    worker.wait(kLookMilliseconds);
   }
   switch (const Trace& trace = worker.trace(); trace.status) {
     case Status::converged:
-      return {read_whole(answer.number), ""};
+      return {read_text(answer.path), ""};
     case Status::failed:
       return {{}, fmt::format("it threw: {}", valid_utf8(trace.message))};
     case Status::timeout:
       return {{},
-              worker.was_idle()
-                  ? fmt::format("it was idle for more than {} s", std::min(seconds, kIdleSeconds))
-                  : fmt::format("it took more than {} s", seconds)};
+              worker.was_idle() ? fmt::format("it was idle for more than {} s", idle_seconds)
+                                : fmt::format("it took more than {} s", seconds)};
     case Status::memory:
       return {{}, "it ran out of memory"};
     default: {

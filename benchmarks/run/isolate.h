@@ -1,55 +1,93 @@
-// One run in a process of its own: whatever it does to itself, this process goes on.
+// One run in a process of its own: whatever it does to itself, this process goes on. It is ended by
+// its processor time, its wall time, its idleness and its memory.
 #pragma once
 
 #include <algorithm>
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <functional>
-#include <initializer_list>
-#include <new>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
 
-#include "benchmarks/run/limits.h"
+#include "benchmarks/plan/catalog.h"
 #include "benchmarks/run/process_group.h"
+#include "core/records/request.h"
+#include "core/records/sheet.h"
+#include "core/status.h"
 #include "core/trace.h"
 
 namespace isoline::benchmarks {
 
-// Pages that are never written take no memory.
-class SharedMemory {
- public:
-  explicit SharedMemory(std::size_t bytes);
-  ~SharedMemory();
-  SharedMemory(const SharedMemory&) = delete;
-  SharedMemory& operator=(const SharedMemory&) = delete;
+// Processor time is that of the complete group, divided by the requested threads. Wall time, five
+// times that, protects waiting users: other load on the machine affects it alone.
+struct Limits {
+  double startup_seconds = 30;   // of processor time, from the fork to the first oracle call
+  double hard_seconds = 60;      // of processor time, from the first oracle call
+  double idle_seconds = 60;      // with less than 1 % of a core
+  bool waits_for_others = true;  // while a process that it started lives it is not idle
+  std::int64_t memory_bytes = std::int64_t{4} << 30;
 
-  void* address() const { return address_; }
-  void release_pages();  // they are zero after that
-
-  // In a child: gives back all but these.
-  static void keep_only(std::initializer_list<const SharedMemory*> kept);
-
- private:
-  void* address_;
-  std::size_t bytes_;
+  static constexpr double kWallFactor = 5;
 };
 
-// One object in memory of its own.
-template <class T>
-class Shared {
+inline constexpr int kLookMilliseconds = 20;  // how often limits and output are looked at
+
+// The limit of one request: twice its soft time limit, if it has one; else its suite's; else ten
+// times its predicted time, if that is more than the standard.
+Limits limits_of(const Request& request, const Limits& standard, double declared_seconds = 0);
+
+// The time for the nominal cost of cells: each unit costs a forward solve, as measured in the
+// metadata of a result folder, and a factorizing step about n³ in addition. 0 if not measured.
+class DeclaredTimes {
  public:
-  Shared() : memory_(sizeof(T)) { renew(); }
-  void renew() { object_ = new (memory_.address()) T; }
-  T* operator->() const { return object_; }
-  T& operator*() const { return *object_; }
-  SharedMemory& memory() { return memory_; }
+  DeclaredTimes(const Catalog& catalog, std::filesystem::path folder)
+      : catalog_(catalog), folder_(std::move(folder)) {}
+
+  double of(const Request& request);
 
  private:
-  SharedMemory memory_;
-  T* object_;
+  const Catalog& catalog_;
+  const std::filesystem::path folder_;
+  std::map<std::string, Sheet> sheets_;  // by the problem's spec
+};
+
+// The use of a child process, compared with its limits. Time during which this process was stopped
+// does not count.
+class LimitWatch {
+ public:
+  struct Breach {
+    Status status;  // timeout or memory
+    std::string message;
+    bool is_idleness = false;
+  };
+
+  LimitWatch() = default;
+  LimitWatch(const Limits& limits, int threads, std::int64_t now_nanoseconds)
+      : limits_(limits), threads_(threads), last_nanoseconds_(now_nanoseconds) {}
+
+  const Limits& limits() const { return limits_; }
+  // Whether it is time to look again: each look reads files of the system.
+  bool is_due(std::int64_t now_nanoseconds) const {
+    return now_nanoseconds - last_nanoseconds_ >= kLookMilliseconds * std::int64_t{1'000'000};
+  }
+  std::optional<Breach> check(const ProcessGroup::Usage& usage, bool has_asked_oracle,
+                              std::int64_t now_nanoseconds);
+
+ private:
+  struct Mark {
+    double awake = 0, processor = 0;  // seconds
+  };
+
+  Limits limits_;
+  int threads_ = 1;
+  std::int64_t last_nanoseconds_ = 0;
+  double awake_ = 0;        // seconds during which this process ran
+  bool has_begun_ = false;  // with its first oracle call
+  Mark begun_, active_;     // at the first oracle call; when it last did something
 };
 
 // The θ that a cell returns, in memory shared with its verifier.
@@ -58,16 +96,9 @@ struct Returned {
 
   std::atomic<std::int64_t> size{0};  // 0: nothing was returned, or more than fits
   double theta[kMost];                // (n)
-
-  void keep(std::span<const double> value) {
-    if (value.size() > kMost) return;
-    std::ranges::copy(value, theta);
-    size = static_cast<std::int64_t>(value.size());
-  }
 };
 
-// Captures the standard output and standard error of a child process, so that no terminal gets it,
-// and keeps a bounded part.
+// Captures the output of a child process, so that no terminal gets it, and keeps a bounded part.
 class CapturedOutput {
  public:
   static constexpr std::size_t kMost = std::size_t{64} << 10;  // bytes kept, from the first on
@@ -87,19 +118,17 @@ class CapturedOutput {
   std::string last_words() const;  // the last line that says something, cut to some 200 bytes
 
  private:
-  void take(const char* bytes, std::size_t count);
-
   int read_end_ = -1, write_end_ = -1;
   bool is_widened_ = false;
   std::string kept_, tail_;
-  std::int64_t left_out_ = 0;  // bytes
+  std::size_t left_out_ = 0;  // bytes
 };
 
 // Its trace lives in shared memory and outlives the child. Until the child has ended it may hold
 // anything; then it is checked whole, and what is read of it is sound.
 class Worker {
  public:
-  Worker() = default;
+  Worker();
   ~Worker();
   Worker(const Worker&) = delete;
   Worker& operator=(const Worker&) = delete;
@@ -109,29 +138,31 @@ class Worker {
   bool was_idle() const { return breach_ && breach_->is_idleness; }  // and was ended for it
   // Ends the child where it is over a limit, collects it where it has ended. True once it has.
   bool poll();
+  void wait(int milliseconds) const;  // for its end, so long at most
   // Tells the child to save its state and end. Several children can be told before the first wait.
   void ask_to_stop();
-  void
-  interrupt();  // tells it, waits a little, ends it: what was not done by then is `interrupted`
-  // For a child that has ended: replaces its result.
-  void dispute(Status status, const std::string& message) { conclude(status, message); }
-  const Trace& trace() const { return *trace_; }
+  // Tells it, waits a little, ends it: what was not done by then is `interrupted`.
+  void interrupt();
+  void conclude(Status status,
+                const std::string& message);  // of one that has ended: another result
+  const Trace& trace() const { return shared_->trace; }
   const CapturedOutput& output() const { return output_; }
   // The point that the child returned, for verification by another process, which inherits the
   // memory if it starts after this worker was made.
-  void keep_returned(std::span<const double> theta) { returned_->keep(theta); }  // by the child
-  const double* returned() const { return returned_->theta; }
+  void keep_returned(std::span<const double> theta);  // by the child
+  const double* returned() const { return shared_->returned.theta; }
   Index returned_size() const;                            // 0: nothing
   int descriptor() const { return group_.descriptor(); }  // readable when the child has ended
 
  private:
-  void do_in_child(const std::function<void(Trace&)>& work, int threads);
-  void conclude(Status status, const std::string& message);
+  struct Shared {
+    Trace trace;
+    alignas(4096) Returned returned;  // pages of its own, which take no memory until written
+  };
+  [[noreturn]] void do_in_child(const std::function<void(Trace&)>& work, int threads);
   void finish(const ProcessGroup::End& end);
-  void judge_end(int wait_status);
 
-  Shared<Trace> trace_;
-  Shared<Returned> returned_;
+  Shared* const shared_;
   ProcessGroup group_;
   CapturedOutput output_;
   LimitWatch watch_;
@@ -147,8 +178,8 @@ struct IsolatedText {
 };
 
 // Ends it after this many seconds of processor time, or five times as many of wall time, or if it
-// and all that it started are idle for as long, at most a minute. Calls `waiting` fifty times a
-// second. Ends it, too, when this process is to end (interrupts.h).
+// and all that it started are idle for as long, at most a minute, or when this process is to end.
+// Calls `waiting` fifty times a second.
 IsolatedText isolated_text(const std::function<std::string()>& work, double seconds,
                            std::int64_t memory_bytes = Limits{}.memory_bytes,
                            const std::function<void()>& waiting = {});

@@ -10,12 +10,12 @@
 #include <algorithm>
 #include <cerrno>
 #include <cmath>
+#include <cstdint>
 #include <cstring>
 #include <map>
 #include <memory>
 #include <utility>
 
-#include "benchmarks/run/process_group.h"
 #include "core/clock.h"
 #include "core/foreign/line.h"
 #include "core/threads.h"
@@ -34,6 +34,86 @@ bool agree(double a, double b, double size) {
   return std::abs(a - b) <= kRelative * std::max(std::abs(a), std::abs(b)) + floor;
 }
 
+// --- the work of a verifier, in its own process
+
+// Messages of the socket between a run and its judge.
+struct PointToJudge {
+  std::size_t slot;
+  std::uint64_t seed;
+  int threads;
+};
+
+struct JudgesReply {
+  std::size_t slot;
+  bool is_judged, is_interrupted;
+  Judged judged;
+  char failure[Trace::kText];
+};
+
+// A new instance of a problem, and the meter that measures it as in a run.
+struct Instance {
+  explicit Instance(Problem made) : problem(std::move(made)), meter(problem, {}, {}, trace) {
+    meter.leave_gradients_out();
+    meter.begin(problem.start());
+  }
+  Judged judged(VectorRef theta) {
+    require(theta.size() == problem.unknowns(), [&] {
+      return fmt::format("it returned {} numbers instead of {}", theta.size(), problem.unknowns());
+    });
+    meter.finish(theta, Status::budget);
+    return told_by(trace);
+  }
+
+  Problem problem;
+  Trace trace;
+  Meter meter;
+};
+using Instances = std::map<std::uint64_t, std::unique_ptr<Instance>>;  // by seed
+
+// An instance that failed may hold anything and is thrown away.
+template <class Make>
+JudgesReply reply_to(const PointToJudge& asked, const Worker& worker, Instances& instances,
+                     const Make& make) {
+  constexpr std::size_t kMost = 8;  // seeds come in turn, method by method
+  JudgesReply reply{.slot = asked.slot};
+  try {
+    set_library_threads(asked.threads);
+    if (instances.size() >= kMost && !instances.contains(asked.seed)) instances.clear();
+    auto& instance = instances[asked.seed];
+    if (!instance) instance = std::make_unique<Instance>(make(asked.seed));
+    reply.judged =
+        instance->judged(Eigen::Map<const Vector>(worker.returned(), worker.returned_size()));
+    reply.is_judged = true;
+    return reply;
+  } catch (const KilledProgram& error) {
+    reply.is_interrupted = true;
+    set_text(reply.failure, error.what());
+  } catch (const std::exception& error) {
+    set_text(reply.failure, error.what());
+  } catch (...) {
+    set_text(reply.failure, "it threw an object that is not a std::exception");
+  }
+  instances.erase(asked.seed);
+  return reply;
+}
+
+// Answers requests from the socket about points that the workers returned, until it closes.
+[[noreturn]] void judge_points(const Catalog& catalog, const Component& problem,
+                               const std::vector<Worker>& workers, int socket) {
+  const int nowhere = open("/dev/null", O_WRONLY | O_CLOEXEC);  // what a problem prints here
+  if (nowhere < 0 || dup2(nowhere, STDOUT_FILENO) < 0 || dup2(nowhere, STDERR_FILENO) < 0) _exit(1);
+  const auto make = [&](std::uint64_t seed) { return make_problem(catalog, problem, seed); };
+  Instances instances;
+  PointToJudge asked;
+  while (recv(socket, &asked, sizeof asked, 0) == sizeof asked) {
+    const Worker& worker = workers[asked.slot];
+    JudgesReply reply = reply_to(asked, worker, instances, make);
+    if (!reply.is_judged) reply = reply_to(asked, worker, instances, make);  // a fresh one
+    if (send(socket, &reply, sizeof reply, MSG_NOSIGNAL) != sizeof reply) break;
+  }
+  _exit(0);
+}
+
 }  // namespace
 
 Judged told_by(const Trace& trace) {
@@ -44,20 +124,23 @@ Judged told_by(const Trace& trace) {
 std::string contradiction(const Judged& told, const Judged& judged) {
   const struct {
     const char* name;
-    double told, judged, size;
-  } numbers[] = {{"its loss", told.loss, judged.loss, judged.scale},
-                 {"its error in x", told.x_error, judged.x_error, judged.x_scale},
-                 {"the least loss f_L", told.minimum, judged.minimum, judged.scale},
-                 {"the scale of the loss", told.scale, judged.scale, 0},
-                 {"the scale of x", told.x_scale, judged.x_scale, 0},
-                 {"the floor of the error in x", told.x_floor, judged.x_floor, judged.x_scale}};
-  for (const auto& one : numbers)
-    if (!agree(one.told, one.judged, one.size))
+    double Judged::*number;
+    double size;
+  } numbers[] = {{"its loss", &Judged::loss, judged.scale},
+                 {"its error in x", &Judged::x_error, judged.x_scale},
+                 {"the least loss f_L", &Judged::minimum, judged.scale},
+                 {"the scale of the loss", &Judged::scale, 0},
+                 {"the scale of x", &Judged::x_scale, 0},
+                 {"the floor of the error in x", &Judged::x_floor, judged.x_scale}};
+  for (const auto& [name, number, size] : numbers)
+    if (!agree(told.*number, judged.*number, size))
       return fmt::format(
-          "{} is {:.6g} on a new instance of the problem, but was {:.6g} in the cell", one.name,
-          one.judged, one.told);
+          "{} is {:.6g} on a new instance of the problem, but was {:.6g} in the cell", name,
+          judged.*number, told.*number);
   return "";
 }
+
+// --- verifiers, as a run sees them
 
 Judges::~Judges() {
   for (Judge& judge : judges_) end(judge);
@@ -70,7 +153,7 @@ void Judges::ask(std::size_t slot, const Request& request, const Limits& limits)
   try {
     send(judge_of(request.problem), question);
   } catch (const std::runtime_error& error) {
-    unjudged_.push_back({slot, {}, error.what(), true});
+    verdicts_.push_back({slot, {}, error.what(), true});
   }
 }
 
@@ -78,20 +161,14 @@ Judges::Judge& Judges::judge_of(const Component& problem) {
   const auto known = std::ranges::find(judges_, problem.spec, &Judge::problem);
   if (known != judges_.end()) {
     judges_.splice(judges_.begin(), judges_, known);
-    if (!known->group.is_running()) start(*known, problem);
-    return *known;
+  } else {
+    if (judges_.size() > workers_.size() && judges_.back().open.empty()) {
+      end(judges_.back());  // the one used longest ago
+      judges_.pop_back();
+    }
+    judges_.emplace_front(problem.spec);
   }
-  if (judges_.size() > workers_.size() && judges_.back().open.empty()) {
-    end(judges_.back());  // the one used longest ago
-    judges_.pop_back();
-  }
-  judges_.emplace_front(problem.spec);
-  try {
-    start(judges_.front(), problem);
-  } catch (...) {
-    judges_.pop_front();
-    throw;
-  }
+  if (!judges_.front().group.is_running()) start(judges_.front(), problem);
   return judges_.front();
 }
 
@@ -137,15 +214,14 @@ int Judges::end(Judge& judge) {
 
 // All its open requests go to a new verifier. A point that ended two verifiers, or that exceeded
 // the limits, gets this as its answer.
-void Judges::lose(Judge& judge, const std::string& reason, std::vector<Verdict>& verdicts) {
+void Judges::lose(Judge& judge, const std::string& reason) {
   const int status = end(judge);
-  std::deque<Question> open;
-  open.swap(judge.open);
+  std::deque<Question> open = std::exchange(judge.open, {});
   if (open.front().is_asked_again || !reason.empty()) {
     const bool is_killed =
         reason.empty() && WIFSIGNALED(status) && is_from_outside(WTERMSIG(status));
     const std::string why = reason.empty() ? end_of_process(status) : reason;
-    verdicts.push_back({open.front().slot, {}, why, is_killed});
+    verdicts_.push_back({open.front().slot, {}, why, is_killed});
     open.pop_front();
   } else {
     open.front().is_asked_again = true;
@@ -156,146 +232,49 @@ void Judges::lose(Judge& judge, const std::string& reason, std::vector<Verdict>&
     for (const Question& question : open) send(judge, question);
   } catch (const std::runtime_error& error) {
     for (const Question& question : open)
-      verdicts.push_back({question.slot, {}, error.what(), true});
+      verdicts_.push_back({question.slot, {}, error.what(), true});
   }
 }
 
 std::vector<Verdict> Judges::collect() {
-  std::vector<Verdict> verdicts = std::exchange(unjudged_, {});
   for (Judge& judge : judges_) {
-    collect(judge, verdicts);
-    if (!judge.open.empty()) enforce(judge, verdicts);
+    collect(judge);
+    if (!judge.open.empty()) enforce(judge);
   }
-  return verdicts;
+  return std::exchange(verdicts_, {});
 }
 
-void Judges::enforce(Judge& judge, std::vector<Verdict>& verdicts) {
+void Judges::enforce(Judge& judge) {
   const std::int64_t now = monotonic_nanoseconds();
   if (!judge.watch.is_due(now)) return;
   const Limits& limits = judge.watch.limits();
   const auto breach = judge.watch.check(judge.group.usage(limits.memory_bytes), true, now);
   if (!breach) return;
-  const std::string reason = breach->status == Status::memory
-                                 ? "it ran out of memory"
-                                 : fmt::format("it took more than {} s", limits.hard_seconds);
-  lose(judge, reason, verdicts);
+  lose(judge, breach->status == Status::memory
+                  ? "it ran out of memory"
+                  : fmt::format("it took more than {} s", limits.hard_seconds));
 }
 
-void Judges::collect(Judge& judge, std::vector<Verdict>& verdicts) {
+void Judges::collect(Judge& judge) {
   JudgesReply reply;
   while (!judge.open.empty()) {
     const ssize_t got = recv(judge.socket, &reply, sizeof reply, MSG_DONTWAIT);
     if (got < 0 && (errno == EAGAIN || errno == EINTR)) return;
     if (got != sizeof reply || reply.slot != judge.open.front().slot) {
-      lose(judge, "", verdicts);
+      lose(judge, "");
       continue;
     }
     judge.open.pop_front();
     watch_first(judge);
     reply.failure[Trace::kText - 1] = '\0';
-    verdicts.push_back({reply.slot, reply.is_judged ? std::optional(reply.judged) : std::nullopt,
-                        reply.failure, reply.is_interrupted});
+    verdicts_.push_back({reply.slot, reply.is_judged ? std::optional(reply.judged) : std::nullopt,
+                         reply.failure, reply.is_interrupted});
   }
 }
 
 void Judges::add_to(std::vector<pollfd>& waiting) const {
   for (const Judge& judge : judges_)
     if (!judge.open.empty()) waiting.push_back({judge.socket, POLLIN, 0});
-}
-
-// Problems made afresh, and points measured on them.
-
-namespace {
-
-// A new instance of a problem, and the meter that measures it as in a run.
-struct Instance {
-  explicit Instance(Problem made) : problem(std::move(made)), meter(problem, {}, {}, trace) {
-    meter.leave_gradients_out();
-    meter.begin(problem.start());
-  }
-  Judged judged(VectorRef theta) {
-    require(theta.size() == problem.unknowns(), [&] {
-      return fmt::format("it returned {} numbers instead of {}", theta.size(), problem.unknowns());
-    });
-    meter.finish(theta, Status::budget);
-    return told_by(trace);
-  }
-
-  Problem problem;
-  Trace trace;
-  Meter meter;
-};
-
-// The work of a verifier, in its own process, until the socket closes.
-class Chamber {
- public:
-  Chamber(const Catalog& catalog, const Component& problem, const std::vector<Worker>& workers)
-      : catalog_(catalog), problem_(problem), workers_(workers) {}
-
-  [[noreturn]] void serve(int socket) {
-    const int nowhere = open("/dev/null", O_WRONLY | O_CLOEXEC);  // what a problem prints here
-    if (nowhere < 0 || dup2(nowhere, STDOUT_FILENO) < 0 || dup2(nowhere, STDERR_FILENO) < 0)
-      _exit(1);
-    PointToJudge asked;
-    while (recv(socket, &asked, sizeof asked, 0) == sizeof asked) {
-      const JudgesReply reply = reply_to(asked);
-      if (send(socket, &reply, sizeof reply, MSG_NOSIGNAL) != sizeof reply) break;
-    }
-    _exit(0);
-  }
-
- private:
-  // An instance that failed may hold anything and is thrown away. A fresh one is asked once
-  // more.
-  JudgesReply reply_to(const PointToJudge& asked) {
-    const JudgesReply first = tried(asked);
-    if (first.is_judged) return first;
-    instances_.erase(asked.seed);
-    const JudgesReply second = tried(asked);
-    if (!second.is_judged) instances_.erase(asked.seed);
-    return second;
-  }
-
-  JudgesReply tried(const PointToJudge& asked) {
-    JudgesReply reply{.slot = asked.slot};
-    try {
-      set_library_threads(asked.threads);
-      const Worker& worker = workers_[asked.slot];
-      reply.judged =
-          instance(asked.seed)
-              .judged(Eigen::Map<const Vector>(worker.returned(), worker.returned_size()));
-      reply.is_judged = true;
-    } catch (const KilledProgram& error) {
-      reply.is_interrupted = true;
-      set_text(reply.failure, error.what());
-    } catch (const std::exception& error) {
-      set_text(reply.failure, error.what());
-    } catch (...) {
-      set_text(reply.failure, "it threw an object that is not a std::exception");
-    }
-    return reply;
-  }
-
-  // Seeds come in turn, method by method: some instances are kept.
-  Instance& instance(std::uint64_t seed) {
-    constexpr std::size_t kMost = 8;
-    if (const auto found = instances_.find(seed); found != instances_.end()) return *found->second;
-    if (instances_.size() >= kMost) instances_.clear();
-    auto made = std::make_unique<Instance>(make_problem(catalog_, problem_, seed));
-    return *(instances_[seed] = std::move(made));
-  }
-
-  const Catalog& catalog_;
-  const Component& problem_;
-  const std::vector<Worker>& workers_;
-  std::map<std::uint64_t, std::unique_ptr<Instance>> instances_;
-};
-
-}  // namespace
-
-void judge_points(const Catalog& catalog, const Component& problem,
-                  const std::vector<Worker>& workers, int socket) {
-  Chamber(catalog, problem, workers).serve(socket);
 }
 
 }  // namespace isoline::benchmarks

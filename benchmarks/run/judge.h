@@ -4,17 +4,13 @@
 
 #include <poll.h>
 
-#include <cstdint>
 #include <deque>
 #include <list>
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
-#include "benchmarks/plan/catalog.h"
 #include "benchmarks/run/isolate.h"
-#include "benchmarks/run/process_group.h"
 
 namespace isoline::benchmarks {
 
@@ -69,38 +65,17 @@ class Judges {
   };
   Judge& judge_of(const Component& problem);
   void start(Judge& judge, const Component& problem);
-  void send(Judge& judge, const Question& question);
-  int end(Judge& judge);  // how it ended, as wait() has it
-  void watch_first(Judge& judge);
-  void enforce(Judge& judge, std::vector<Verdict>& verdicts);
-  void lose(Judge& judge, const std::string& reason, std::vector<Verdict>& verdicts);
-  void collect(Judge& judge, std::vector<Verdict>& verdicts);
+  static void send(Judge& judge, const Question& question);
+  static int end(Judge& judge);  // how it ended, as wait() has it
+  static void watch_first(Judge& judge);
+  void enforce(Judge& judge);
+  void lose(Judge& judge, const std::string& reason);
+  void collect(Judge& judge);
 
   const Catalog& catalog_;
   const std::vector<Worker>& workers_;
-  std::vector<Verdict> unjudged_;  // those that no judge could be started for
+  std::vector<Verdict> verdicts_;  // that are not collected yet
   std::list<Judge> judges_;        // most recently used first
 };
-
-// The work of a verifier in its own process.
-
-// Messages of the socket between a run and its judge.
-struct PointToJudge {
-  std::size_t slot;
-  std::uint64_t seed;
-  int threads;
-};
-
-struct JudgesReply {
-  std::size_t slot;
-  bool is_judged, is_interrupted;
-  Judged judged;
-  char failure[Trace::kText];
-};
-
-// Answers requests from the socket about points that the workers returned, until it closes. Never
-// returns.
-[[noreturn]] void judge_points(const Catalog& catalog, const Component& problem,
-                               const std::vector<Worker>& workers, int socket);
 
 }  // namespace isoline::benchmarks

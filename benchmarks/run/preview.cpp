@@ -1,22 +1,60 @@
-// A preview of a plan: looked up in the store, and probed.
+// A preview of a plan: looked up in the store, and probed. Records are read through a view, which
+// extracts the requested values only.
 #include "benchmarks/run/preview.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
-#include <map>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "benchmarks/run/isolate.h"
-#include "benchmarks/run/prediction.h"
+#include "benchmarks/run/store.h"
 #include "core/clock.h"
+#include "core/errors.h"
+#include "core/files.h"
 #include "core/json.h"
-#include "core/threads.h"
+#include "core/records/json_view.h"
+#include "core/records/record.h"
+#include "core/records/request.h"
 #include "optimizers/optimizer.h"
 #include "problems/problem.h"
 
 namespace isoline::benchmarks {
+namespace fs = std::filesystem;
+
 namespace {
 
-constexpr double kProbeSeconds = 30;
+std::optional<RecordOutline> outline_of(const fs::path& file) {
+  static thread_local JsonReader reader;
+  try {
+    const std::string text = read_text(file, kMostRecordBytes);
+    const JsonView json = reader.parse(text, file.string());
+    const JsonView request = json.at("request");
+    RecordOutline seen{.cell = json.at("cell"),
+                       .problem = request.at("problem").at("spec"),
+                       .optimizer = request.at("optimizer").at("spec")};
+    seen.budget = budget_from(request.at("budget"));
+    seen.threads = request.at("threads");
+    const std::optional<Status> status = status_of(json.at("status").get<std::string>());
+    require(status.has_value(), "it has no known status");
+    seen.status = *status;
+    seen.wall_seconds = real_of(json.at("summary").at("wall_seconds"));
+    const JsonView provenance = json.at("provenance");
+    if (provenance.contains("run")) seen.started = provenance.at("run").at("started");
+    return seen;
+  } catch (const UsageError&) {
+    return std::nullopt;
+  }
+}
+
+std::string question_of(const std::string& problem, const std::string& optimizer,
+                        const Budget& budget, int threads) {
+  return fmt::format("{}\n{}\n{} {} {} {} {}", problem, optimizer, budget.iterations, budget.work,
+                     budget.seconds, budget.target, threads);
+}
+
+// --- which pairs are inapplicable
 
 // The reason why an optimizer cannot run on a problem, by its spec; empty if it can.
 using Reasons = std::map<std::string, std::string>;
@@ -31,16 +69,10 @@ struct Setting {
 std::vector<Setting> settings_of(const std::vector<Request>& requests) {
   std::vector<Setting> settings;
   std::map<std::string_view, std::size_t> places;
-  const std::string* last = nullptr;
-  std::size_t place = 0;
   for (const Request& request : requests) {
-    if (!last || *last != request.problem.spec) {
-      const auto [at, is_new] = places.try_emplace(request.problem.spec, settings.size());
-      if (is_new) settings.push_back({&request.problem, {}});
-      place = at->second;
-      last = &request.problem.spec;
-    }
-    settings[place].optimizers.try_emplace(request.optimizer.spec, &request.optimizer);
+    const auto [at, is_new] = places.try_emplace(request.problem.spec, settings.size());
+    if (is_new) settings.push_back({&request.problem, {}});
+    settings[at->second].optimizers.try_emplace(request.optimizer.spec, &request.optimizer);
   }
   std::set<std::string_view> names;
   std::ranges::stable_partition(
@@ -57,10 +89,12 @@ Reasons probe(const Catalog& catalog, const Setting& setting) {
   return reasons;
 }
 
-// Probes the first settings, as many as time permits, in one process.
-std::vector<Reasons> probes_together(const Catalog& catalog, const std::vector<Setting>& settings) {
+// The reasons of the first settings, as many as time permits: in one process, or in one each where
+// one of them cannot be made. The cells of that one will say so when they run.
+std::vector<Reasons> probes_of(const Catalog& catalog, const std::vector<Setting>& settings) {
+  constexpr double kProbeSeconds = 30;
+  constexpr std::size_t kAtLeast = 100, kMostApart = 200;
   const auto probe_some = [&] {
-    constexpr std::size_t kAtLeast = 100;
     constexpr std::int64_t kNanoseconds = 1'000'000'000;
     const std::int64_t begin = monotonic_nanoseconds();
     Json all = Json::array();
@@ -70,87 +104,72 @@ std::vector<Reasons> probes_together(const Catalog& catalog, const std::vector<S
     }
     return json_text(all);
   };
-  const auto text = isolated_text(probe_some, kProbeSeconds).text;
-  std::vector<Reasons> probes;
-  if (text)
-    for (const Json& found : parse_json(*text, "probes")) probes.push_back(found);
-  return probes;
-}
-
-// One process each, where one of them cannot be made here: its cells will say so when they run.
-std::vector<Reasons> probes_apart(const Catalog& catalog, const std::vector<Setting>& settings) {
-  constexpr std::size_t kMost = 200;
+  if (const auto text = isolated_text(probe_some, kProbeSeconds).text)
+    return parse_json(*text, "probes").get<std::vector<Reasons>>();
   std::vector<Reasons> probes;
   for (const Setting& setting : settings) {
-    if (probes.size() == kMost) break;
-    const auto text =
-        isolated_text([&] { return json_text(Json(probe(catalog, setting))); }, kProbeSeconds).text;
+    if (probes.size() == kMostApart) break;
+    const auto probe_one = [&] { return json_text(Json(probe(catalog, setting))); };
+    const auto text = isolated_text(probe_one, kProbeSeconds).text;
     probes.push_back(text ? parse_json(*text, "probe").get<Reasons>() : Reasons());
   }
   return probes;
 }
 
-// The descriptions of the problems, by spec if they were probed, and otherwise by name.
-class Probes {
- public:
-  Probes(const Catalog& catalog, const std::vector<Request>& requests) {
-    const std::vector<Setting> settings = settings_of(requests);
-    std::vector<Reasons> probes = probes_together(catalog, settings);
-    if (probes.empty()) probes = probes_apart(catalog, settings);
-    unknown_ = settings.size() - probes.size();
-    for (std::size_t i = 0; i < probes.size(); ++i) {
-      const Reasons& kept = by_spec_[settings[i].problem->spec] = std::move(probes[i]);
-      by_name_.try_emplace(settings[i].problem->name, &kept);
-    }
-  }
-  std::string why_inapplicable(const Request& request) const {
-    const auto own = by_spec_.find(request.problem.spec);
-    const auto like = by_name_.find(request.problem.name);
-    if (own == by_spec_.end() && like == by_name_.end()) return "";
-    const Reasons& reasons = own != by_spec_.end() ? own->second : *like->second;
-    const auto reason = reasons.find(request.optimizer.spec);
-    return reason == reasons.end() ? "" : reason->second;
-  }
-  std::size_t unknown() const { return unknown_; }
-
- private:
-  std::map<std::string, Reasons> by_spec_;
-  std::map<std::string, const Reasons*> by_name_;
-  std::size_t unknown_ = 0;
-};
-
-// The cells that a folder has records of, found by one look at it.
-class Kept {
- public:
-  Kept(std::filesystem::path folder, const PreviewOptions& options)
-      : folder_(std::move(folder)), options_(options), earlier_(folder_) {}
-  bool has(const Request& request) const {
-    if (options_.force || !earlier_.has(request)) return false;
-    std::optional<Record> record = Store::find_in(folder_, request);
-    if (!record && options_.reuse) record = earlier_.find(request);
-    return record && !options_.retry.contains(record->status);
-  }
-
- private:
-  std::filesystem::path folder_;
-  const PreviewOptions& options_;
-  RecordsOfAnyBuild earlier_;
-};
-
-// For each request, whether one of the folders has it.
-std::vector<char> cached_in(const std::vector<std::filesystem::path>& folders,
+// For each request, whether one of the folders has it, each found by one look at it.
+std::vector<char> cached_in(const std::vector<fs::path>& folders,
                             const std::vector<Request>& requests, const PreviewOptions& options) {
   std::vector<char> is_cached(requests.size());
-  for (const std::filesystem::path& folder : folders) {
-    const Kept kept(folder, options);
+  for (const fs::path& folder : folders) {
+    const RecordsOfAnyBuild earlier(folder);
     share(requests.size(), [&](std::size_t i) {
-      if (is_cached[i] == 0) is_cached[i] = kept.has(requests[i]) ? 1 : 0;
+      if (is_cached[i] != 0 || options.force || !earlier.has(requests[i])) return;
+      std::optional<Record> record = Store::find_in(folder, requests[i]);
+      if (!record && options.reuse) record = earlier.find(requests[i]);
+      is_cached[i] = record && !options.retry.contains(record->status) ? 1 : 0;
     });
   }
   return is_cached;
 }
 
 }  // namespace
+
+std::vector<RecordOutline> record_outlines(const std::vector<fs::path>& folders,
+                                           const Listener& listener) {
+  std::vector<std::pair<std::size_t, std::string>> files;  // a path for each would be a kilobyte
+  for (std::size_t i = 0; i < folders.size(); ++i)
+    for (std::string& name : names_in(folders[i] / "runs"))
+      if (name.ends_with(".json")) files.emplace_back(i, std::move(name));
+  std::vector<std::optional<RecordOutline>> seen(files.size());
+  const auto read = [&](std::size_t i) {
+    seen[i] = outline_of(folders[files[i].first] / "runs" / files[i].second);
+  };
+  share(files.size(), read, listener);
+  std::vector<RecordOutline> all;
+  for (std::optional<RecordOutline>& one : seen)
+    if (one) all.push_back(std::move(*one));
+  return all;
+}
+
+EarlierTimes::EarlierTimes(const std::vector<RecordOutline>& earlier) {
+  for (const RecordOutline& one : earlier) {
+    if (one.status == Status::interrupted || !std::isfinite(one.wall_seconds)) continue;
+    seconds_[one.cell].push_back(one.wall_seconds);
+    seconds_[question_of(one.problem, one.optimizer, one.budget, one.threads)].push_back(
+        one.wall_seconds);
+  }
+  for (auto& [cell, seconds] : seconds_) std::ranges::sort(seconds);
+}
+
+std::optional<double> EarlierTimes::of(const Request& request) const {
+  if (seconds_.empty()) return std::nullopt;
+  auto found = seconds_.find(request.cell);
+  if (found == seconds_.end())
+    found = seconds_.find(
+        question_of(request.problem.spec, request.optimizer.spec, request.budget, request.threads));
+  if (found == seconds_.end()) return std::nullopt;
+  return found->second[found->second.size() / 2];
+}
 
 void PreviewCounts::add(const PreviewedCell& cell) {
   ++cells;
@@ -163,9 +182,9 @@ void PreviewCounts::add(const PreviewedCell& cell) {
 }
 
 std::optional<double> PreviewCounts::seconds() const {
-  if (missing > 0 && timed_ == 0) return std::nullopt;
-  return missing == 0 ? 0
-                      : timed_seconds_ * static_cast<double>(missing) / static_cast<double>(timed_);
+  if (missing == 0) return 0;
+  if (timed_ == 0) return std::nullopt;
+  return timed_seconds_ * static_cast<double>(missing) / static_cast<double>(timed_);
 }
 
 PreviewCounts counts_of(const std::vector<PreviewedCell>& cells) {
@@ -175,18 +194,30 @@ PreviewCounts counts_of(const std::vector<PreviewedCell>& cells) {
 }
 
 Preview preview(const Catalog& catalog, const std::vector<Request>& requests,
-                const std::vector<std::filesystem::path>& folders, const EarlierTimes& earlier,
+                const std::vector<fs::path>& folders, const EarlierTimes& earlier,
                 const PreviewOptions& options) {
-  const Probes probes(catalog, requests);
+  const std::vector<Setting> settings = settings_of(requests);
+  const std::vector<Reasons> probes = probes_of(catalog, settings);
+  std::map<std::string_view, const Reasons*> reasons;  // by spec, and else by the problem's name
+  for (std::size_t i = 0; i < probes.size(); ++i) {
+    reasons[settings[i].problem->spec] = &probes[i];
+    reasons.try_emplace(settings[i].problem->name, &probes[i]);
+  }
+  const auto why_inapplicable = [&](const Request& request) -> std::string {
+    auto known = reasons.find(request.problem.spec);
+    if (known == reasons.end()) known = reasons.find(request.problem.name);
+    if (known == reasons.end()) return "";
+    const auto reason = known->second->find(request.optimizer.spec);
+    return reason == known->second->end() ? "" : reason->second;
+  };
   const std::vector<char> is_cached = cached_in(folders, requests, options);
-  Preview all{.cells = {}, .likened = probes.unknown()};
+  Preview all{.cells = {}, .likened = settings.size() - probes.size()};
   all.cells.reserve(requests.size());
   for (std::size_t i = 0; i < requests.size(); ++i) {
-    const Request& request = requests[i];
-    PreviewedCell cell{.request = &request,
+    PreviewedCell cell{.request = &requests[i],
                        .is_cached = is_cached[i] != 0,
-                       .why_inapplicable = probes.why_inapplicable(request)};
-    if (cell.why_inapplicable.empty()) cell.seconds = earlier.of(request);
+                       .why_inapplicable = why_inapplicable(requests[i])};
+    if (cell.why_inapplicable.empty()) cell.seconds = earlier.of(requests[i]);
     all.timed += cell.seconds.has_value();
     all.cells.push_back(std::move(cell));
   }

@@ -1,16 +1,50 @@
-// A preview of a plan: which cells are cached, which cannot exist and why, and
-// how long the rest may take.
+// A preview of a plan: which cells are cached, which cannot exist and why, and how long the rest
+// may take by what earlier runs took.
 #pragma once
 
+#include <filesystem>
+#include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
 
 #include "benchmarks/plan/catalog.h"
-#include "benchmarks/run/prediction.h"
-#include "benchmarks/run/store.h"
+#include "core/records/request.h"
+#include "core/status.h"
+#include "core/threads.h"
 
 namespace isoline::benchmarks {
+
+// The few values that are read from records by the hundred thousand.
+struct RecordOutline {
+  std::string cell;
+  std::string problem, optimizer;  // specs
+  Budget budget;
+  int threads = 1;
+  Status status = Status::running;
+  double wall_seconds = 0;
+  std::string started;  // "2026-01-31T12:00:00Z"
+};
+
+// One a record of these result folders. Files that cannot be read as records are passed over, and
+// so are folders that are not there.
+std::vector<RecordOutline> record_outlines(const std::vector<std::filesystem::path>& folders,
+                                           const Listener& listener = {});
+
+// The times of cells in earlier runs of any build.
+class EarlierTimes {
+ public:
+  EarlierTimes() = default;
+  explicit EarlierTimes(const std::vector<RecordOutline>& earlier);
+
+  // The median over the records of this very cell; else over those of other seeds with the same
+  // problem, optimizer, budget and threads. None where there is neither.
+  std::optional<double> of(const Request& request) const;
+
+ private:
+  std::map<std::string, std::vector<double>> seconds_;  // by cell and by question; sorted
+};
 
 struct PreviewedCell {
   const Request* request;
@@ -49,9 +83,9 @@ struct PreviewOptions {
   std::set<Status> retry = {};  // but those that ended so
 };
 
-// Looks into result folders without touching them: a cell is cached where one of them has it.
-// Problems are made in processes of their own; of a sweep over more settings than can be made in a
-// second, the rest are taken to be like the first.
+// Looks into result folders without touching them: a cell is cached where one of them has it. Of a
+// sweep over more settings of problems than can be made in a second, the rest are likened to the
+// first.
 Preview preview(const Catalog& catalog, const std::vector<Request>& requests,
                 const std::vector<std::filesystem::path>& folders, const EarlierTimes& earlier = {},
                 const PreviewOptions& options = {});

@@ -1,4 +1,5 @@
-// /proc, read by plain calls: a limit that is looked at fifty times a second must cost little.
+// Groups of processes by fork, a process group, a pidfd and inherited marks. /proc is read by plain
+// calls: a limit that is looked at fifty times a second must cost little.
 #include "benchmarks/run/process_group.h"
 
 #include <fcntl.h>
@@ -13,29 +14,22 @@
 #include <array>
 #include <atomic>
 #include <cerrno>
-#include <charconv>
-#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <new>
-#include <optional>
 #include <stdexcept>
-#include <string>
 #include <string_view>
+#include <utility>
 
 #include "core/clock.h"
+#include "core/status.h"
 
 namespace isoline::benchmarks {
 namespace {
 
 namespace fs = std::filesystem;
-
-// The limit that carries the mark: the number of file locks. Linux has ignored this limit
-// since 2.4, and every process inherits it.
-constexpr auto kMarked = static_cast<__rlimit_resource>(RLIMIT_LOCKS);
-constexpr std::string_view kMarkedLine = "Max file locks";
 
 // Empty where it cannot be read.
 std::string process_text(const std::string& path) {
@@ -50,45 +44,97 @@ std::string process_text(const std::string& path) {
   return text;
 }
 
-void append_numbers(const std::string& text, std::vector<pid_t>& numbers) {
-  const char* at = text.c_str();
-  for (char* end = nullptr;; at = end) {
-    const long number = std::strtol(at, &end, 10);
-    if (end == at) return;
-    numbers.push_back(static_cast<pid_t>(number));
-  }
-}
-
-// 0 where a name of /proc is no process.
-pid_t number_of(const std::string& name) {
-  pid_t process = 0;
-  const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), process);
-  return error == std::errc() && end == name.data() + name.size() ? process : 0;
+// The number behind a word of a file of a process; 0 without one, as behind "unlimited".
+std::uint64_t number_behind(std::string_view word, pid_t process, const char* file) {
+  const std::string text = process_text(fmt::format("/proc/{}/{}", process, file));
+  const std::size_t at = text.find(word);
+  return at == std::string::npos ? 0 : std::strtoull(text.c_str() + at + word.size(), nullptr, 10);
 }
 
 std::vector<pid_t> all_processes() {
   std::vector<pid_t> all;
   std::error_code error;
   for (fs::directory_iterator at("/proc", error), end; !error && at != end; at.increment(error))
-    if (const pid_t process = number_of(at->path().filename().string()); process > 0)
-      all.push_back(process);
+    if (const long process = std::strtol(at->path().filename().c_str(), nullptr, 10); process > 0)
+      all.push_back(static_cast<pid_t>(process));
   return all;
 }
 
-// The kernel may have been built without lists of children: then every process says its parent.
-std::vector<pid_t> children_by_their_parent(pid_t process) {
-  std::vector<pid_t> children = all_processes();
-  std::erase_if(children, [=](pid_t child) {
-    const auto figures = figures_of(child);
-    return !figures || figures->parent != process;
-  });
-  return children;
+// The mark that a process sets and all its descendants inherit, in every session, group and
+// program: its limit of file locks, which Linux has ignored since 2.4. It is a flag, the process
+// that set it, and a number that no other of its groups has; 0: no mark.
+constexpr auto kMarked = static_cast<__rlimit_resource>(RLIMIT_LOCKS);
+constexpr std::uint64_t kOurs = 0x1501;
+constexpr int kProcessBits = 22, kCountBits = 24;  // the kernel's most, and enough
+
+std::uint64_t mark_of(pid_t process) { return number_behind("Max file locks", process, "limits"); }
+
+std::uint64_t new_mark() {
+  static std::uint64_t count = 0;
+  const std::uint64_t number = ++count % (std::uint64_t{1} << kCountBits);
+  return (kOurs << kProcessBits | static_cast<std::uint64_t>(getpid())) << kCountBits | number;
 }
 
-bool has_lists_of_children() {
-  static const bool has =
-      access(fmt::format("/proc/self/task/{}/children", getpid()).c_str(), R_OK) == 0;
-  return has;
+// The process that set it; 0 if it is not one of our marks.
+pid_t giver_of(std::uint64_t mark) {
+  const std::uint64_t head = mark >> kCountBits;
+  const std::uint64_t process = head % (std::uint64_t{1} << kProcessBits);
+  return head >> kProcessBits == kOurs ? static_cast<pid_t>(process) : 0;
+}
+
+// The children of this process that lead a group: a table that a handler of signals may read.
+std::array<std::atomic<pid_t>, 4096> leaders{};
+
+bool is_leader(pid_t process) {
+  return std::ranges::any_of(leaders, [=](const auto& leader) { return leader == process; });
+}
+
+double seconds_of(const timeval& time) {
+  return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+}
+
+// In the child: dies with its parent, leaves the keyboard to it, dumps no core.
+void settle(pid_t parent, std::uint64_t mark) {
+  setpgid(0, 0);
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (getppid() != parent) _exit(1);
+  const rlimit marked{mark, mark}, none{0, 0};
+  setrlimit(kMarked, &marked);  // refused only within a marked process: then that mark stays
+  for (auto& leader : leaders) leader = 0;  // they are its parent's
+  std::signal(SIGINT, SIG_IGN);
+  for (const int signal : {SIGTERM, SIGHUP, SIGTSTP, SIGXFSZ}) std::signal(signal, SIG_DFL);
+  setrlimit(RLIMIT_CORE, &none);
+  const int nothing = open("/dev/null", O_RDONLY | O_CLOEXEC);
+  if (nothing >= 0) dup2(nothing, STDIN_FILENO);
+}
+
+// --- interrupts: handlers call only safe functions
+
+constexpr std::array kHandled = {SIGINT, SIGTERM, SIGHUP, SIGTSTP};
+
+volatile std::sig_atomic_t heard = 0;  // what is asked for
+bool is_guarded = false;
+std::array<struct sigaction, kHandled.size()> earlier_actions;
+
+void signal_all_groups(int signal) {
+  for (const auto& leader : leaders)
+    if (const pid_t process = leader; process > 0) ::kill(-process, signal);
+}
+
+void hear(int signal, siginfo_t* sent, void*) {
+  if (signal == SIGTSTP) {
+    signal_all_groups(SIGSTOP);
+    raise(SIGSTOP);
+    return signal_all_groups(SIGCONT);
+  }
+  const pid_t group = sent->si_code <= 0 && sent->si_pid > 0 ? getpgid(sent->si_pid) : -1;
+  if (group > 0 && is_leader(group)) return;  // from a process of one of our groups
+  if (asked_to_end() == Asked::stop) {
+    signal_all_groups(SIGKILL);
+    _exit(kInterrupted);
+  }
+  const bool is_first_ctrl_c = signal == SIGINT && asked_to_end() == Asked::nothing;
+  heard = static_cast<int>(is_first_ctrl_c ? Asked::finish : Asked::stop);
 }
 
 }  // namespace
@@ -116,52 +162,27 @@ std::optional<ProcessFigures> figures_of(pid_t process) {
                         .address_space_bytes = static_cast<std::int64_t>(address_space)};
 }
 
-std::int64_t proportional_bytes(pid_t process) {
-  const std::string text = process_text(fmt::format("/proc/{}/smaps_rollup", process));
-  constexpr std::string_view kLine = "\nPss:";
-  const std::size_t line = text.find(kLine);
-  if (line == std::string::npos) return 0;
-  return std::strtoll(text.c_str() + line + kLine.size(), nullptr, 10) * 1024;
-}
-
 std::vector<pid_t> children_of(pid_t process) {
-  if (!has_lists_of_children()) return children_by_their_parent(process);
+  static const bool has_lists =
+      access(fmt::format("/proc/self/task/{}/children", getpid()).c_str(), R_OK) == 0;
   std::vector<pid_t> children;
+  if (!has_lists) {  // in a kernel that was built without them every process says its parent
+    for (const pid_t child : all_processes())
+      if (const auto figures = figures_of(child); figures && figures->parent == process)
+        children.push_back(child);
+    return children;
+  }
   std::error_code error;
   const fs::path threads = fmt::format("/proc/{}/task", process);
   for (fs::directory_iterator thread(threads, error), end; !error && thread != end;
-       thread.increment(error))
-    append_numbers(process_text(thread->path() / "children"), children);
+       thread.increment(error)) {
+    const std::string text = process_text(thread->path() / "children");
+    char* at = nullptr;
+    for (const char* from = text.c_str(); const long child = std::strtol(from, &at, 10); from = at)
+      children.push_back(static_cast<pid_t>(child));
+  }
   return children;
 }
-
-std::vector<pid_t> processes_of_this_namespace() {
-  const auto namespace_of = [](const std::string& process) {
-    std::error_code error;
-    return fs::read_symlink("/proc/" + process + "/ns/pid",
-                            error);  // empty if the system does not report it
-  };
-  const fs::path own = namespace_of("self");
-  std::vector<pid_t> all = all_processes();
-  std::erase_if(all, [&](pid_t process) {
-    return own.empty() || namespace_of(std::to_string(process)) != own;
-  });
-  return all;
-}
-
-void mark_this_process(std::uint64_t mark) {
-  const rlimit both{mark, mark};
-  setrlimit(kMarked, &both);  // refused only within a marked process: then that mark stays
-}
-
-std::uint64_t mark_of(pid_t process) {
-  const std::string text = process_text(fmt::format("/proc/{}/limits", process));
-  const std::size_t line = text.find(kMarkedLine);
-  if (line == std::string::npos) return 0;
-  return std::strtoull(text.c_str() + line + kMarkedLine.size(), nullptr, 10);  // "unlimited": 0
-}
-
-// Limits and leave of child processes.
 
 void limit_memory([[maybe_unused]] std::int64_t bytes) {
 #ifndef ISOLINE_SANITIZE  // the sanitizers' shadow memory does not fit under an address-space limit
@@ -175,11 +196,6 @@ void limit_memory([[maybe_unused]] std::int64_t bytes) {
   std::set_new_handler([] { throw std::bad_alloc(); });
 }
 
-void leave() {
-  std::fflush(stdout);
-  _exit(0);
-}
-
 std::string signal_name(int signal) {
   return fmt::format("signal {} ({})", signal, strsignal(signal));
 }
@@ -190,65 +206,36 @@ std::string end_of_process(int wait_status) {
   return code == 0 ? "it exited without an answer" : fmt::format("it exited with code {}", code);
 }
 
-// Groups of processes by fork, a process group, a pidfd and inherited marks.
-
-namespace {
-
-// The children of this process that lead a group: a table that a handler of signals may read.
-constexpr std::size_t kMostGroups = 4096;
-std::array<std::atomic<pid_t>, kMostGroups> leaders{};
-
-bool is_leader(pid_t process) {
-  return std::ranges::any_of(leaders, [=](const auto& leader) { return leader == process; });
-}
-
-std::size_t free_slot() {
+void ProcessGroup::start(const std::function<void()>& work) {
+  prctl(PR_SET_CHILD_SUBREAPER, 1);
   const auto* const free =
       std::ranges::find_if(leaders, [](const auto& leader) { return leader == 0; });
   if (free == leaders.end()) throw std::runtime_error("too many processes at a time");
-  return static_cast<std::size_t>(free - leaders.begin());
-}
-
-// A mark: a flag, the process that set it, and a number that none of its other groups has.
-constexpr std::uint64_t kOurs = 0x1501;
-constexpr int kProcessBits = 22, kCountBits = 24;  // the kernel's most, and enough
-
-std::uint64_t new_mark() {
-  static std::uint64_t count = 0;
-  const std::uint64_t number = ++count % (std::uint64_t{1} << kCountBits);
-  return (kOurs << kProcessBits | static_cast<std::uint64_t>(getpid())) << kCountBits | number;
-}
-
-// The process that set it; 0 if it is not one of our marks.
-pid_t giver_of(std::uint64_t mark) {
-  const std::uint64_t head = mark >> kCountBits;
-  const std::uint64_t process = head % (std::uint64_t{1} << kProcessBits);
-  return head >> kProcessBits == kOurs ? static_cast<pid_t>(process) : 0;
-}
-
-double seconds_of(const timeval& time) {
-  return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
-}
-
-// In the child: dies with its parent, leaves the keyboard to it, dumps no core.
-void settle(pid_t parent, std::uint64_t mark) {
-  setpgid(0, 0);
-  prctl(PR_SET_PDEATHSIG, SIGKILL);
-  if (getppid() != parent) _exit(1);
-  mark_this_process(mark);
-  for (auto& leader : leaders) leader = 0;  // they are its parent's
-  std::signal(SIGINT, SIG_IGN);
-  for (const int signal : {SIGTERM, SIGHUP, SIGTSTP, SIGXFSZ}) std::signal(signal, SIG_DFL);
-  const rlimit none{0, 0};
-  setrlimit(RLIMIT_CORE, &none);
-  const int nothing = open("/dev/null", O_RDONLY | O_CLOEXEC);
-  if (nothing >= 0) dup2(nothing, STDIN_FILENO);
-}
-
-}  // namespace
-
-ProcessGroup::~ProcessGroup() {
-  if (is_running()) end();
+  slot_ = static_cast<std::size_t>(free - leaders.begin());
+  mark_ = new_mark();
+  reaped_seconds_ = 0;
+  peak_bytes_ = 0;
+  std::fflush(nullptr);  // or the child would print what is still buffered again
+  // Signals wait: one that the child sends at once must find it in the table.
+  sigset_t all, before;
+  sigfillset(&all);
+  sigprocmask(SIG_SETMASK, &all, &before);
+  const pid_t parent = getpid(), child = fork();
+  if (child == 0) {
+    settle(parent, mark_);
+    sigprocmask(SIG_SETMASK, &before, nullptr);
+    work();
+    _exit(0);
+  }
+  const int error = errno;
+  if (child > 0) {
+    setpgid(child, child);  // here too: it may be signalled before it has come to its own call
+    leaders[slot_] = leader_ = child;
+    descriptor_ = static_cast<int>(syscall(SYS_pidfd_open, child, 0));
+  }
+  sigprocmask(SIG_SETMASK, &before, nullptr);
+  if (child < 0)
+    throw std::runtime_error(fmt::format("cannot start a process: {}", strerror(error)));
 }
 
 ProcessGroup::End ProcessGroup::end() {
@@ -259,29 +246,6 @@ ProcessGroup::End ProcessGroup::end() {
     waitid(P_PID, static_cast<id_t>(leader_), &ended, WEXITED | WNOWAIT);
   }
   return {};
-}
-
-void ProcessGroup::start(const std::function<void()>& work) {
-  prctl(PR_SET_CHILD_SUBREAPER, 1);
-  slot_ = free_slot();
-  mark_ = new_mark();
-  reaped_seconds_ = 0;
-  peak_bytes_ = 0;
-  std::fflush(nullptr);  // or the child would print what is still buffered again
-  const HeldSignals held;
-  const pid_t parent = getpid(), child = fork();
-  if (child < 0)
-    throw std::runtime_error(fmt::format("cannot start a process: {}", strerror(errno)));
-  if (child == 0) {
-    settle(parent, mark_);
-    held.release();
-    work();
-    _exit(0);
-  }
-  setpgid(child, child);  // here too: it may be signalled before it has come to its own call
-  leader_ = child;
-  leaders[slot_] = child;
-  descriptor_ = static_cast<int>(syscall(SYS_pidfd_open, child, 0));
 }
 
 // Descendants of ended parents are now children of this process. Those that have ended are reaped
@@ -299,17 +263,12 @@ std::vector<pid_t> ProcessGroup::strays() {
   return children;
 }
 
-std::vector<pid_t> ProcessGroup::members() {
+ProcessGroup::Usage ProcessGroup::usage(std::int64_t exact_above_bytes) {
   std::vector<pid_t> all = strays();
   if (is_running()) all.push_back(leader_);
   for (std::size_t i = 0; i < all.size(); ++i)
     for (const pid_t child : children_of(all[i]))
       if (std::ranges::find(all, child) == all.end()) all.push_back(child);
-  return all;
-}
-
-ProcessGroup::Usage ProcessGroup::usage(std::int64_t exact_above_bytes) {
-  const std::vector<pid_t> all = members();
   Usage usage{.processes = all.size(), .processor_seconds = reaped_seconds_};
   for (const pid_t process : all) {
     const auto figures = figures_of(process);
@@ -319,7 +278,8 @@ ProcessGroup::Usage ProcessGroup::usage(std::int64_t exact_above_bytes) {
   }
   if (all.size() > 1 && usage.resident_bytes > exact_above_bytes) {  // what they share counts once
     std::int64_t exact = 0;
-    for (const pid_t process : all) exact += proportional_bytes(process);
+    for (const pid_t process : all)
+      exact += 1024 * static_cast<std::int64_t>(number_behind("\nPss:", process, "smaps_rollup"));
     if (exact > 0) usage.resident_bytes = exact;
   }
   peak_bytes_ = std::max(peak_bytes_, usage.resident_bytes);
@@ -348,17 +308,12 @@ std::optional<ProcessGroup::End> ProcessGroup::collect() {
   End end;
   rusage used{};
   wait4(leader_, &end.wait_status, 0, &used);
-  leave_table();
+  leaders[slot_] = leader_ = 0;
+  if (descriptor_ >= 0) close(descriptor_);
+  descriptor_ = -1;
   reap_strays();
   end.peak_memory_bytes = std::max(std::int64_t{used.ru_maxrss} * 1024, peak_bytes_);
   return end;
-}
-
-void ProcessGroup::leave_table() {
-  leaders[slot_] = 0;
-  if (descriptor_ >= 0) close(descriptor_);
-  descriptor_ = -1;
-  leader_ = 0;
 }
 
 // In rounds: the children of an ended process appear in the next round, until a round finds none. A
@@ -378,23 +333,40 @@ void ProcessGroup::reap_strays() {
 }
 
 void end_what_killed_runs_left() {
-  for (const pid_t process : processes_of_this_namespace()) {
+  const auto namespace_of = [](const std::string& process) {  // empty if it cannot be read
+    std::error_code error;
+    return fs::read_symlink("/proc/" + process + "/ns/pid", error);
+  };
+  const fs::path own = namespace_of("self");  // in another one the givers have other numbers
+  for (const pid_t process : all_processes()) {
     const pid_t giver = giver_of(mark_of(process));
     const bool is_orphan = giver > 0 && ::kill(giver, 0) != 0 && errno == ESRCH;
-    if (is_orphan) ::kill(process, SIGKILL);
+    if (is_orphan && !own.empty() && namespace_of(std::to_string(process)) == own)
+      ::kill(process, SIGKILL);
   }
 }
 
-void signal_all_groups(int signal) noexcept {
-  for (const auto& leader : leaders) {
-    const pid_t process = leader;
-    if (process > 0) ::kill(-process, signal);
+InterruptGuard::InterruptGuard() : is_outermost_(!std::exchange(is_guarded, true)) {
+  if (!is_outermost_) return;
+  heard = 0;
+  for (std::size_t i = 0; i < kHandled.size(); ++i) {
+    struct sigaction action {};
+    action.sa_sigaction = hear;
+    action.sa_flags = SA_SIGINFO | (kHandled[i] == SIGTSTP ? SA_RESTART : 0);
+    sigaction(kHandled[i], nullptr, &earlier_actions[i]);
+    // An ignored signal stays ignored: nohup and background shells set this.
+    if (earlier_actions[i].sa_handler != SIG_IGN) sigaction(kHandled[i], &action, nullptr);
   }
 }
 
-bool is_of_a_group(pid_t process) noexcept {
-  const pid_t group = process > 0 ? getpgid(process) : -1;
-  return group > 0 && is_leader(group);
+InterruptGuard::~InterruptGuard() {
+  if (!is_outermost_) return;
+  for (std::size_t i = 0; i < kHandled.size(); ++i)
+    sigaction(kHandled[i], &earlier_actions[i], nullptr);
+  is_guarded = false;
+  heard = 0;
 }
+
+Asked asked_to_end() { return static_cast<Asked>(heard); }
 
 }  // namespace isoline::benchmarks

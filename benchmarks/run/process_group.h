@@ -1,9 +1,8 @@
 // A child process and all its descendants, as one group: started, measured, stopped, killed and
 // reaped together. Descendants cannot escape by a session of their own or by outliving their
-// parent: this process is a subreaper, and every descendant carries the mark of its group.
-//
-// A process with the rights of the user can still end this process by SIGKILL;
-// docs/running-a-matrix.md states the limits.
+// parent: this process is a subreaper, and every descendant carries the mark of its group. Only
+// SIGKILL of this process escapes it (docs/running-a-matrix.md). And the signals that ask this
+// process to end while it has such children.
 #pragma once
 
 #include <sys/types.h>
@@ -15,7 +14,7 @@
 #include <string>
 #include <vector>
 
-#include "core/foreign/child.h"
+#include "core/foreign/foreign.h"
 
 namespace isoline::benchmarks {
 
@@ -26,47 +25,13 @@ struct ProcessFigures {
 };
 std::optional<ProcessFigures> figures_of(pid_t process);  // nothing where it is gone
 
-// Its resident memory, with its share of shared pages; 0 if the system does not report it.
-std::int64_t proportional_bytes(pid_t process);
-
 std::vector<pid_t> children_of(pid_t process);  // of all its threads, those that ended included
-std::vector<pid_t> processes_of_this_namespace();
-
-// A mark that a process sets and all its descendants inherit, in every session, group and program;
-// 0 if there is no mark.
-void mark_this_process(std::uint64_t mark);
-std::uint64_t mark_of(pid_t process);
-
-// Signals that wait while a child is made: one that it sends at once must find it in the table of
-// this process' children.
-
-class HeldSignals {
- public:
-  HeldSignals() {
-    sigset_t all;
-    sigfillset(&all);
-    sigprocmask(SIG_SETMASK, &all, &before_);
-  }
-  HeldSignals(const HeldSignals&) = delete;
-  HeldSignals& operator=(const HeldSignals&) = delete;
-  ~HeldSignals() { release(); }
-  void release() const { sigprocmask(SIG_SETMASK, &before_, nullptr); }
-
- private:
-  sigset_t before_;
-};
-
-// The setup of every isolated child, and the meaning of its end by a signal.
 
 // Limits the memory of this process beyond its present use: a larger allocation throws.
 void limit_memory(std::int64_t bytes);
 
-[[noreturn]] void leave();  // with its output written, and nothing else done
-
-std::string signal_name(int signal);  // "signal 11 (Segmentation fault)"
-
-// The end of a child without an answer: "signal … ended it", "it exited …".
-std::string end_of_process(int wait_status);
+std::string signal_name(int signal);          // "signal 11 (Segmentation fault)"
+std::string end_of_process(int wait_status);  // without an answer: "signal … ended it"
 
 class ProcessGroup {
  public:
@@ -81,7 +46,7 @@ class ProcessGroup {
   };
 
   ProcessGroup() = default;
-  ~ProcessGroup();  // kills what still runs
+  ~ProcessGroup() { end(); }
   ProcessGroup(const ProcessGroup&) = delete;
   ProcessGroup& operator=(const ProcessGroup&) = delete;
 
@@ -89,7 +54,6 @@ class ProcessGroup {
   // does not reach it, and it dies with this process.
   void start(const std::function<void()>& work);
   bool is_running() const { return leader_ > 0; }
-  pid_t leader() const { return leader_; }
   int descriptor() const { return descriptor_; }  // readable when the child has ended
 
   Usage usage(std::int64_t exact_above_bytes);  // memory is shared out exactly where it is more
@@ -101,9 +65,7 @@ class ProcessGroup {
 
  private:
   std::vector<pid_t> strays();
-  std::vector<pid_t> members();
   void reap_strays();
-  void leave_table();
 
   pid_t leader_ = 0;
   int descriptor_ = -1;
@@ -117,9 +79,22 @@ class ProcessGroup {
 // Processes of cells whose program was killed by SIGKILL, and so could not end them.
 void end_what_killed_runs_left();
 
-// To every group of this process; for handlers of signals.
-void signal_all_groups(int signal) noexcept;
-// Whether a process belongs to one of our process groups; for signal handlers.
-bool is_of_a_group(pid_t process) noexcept;
+// While a guard exists, Ctrl-C asks to finish the running cells. A second Ctrl-C, SIGTERM (of a
+// scheduler, for example) or a closed terminal asks to stop them; one more ends this process and
+// all cells at once. Ctrl-Z stops the cells too, until all continue. Signals that a cell sends to
+// its parent are ignored. A guard within another one does nothing.
+class InterruptGuard {
+ public:
+  InterruptGuard();
+  ~InterruptGuard();
+  InterruptGuard(const InterruptGuard&) = delete;
+  InterruptGuard& operator=(const InterruptGuard&) = delete;
+
+ private:
+  bool is_outermost_;
+};
+
+enum class Asked { nothing, finish, stop };
+Asked asked_to_end();  // what the signals since the outermost guard began ask for
 
 }  // namespace isoline::benchmarks

@@ -1,4 +1,4 @@
-// The pace of what has ended, over what is to come.
+// The pace of what has ended, over what is to come, and the line that shows it.
 #include "benchmarks/run/progress.h"
 
 #include <fmt/format.h>
@@ -36,11 +36,7 @@ std::optional<double> TimeLeft::at(double now) const {
   return std::max(0.0, left - (now - last_));
 }
 
-// The progress line, its rate and its time left.
-
 namespace {
-
-constexpr double kLiveSeconds = 0.1, kPlainSeconds = 10;
 
 double seconds_since(std::int64_t nanoseconds) {
   return 1e-9 * static_cast<double>(monotonic_nanoseconds() - nanoseconds);
@@ -52,8 +48,7 @@ std::size_t terminal_width() {
   return ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : kUsual;
 }
 
-// The only control sequence that we emit.
-void clear_line() { std::fputs("\r\x1b[K", stderr); }
+void clear_line() { std::fputs("\r\x1b[K", stderr); }  // the only control sequence that we emit
 
 }  // namespace
 
@@ -89,13 +84,6 @@ void Progress::finished(std::optional<double> predicted_seconds) {
   time_left_.finish(predicted_seconds, seconds_since(begun_));
 }
 
-std::string Progress::left_text(double elapsed, double rate) const {
-  const std::optional<double> predicted = time_left_.at(elapsed);
-  if (predicted && *predicted <= 0) return "longer than predicted";
-  const double seconds = predicted.value_or(static_cast<double>(total_ - already_ - done_) / rate);
-  return duration_text(seconds) + " left";
-}
-
 std::string Progress::line() const {
   const std::int64_t done = already_ + done_;
   std::string text = fmt::format("{} {}/{}", what_, done, total_);
@@ -103,13 +91,17 @@ std::string Progress::line() const {
   if (done_ > 0 && elapsed > 0) {
     const double rate = static_cast<double>(done_) / elapsed;
     text += fmt::format("  {:.3g}/s", rate);
-    if (done < total_) text += "  " + left_text(elapsed, rate);
+    const std::optional<double> predicted = time_left_.at(elapsed);
+    const double left = predicted.value_or(static_cast<double>(total_ - done) / rate);
+    if (done < total_)
+      text +=
+          left > 0 || !predicted ? "  " + duration_text(left) + " left" : "  longer than predicted";
   }
   return current_.empty() ? text : text + "  " + current_;
 }
 
 void Progress::show(bool now) {
-  const double pause = style_ == Style::live ? kLiveSeconds : kPlainSeconds;
+  const double pause = style_ == Style::live ? 0.1 : 10;  // seconds
   if (style_ == Style::silent || (!now && seconds_since(shown_) < pause)) return;
   shown_ = monotonic_nanoseconds();
   if (style_ == Style::live) {

@@ -1,5 +1,4 @@
-// The progress of long work: one live line on a terminal, a plain line every ten seconds in a
-// pipe.
+// The progress of long work: one live line on a terminal, a plain line every ten seconds in a pipe.
 #pragma once
 
 #include <cstdint>
@@ -47,7 +46,6 @@ class Progress {
 
  private:
   std::string line() const;
-  std::string left_text(double elapsed, double rate) const;
 
   Style style_;
   std::string what_, current_;

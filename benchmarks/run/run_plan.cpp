@@ -1,52 +1,103 @@
-// The used rows of rates, joined to those of the folder.
+// A plan checked, stored, described and run; and what its folder is called.
 #include "benchmarks/run/run_plan.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <set>
 
-#include "benchmarks/run/certificate.h"
-#include "benchmarks/run/interrupts.h"
 #include "benchmarks/run/sheets.h"
-#include "benchmarks/run/store.h"
 #include "core/clock.h"
-#include "core/digest.h"
+#include "core/errors.h"
 #include "core/files.h"
 #include "core/json.h"
-#include "core/options.h"
+#include "optimizers/optimizer.h"
+#include "problems/conformance.h"
+#include "problems/problem.h"
 
 namespace isoline::benchmarks {
 namespace {
 
-using RowsByPair = std::map<std::pair<std::string, std::string>, Json>;
-
-// The cells of an earlier plan; a damaged file is moved away, and written again.
-RowsByPair stored_rows(const std::filesystem::path& file, Store& store) {
-  RowsByPair rows;
-  if (!is_there(file)) return rows;
-  try {
-    const Json table = read_json(file);
-    for (const Json& row : table.at("rows")) rows[{row.at("problem"), row.at("optimizer")}] = row;
-  } catch (const std::exception& error) {
-    rows.clear();
-    store.set_aside(file, error.what());
-  }
-  return rows;
+// Empty if every property holds.
+std::string broken_property_of(const Catalog& catalog, const Request& request) {
+  const Problem problem = make_problem(catalog, request.problem, request.seed);
+  RandomStream stream(request.seed, request.problem.name, "check");
+  for (const problems::Finding& finding : problems::examine(problem, stream))
+    if (!finding.holds())
+      return fmt::format("'{}' is violated: {:.2e}, at most {:.1e} is allowed ({})",
+                         finding.property, finding.figure, finding.limit, finding.reason);
+  return "";
 }
 
-// "direct" of "direct.json": what a search in that table alone calls it.
-std::string table_of(const std::string& origin) { return origin.substr(0, origin.rfind(".json")); }
+// UsageError with the first violated property of a problem of another program, and the measured
+// value, or with the reason if a problem cannot be checked, since it fails or does not answer.
+// Checks only problems without records in the store, each at the first of its seeds, in its own
+// process.
+void require_certified(const Catalog& catalog, const std::vector<Request>& requests,
+                       const Store& store, Progress::Style style) {
+  constexpr double kCertificateSeconds = 120;
+  std::set<std::string> seen;
+  std::vector<const Request*> firsts;
+  for (const Request& request : requests)
+    if (request.problem.foreign && !store.has(request) && seen.insert(request.problem.spec).second)
+      firsts.push_back(&request);
+  Progress progress(style, "certified", static_cast<std::int64_t>(firsts.size()), 0);
+  for (const Request* request : firsts) {
+    progress.started(request->problem.spec);
+    const auto [broken, failure] =
+        isolated_text([&] { return broken_property_of(catalog, *request); }, kCertificateSeconds,
+                      Limits{}.memory_bytes, [&] { progress.show(); });
+    if (asked_to_end() != Asked::nothing) return;
+    const std::string reason = broken.value_or("it cannot be checked: " + failure);
+    require(reason.empty(), [&] {
+      return fmt::format("{} fails its checks and does not run: {}; `isoline check` lists all",
+                         request->problem.spec, reason);
+    });
+    progress.finished({});
+  }
+}
 
 }  // namespace
 
+void require_sound(const Catalog& catalog, const std::vector<Request>& requests) {
+  constexpr double kSeconds = 60;
+  const auto first_complaint = [&]() -> std::string {
+    std::set<std::string> problems, optimizers;
+    for (const Request& request : requests) try {
+        const Component &problem = request.problem, &optimizer = request.optimizer;
+        if (optimizers.insert(optimizer.spec).second)
+          catalog.optimizers.at(optimizer.name).make(optimizer.options, catalog.optimizers);
+        // Direct problems were checked whole when their options were completed.
+        if (problem.is_learned && problems.insert(problem.spec).second)
+          make_problem(catalog, problem, request.seed);
+      } catch (const UsageError& error) {
+        return error.what();
+      } catch (const std::exception&) {  // its cells end as `failed` and say so
+      }
+    return "";
+  };
+  const auto complaint = isolated_text(first_complaint, kSeconds).text;
+  if (complaint && !complaint->empty()) throw UsageError(*complaint);
+}
+
 void write_used_rates(const Rates& rates, const std::vector<Request>& requests, Store& store) {
   const std::filesystem::path file = store.folder() / "rates.json";
-  RowsByPair rows = stored_rows(file, store);
+  std::map<std::pair<std::string, std::string>, Json> rows;
+  if (is_there(file)) try {
+      const Json table = read_json(file);
+      for (const Json& row : table.at("rows")) rows[{row.at("problem"), row.at("optimizer")}] = row;
+    } catch (const std::exception& error) {
+      rows.clear();
+      store.set_aside(file, error.what());
+    }
   for (const Request& request : requests) {
     if (request.rates.empty()) continue;
-    const auto& [problem, optimizer] = std::pair(request.problem, request.optimizer.name);
-    const Rates::Row* row = rates.find(problem, optimizer, table_of(request.rates));
+    const Component& problem = request.problem;
+    const std::string& optimizer = request.optimizer.name;
+    // "direct" of "direct.json": what a search in that table alone calls it.
+    const std::string table = request.rates.substr(0, request.rates.rfind(".json"));
+    const Rates::Row* row = rates.find(problem, optimizer, table);
     if (!row) continue;
     rows[{problem.spec, optimizer}] = {{"problem", problem.spec},
                                        {"optimizer", optimizer},
@@ -59,27 +110,6 @@ void write_used_rates(const Rates& rates, const std::vector<Request>& requests, 
   for (const auto& [pair, row] : rows) all.push_back(row);
   write_text(file, json_text(Json{{"schema", "isoline.rates/1"}, {"rows", all}}) + "\n");
 }
-
-// A plan stored, sheeted and run; and what its folder is called.
-
-namespace {
-
-// The distinct names in order, "-a-b"; or how many there are, "-17-problems".
-std::string names_of(const std::vector<Request>& requests, Component Request::*component,
-                     const char* many) {
-  constexpr std::size_t kMostNamed = 3;
-  std::vector<std::string> names;
-  for (const Request& request : requests)
-    if (const std::string& name = (request.*component).name;
-        std::ranges::find(names, name) == names.end())
-      names.push_back(name);
-  if (names.size() > kMostNamed) return fmt::format("-{}-{}", names.size(), many);
-  std::string text;
-  for (const std::string& name : names) text += "-" + name;
-  return text;
-}
-
-}  // namespace
 
 std::vector<PlannedCell> planned_cells(const std::vector<Request>& requests) {
   std::vector<PlannedCell> cells;
@@ -119,14 +149,26 @@ Outcome run_plan(const Catalog& catalog, const std::string& name,
 }
 
 std::string folder_name_of(const std::vector<Request>& requests, const std::string& title) {
-  constexpr std::size_t kDigits = 8;
+  constexpr std::size_t kDigits = 8, kMostNamed = 3;
+  // The distinct names in order, "-a-b"; or how many there are, "-17-problems".
+  const auto names_of = [&](Component Request::*component, const char* many) {
+    std::vector<std::string> names;
+    for (const Request& request : requests)
+      if (const std::string& name = (request.*component).name;
+          std::ranges::find(names, name) == names.end())
+        names.push_back(name);
+    if (names.size() > kMostNamed) return fmt::format("-{}-{}", names.size(), many);
+    std::string text;
+    for (const std::string& name : names) text += "-" + name;
+    return text;
+  };
   std::vector<std::string> cells;
   for (const Request& request : requests) cells.push_back(request.cell);
   std::ranges::sort(cells);  // the order of the words on the command line does not matter
   std::string all;
   for (const std::string& cell : cells) all += cell;
-  const std::string names = title + names_of(requests, &Request::problem, "problems") +
-                            names_of(requests, &Request::optimizer, "optimizers");
+  const std::string names =
+      title + names_of(&Request::problem, "problems") + names_of(&Request::optimizer, "optimizers");
   return fmt::format("{}-{}", names.substr(names.starts_with('-') ? 1 : 0),
                      digest(all).substr(0, kDigits));
 }

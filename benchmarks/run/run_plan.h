@@ -1,4 +1,5 @@
-// A plan from its first file to its last record: what `run`, `claims` and `tune` have in common.
+// A plan from its first file to its last record: what `run`, `claims` and `tune` have in common,
+// and the checks of its components before they run.
 #pragma once
 
 #include <filesystem>
@@ -8,34 +9,37 @@
 #include "benchmarks/plan/rates.h"
 #include "benchmarks/run/runner.h"
 #include "benchmarks/run/store.h"
-#include "core/records/plan.h"
+#include "core/records/request.h"
 
 namespace isoline::benchmarks {
+
+// UsageError with the first component's complaint, before anything is written. Each is made in a
+// process of its own: what crashes there is left to its cells to report.
+void require_sound(const Catalog& catalog, const std::vector<Request>& requests);
 
 // FOLDER/rates.json, schema isoline.rates/1: a row for each problem and optimizer as they were run,
 // with the name of its table. The rows of earlier plans stay; none, no file. A
 // damaged file is set aside.
 void write_used_rates(const Rates& rates, const std::vector<Request>& requests, Store& store);
 
-// A plan from its first file to its last record: what `run`, `claims` and `tune` have in common.
-
-// UsageError, and nothing written, if a component of the plan cannot be created. Otherwise stores
-// the plan before anything runs, so that a part never passes for the complete plan; then the rates
-// that it uses and the component metadata; then runs the cells. Stores the plan again if records
-// have disappeared meanwhile: the folder may have been emptied.
-Outcome run_plan(const Catalog& catalog, const std::string& name,
-                 const std::vector<Request>& requests, const std::filesystem::path& folder,
-                 const RunOptions& options, const Rates& rates = {});
-
-// The same of a part: what is stored as planned is the whole.
+// The plan that is stored, which may be more than is run.
 struct WholePlan {
   std::string name;
   std::vector<PlannedCell> cells;
   Rates rates = {};
 };
+
+// UsageError, and nothing written, if a component of the plan cannot be created, or a problem of
+// another program fails the tests of this tree. Otherwise stores the plan before anything runs, so
+// that a part never passes for the complete plan; then the rates that it uses and the component
+// metadata; then runs the cells. Stores the plan again if records have disappeared meanwhile: the
+// folder may have been emptied.
 Outcome run_plan(const Catalog& catalog, const WholePlan& whole,
                  const std::vector<Request>& requests, const std::filesystem::path& folder,
                  const RunOptions& options);
+Outcome run_plan(const Catalog& catalog, const std::string& name,
+                 const std::vector<Request>& requests, const std::filesystem::path& folder,
+                 const RunOptions& options, const Rates& rates = {});
 
 std::vector<PlannedCell> planned_cells(const std::vector<Request>& requests);
 

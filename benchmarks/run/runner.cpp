@@ -1,28 +1,23 @@
-// The run of a whole plan, and the same runs from perturbed starts.
+// The run of a whole plan: workers filled, watched, collected and stored.
 #include "benchmarks/run/runner.h"
 
 #include <fmt/format.h>
 #include <malloc.h>
 #include <poll.h>
-#include <unistd.h>
 
 #include <algorithm>
+#include <deque>
 #include <memory>
 #include <thread>
 
-#include "benchmarks/plan/build_parts.h"
+#include "benchmarks/plan/catalog.h"
 #include "benchmarks/run/execute.h"
-#include "benchmarks/run/interrupts.h"
 #include "benchmarks/run/judge.h"
-#include "benchmarks/run/pending.h"
-#include "benchmarks/run/prediction.h"
-#include "benchmarks/run/process_group.h"
-#include "benchmarks/run/same_result.h"
+#include "benchmarks/run/preview.h"
 #include "core/clock.h"
 #include "core/errors.h"
 #include "core/files.h"
 #include "core/records/provenance.h"
-#include "core/status.h"
 #include "core/text.h"
 #include "core/threads.h"
 
@@ -34,7 +29,7 @@ void Outcome::count(const Record& record) {
     failures.push_back(fmt::format("{}: {}: {}", title_of(record.request), name_of(record.status),
                                    record.message));
   if (record.status == Status::crashed && !crash)
-    crash = Crash{record.request, fmt::format("runs/{}-{}.json", record.cell, record.build)};
+    crash = Crash{record.request, "runs/" + record.file_name()};
   if (record.status == Status::interrupted) ++interrupted;
 }
 
@@ -43,48 +38,126 @@ std::string title_of(const Request& request) {
                      request.seed);
 }
 
-// The run of a whole plan: workers filled, watched, collected and stored.
+bool RunOptions::redoes(const std::optional<Record>& done) const {
+  const bool lacks_spectrum = keeps_spectra && done && !done->spectrum &&
+                              !is_failure(done->status) && done->status != Status::inapplicable;
+  return force || lacks_spectrum || (done && retry.contains(done->status));
+}
 
 namespace {
 
+// The runs of a plan that are still wanted, each given to one run of the folder alone.
+class Pending {
+ public:
+  // Counts the cells that are done already.
+  Pending(const std::vector<Request>& requests, Store& store, const RunOptions& options,
+          Outcome& outcome)
+      : store_(store), options_(options), outcome_(outcome), holds_(store.folder()) {
+    std::vector<std::pair<std::size_t, const Request*>> rounds;
+    std::optional<RecordsOfAnyBuild> earlier;  // times of two builds make no list
+    if (options.reuse && !options.force && options.repeat == 1) earlier.emplace(store.folder());
+    for (const Request& request : requests) {
+      if (earlier && is_reused(request, *earlier)) continue;
+      const std::size_t wanted = runs_wanted(request);
+      for (std::size_t i = 0; i < wanted; ++i) rounds.emplace_back(i, &request);
+    }
+    // Repetitions go round all cells, so that those of one cell see how the machine drifts.
+    std::ranges::stable_sort(rounds, {}, [](const auto& entry) { return entry.first; });
+    for (const auto& [round, request] : rounds) queue_.push_back(request);
+  }
+
+  // The next run, held against other processes until it is released. None where all are given out,
+  // or where others are doing all that are left: these are done elsewhere, or come back.
+  const Request* next() {
+    constexpr std::int64_t kPatience = 200'000'000;  // nanoseconds between looks at others' cells
+    if (monotonic_nanoseconds() < look_again_) return nullptr;
+    for (std::size_t left = queue_.size(); left > 0; --left) {
+      const Request& request = *queue_.front();
+      queue_.pop_front();
+      if (!holds_.take(Store::name_of(request))) {
+        queue_.push_back(&request);
+        continue;
+      }
+      if (options_.force || runs_wanted(request) > 0) return &request;
+      release(request);  // it was done elsewhere meanwhile
+    }
+    if (!queue_.empty()) look_again_ = monotonic_nanoseconds() + kPatience;
+    return nullptr;
+  }
+  void release(const Request& request) { holds_.release(Store::name_of(request)); }
+  const std::deque<const Request*>& queued() const { return queue_; }
+
+ private:
+  // How often it is still to be run; one that is done is counted.
+  std::size_t runs_wanted(const Request& request) {
+    std::optional<Record> done = store_.find(request);
+    if (options_.redoes(done)) done.reset();
+    const std::size_t have = done ? done->repeat_wall_seconds.size() : 0;
+    const bool is_timed = !done || done->status != Status::inapplicable;
+    const auto wanted = static_cast<std::size_t>(is_timed ? options_.repeat : 1);
+    if (!done || (have < wanted && !is_failure(done->status))) return wanted - have;
+    ++outcome_.reused;
+    outcome_.count(*done);
+    return 0;
+  }
+
+  bool is_reused(const Request& request, const RecordsOfAnyBuild& earlier) {
+    if (store_.find(request)) return false;  // by this build
+    const std::optional<Record> done = earlier.find(request);
+    if (!done || options_.redoes(done)) return false;
+    ++outcome_.reused_from_other_builds;
+    ++outcome_.reused;
+    outcome_.count(*done);
+    return true;
+  }
+
+  Store& store_;
+  const RunOptions& options_;
+  Outcome& outcome_;
+  Holds holds_;
+  std::deque<const Request*> queue_;  // a cell that needs several timings is queued as often
+  std::int64_t look_again_ = 0;       // monotonic nanoseconds
+};
+
 class Runner {
  public:
-  Runner(const Catalog& catalog, Store& store, const RunOptions& options)
+  Runner(const Catalog& catalog, const std::vector<Request>& requests, Store& store,
+         const RunOptions& options)
       : catalog_(catalog),
         store_(store),
         options_(options),
         jobs_(options.exclusive ? 1 : options.jobs),
-        workers_(static_cast<std::size_t>(options_.exclusive ? 1 : jobs_ + 1)),
+        workers_(static_cast<std::size_t>(options.exclusive ? 1 : jobs_ + 1)),
         tasks_(workers_.size()),
         judges_(catalog, workers_),
-        declared_(catalog, store.folder()) {}
-
-  Outcome run(const std::vector<Request>& requests) {
-    const InterruptGuard guard;
-    seconds_per_tick();  // measured once here, or each cell would take a millisecond for it
+        declared_(catalog, store.folder()),
+        pending_(requests, store, options, outcome_),
+        progress_(options.progress, "cells",
+                  outcome_.reused + static_cast<std::int64_t>(pending_.queued().size()),
+                  outcome_.reused) {
     outcome_.planned = static_cast<std::int64_t>(requests.size());
-    Pending pending(requests, store_, options_, outcome_);
-    pending_ = &pending;
-    Progress progress(options_.progress, "cells",
-                      outcome_.reused + static_cast<std::int64_t>(pending.size()), outcome_.reused);
-    if (options_.progress != Progress::Style::silent && !pending.is_empty())
+  }
+
+  Outcome run() {
+    seconds_per_tick();  // measured once here, or each cell would take a millisecond for it
+    if (options_.progress != Progress::Style::silent && !pending_.queued().empty())
       earlier_ = EarlierTimes(record_outlines({store_.folder()}));
-    for (const Request* request : pending.queued()) progress.expect(earlier_.of(*request));
+    for (const Request* request : pending_.queued()) progress_.expect(earlier_.of(*request));
     malloc_trim(0);  // what planning freed: a fork copies the tables of all pages that are held
     while (asked_to_end() != Asked::stop) {
-      if (asked_to_end() == Asked::nothing) start_some(progress);
-      keep_judged(progress);
-      const bool is_over = asked_to_end() == Asked::finish || pending.is_empty();
-      if (is_over && is_idle()) break;
-      tell_once(asked_to_end());
+      if (asked_to_end() == Asked::nothing) start_some();
+      keep_judged();
+      const bool is_over = asked_to_end() == Asked::finish || pending_.queued().empty();
+      if (is_over && running() == 0) break;
+      if (asked_to_end() == Asked::finish) say_once_that_it_finishes();
       wait();
-      collect(progress);
-      progress.show();
+      collect();
+      progress_.show();
     }
-    keep_judged(progress);
-    if (!is_idle()) stop();
-    outcome_.is_interrupted |= !pending.is_empty();
-    progress.show(outcome_.run > 0);
+    keep_judged();
+    if (running() > 0) stop();
+    outcome_.is_interrupted |= !pending_.queued().empty();
+    progress_.show(outcome_.run > 0);
     return outcome_;
   }
 
@@ -95,23 +168,33 @@ class Runner {
     bool is_being_judged = false;  // the cell itself has ended
   };
 
+  std::ptrdiff_t running() const {
+    return std::ranges::count_if(tasks_, [](const Task& task) { return task.request; });
+  }
+
   // There is one worker more than may run: what it did is judged and stored while the others run.
-  void start_some(Progress& progress) {
+  void start_some() {
+    constexpr double kCheckpointSeconds = 120;  // how often a long run is kept on disk
     auto running = std::ranges::count_if(workers_, &Worker::is_running);
     for (std::size_t i = 0; i < workers_.size() && running < jobs_; ++i) {
       if (tasks_[i].request) continue;
-      const Request* request = pending_->next();
+      const Request* request = pending_.next();
       if (!request) return;
       ++running;
-      tasks_[i] = {request, run_provenance()};
-      progress.started(title_of(*request));
+      tasks_[i] = {request,
+                   {.started = instant_text(seconds_now()),
+                    .concurrent_jobs = jobs_,
+                    .is_exclusive = options_.exclusive,
+                    .command = options_.command}};
+      progress_.started(title_of(*request));
       if (options_.force) store_.remove_checkpoint(*request);
       workers_[i].start(
           [&, i, request](Trace& trace) {
             trace.spectra.are_wanted = options_.keeps_spectra;
+            const auto path = store_.checkpoint_path(*request);
             Vector returned;
-            execute(catalog_, *request, trace, checkpoint_of(*request), &returned,
-                    options_.perturbation);
+            execute(catalog_, *request, trace, {path, path.stem().string(), kCheckpointSeconds},
+                    &returned, options_.perturbation);
             workers_[i].keep_returned({returned.data(), static_cast<std::size_t>(returned.size())});
           },
           limits(*request), request->threads);
@@ -122,74 +205,47 @@ class Runner {
     return limits_of(request, options_.limits, declared_.of(request));
   }
 
-  void tell_once(Asked asked) {
-    if (asked != Asked::finish || std::exchange(has_told_, true) ||
-        options_.progress == Progress::Style::silent)
-      return;
-    const auto running =
-        std::ranges::count_if(tasks_, [](const Task& task) { return task.request; });
-    say(stderr,
-        fmt::format("\nfinishing {} running; Ctrl-C again stops now\n",
-                    running == 1 ? "the cell that is" : fmt::format("{} cells that are", running)));
-  }
-
-  Checkpoint checkpoint_of(const Request& request) const {
-    const auto path = store_.checkpoint_path(request);
-    return {path, path.stem().string(), options_.checkpoint_seconds};
-  }
-
-  RunProvenance run_provenance() const {
-    return {.started = instant_text(seconds_now()),
-            .concurrent_jobs = jobs_,
-            .is_exclusive = options_.exclusive,
-            .command = options_.command};
-  }
-
-  bool is_idle() const {
-    return std::ranges::none_of(tasks_, [](const Task& task) { return task.request; });
+  void say_once_that_it_finishes() {
+    if (std::exchange(has_said_, true) || options_.progress == Progress::Style::silent) return;
+    say(stderr, fmt::format("\nfinishing {} running; Ctrl-C again stops now\n",
+                            running() == 1 ? "the cell that is"
+                                           : fmt::format("{} cells that are", running())));
   }
 
   void wait() const {
-    constexpr int kMilliseconds = 20;  // how often limits are looked at
     std::vector<pollfd> waiting;
     for (const Worker& worker : workers_)
       if (worker.is_running()) waiting.push_back({worker.descriptor(), POLLIN, 0});
     judges_.add_to(waiting);
-    ::poll(waiting.data(), waiting.size(), kMilliseconds);
+    ::poll(waiting.data(), waiting.size(), kLookMilliseconds);
   }
 
   // Cells that have ended go to a judge where they claim a point, and are kept once it has spoken.
-  void collect(Progress& progress) {
+  void collect() {
     for (std::size_t i = 0; i < workers_.size(); ++i) {
       Task& task = tasks_[i];
       if (!task.request || task.is_being_judged || !workers_[i].poll()) continue;
-      task.is_being_judged = has_point(workers_[i].trace());
+      const Status status = workers_[i].trace().status;
+      task.is_being_judged =
+          !is_failure(status) && status != Status::inapplicable && status != Status::interrupted;
       if (task.is_being_judged)
         judges_.ask(i, *task.request, limits(*task.request));
       else
-        keep(i, progress);
+        keep(i);
     }
   }
 
-  void keep_judged(Progress& progress) {
+  void keep_judged() {
     for (const Verdict& verdict : judges_.collect()) {
-      settle(verdict);
-      keep(verdict.slot, progress);
+      Worker& worker = workers_[verdict.slot];
+      if (!verdict.judged)
+        worker.conclude(verdict.is_interrupted ? Status::interrupted : Status::failed,
+                        "its point could not be verified: " + verdict.failure);
+      else if (const auto found = contradiction(told_by(worker.trace()), *verdict.judged);
+               !found.empty())
+        worker.conclude(Status::failed, found);
+      keep(verdict.slot);
     }
-  }
-
-  static bool has_point(const Trace& trace) {
-    return !is_failure(trace.status) && trace.status != Status::inapplicable &&
-           trace.status != Status::interrupted;
-  }
-
-  void settle(const Verdict& verdict) {
-    Worker& worker = workers_[verdict.slot];
-    if (!verdict.judged)
-      return worker.dispute(verdict.is_interrupted ? Status::interrupted : Status::failed,
-                            "its point could not be verified: " + verdict.failure);
-    const std::string found = contradiction(told_by(worker.trace()), *verdict.judged);
-    if (!found.empty()) worker.dispute(Status::failed, found);
   }
 
   // Cells that run keep their state and end; a point that no judge has seen by then is found again.
@@ -199,55 +255,50 @@ class Runner {
     for (Worker& worker : workers_) worker.ask_to_stop();
     for (Worker& worker : workers_)
       if (worker.is_running()) worker.interrupt();
-    Progress silent(Progress::Style::silent, "", 0, 0);
     const std::int64_t last = monotonic_nanoseconds() + kGrace;
-    for (collect(silent); !is_idle() && monotonic_nanoseconds() < last; keep_judged(silent)) wait();
+    for (collect(); running() > 0 && monotonic_nanoseconds() < last; keep_judged()) wait();
   }
 
-  void keep(std::size_t slot, Progress& progress) {
+  void keep(std::size_t slot) {
     const Request& request = *tasks_[slot].request;
-    keep(tasks_[slot], workers_[slot]);
-    pending_->release(request);
-    tasks_[slot] = {};
-    progress.finished(earlier_.of(request));
-  }
-
-  void keep(Task& task, const Worker& worker) {
-    Record record = record_of(*task.request, worker.trace());
-    record.provenance.run = task.run;
-    if (task.request->seed > 0 && !options_.keeps_fields) record.fields.reset();
+    const Worker& worker = workers_[slot];
+    Record record = record_of(request, worker.trace());
+    record.provenance.run = tasks_[slot].run;
+    if (request.seed > 0 && !options_.keeps_fields) record.fields.reset();
     if (options_.keeps_output) record.output = worker.output().text();
     if (record.status == Status::crashed && record.output.empty())
       record.output = worker.output().last_words();
-    std::optional<Record> earlier = store_.find(record.request);
-    if (options_.redoes(earlier) && !repeated(record)) earlier.reset();
+    std::optional<Record> earlier = store_.find(request);
+    const bool is_repeated = !seen_.insert(record.cell).second;  // within this very call
+    if (options_.redoes(earlier) && !is_repeated) earlier.reset();
     if (earlier && !record.is_nondeterministic && !earlier->is_nondeterministic &&
         !same_result(*earlier, record))
-      outcome_.conflicts.push_back(title_of(*task.request));
+      outcome_.conflicts.push_back(title_of(request));
     if (earlier && !record.fields) record.fields = earlier->fields;  // its file is there
     if (earlier && !record.spectrum) record.spectrum = earlier->spectrum;
     store_.write(record, earlier);
-    if (record.status != Status::interrupted) store_.remove_checkpoint(record.request);
+    if (record.status != Status::interrupted) store_.remove_checkpoint(request);
     ++outcome_.run;
     if (!earlier) outcome_.count(record);
+    pending_.release(request);
+    tasks_[slot] = {};
+    progress_.finished(earlier_.of(request));
   }
-
-  // Whether an earlier repetition of this cell ran within this very call.
-  bool repeated(const Record& record) { return !seen_.insert(record.cell).second; }
 
   const Catalog& catalog_;
   Store& store_;
   const RunOptions& options_;
+  Outcome outcome_;
   int jobs_;
   std::vector<Worker> workers_;
   std::vector<Task> tasks_;
   Judges judges_;
-  Pending* pending_ = nullptr;  // of the plan that is run
-  DeclaredTimes declared_;      // for their limits
+  DeclaredTimes declared_;  // for their limits
+  Pending pending_;
+  Progress progress_;
   EarlierTimes earlier_;
   std::set<std::string> seen_;
-  bool has_told_ = false;  // that it is finishing
-  Outcome outcome_;
+  bool has_said_ = false;  // that it is finishing
 };
 
 }  // namespace
@@ -256,18 +307,17 @@ int one_a_core() { return static_cast<int>(std::max(1U, std::thread::hardware_co
 
 Outcome run_all(const Catalog& catalog, const std::vector<Request>& requests, Store& store,
                 const RunOptions& options) {
+  const InterruptGuard guard;
   end_what_killed_runs_left();
-  Outcome outcome = Runner(catalog, store, options).run(requests);
+  Outcome outcome = Runner(catalog, requests, store, options).run();
   if (outcome.is_interrupted) return outcome;
-  const std::optional<RecordsOfAnyBuild> earlier =
-      options.reuse ? std::optional<RecordsOfAnyBuild>(store.folder()) : std::nullopt;
+  std::optional<RecordsOfAnyBuild> earlier;
+  if (options.reuse) earlier.emplace(store.folder());
   for (const Request& request : requests)
     if (!store.has(request) && !(earlier && earlier->find(request)))
       outcome.missing.push_back(title_of(request));
   return outcome;
 }
-
-// The run loop without anything around it.
 
 void run_in_process(const Catalog& catalog, const std::vector<Request>& requests,
                     const std::function<void(const Request&, const Trace&)>& ended) {
@@ -278,8 +328,6 @@ void run_in_process(const Catalog& catalog, const std::vector<Request>& requests
     ended(request, *trace);
   }
 }
-
-// Requests restored from records.
 
 Request request_again(const Catalog& catalog, const Record& record, double hard_seconds) {
   Request request = record.request;
@@ -292,34 +340,20 @@ Request request_again(const Catalog& catalog, const Record& record, double hard_
   return named(std::move(request));
 }
 
-// Runs the requests of records again, in a hidden folder.
-
-namespace {
-
-// The request of a record, in the options of this program.
-Request same_request(const Catalog& catalog, const Record& record) {
-  constexpr double kLongest = 600;  // seconds: the record has ended without a clock before
-  const Request request = request_again(catalog, record, kLongest);
-  require(request.cell == record.cell && build_digest(request) == record.build, [&] {
-    return title_of(request) +
-           ": its record is of another build; run it by this one (isoline run), or keep "
-           "it without perturbations (--perturbations 0)";
-  });
-  return request;
-}
-
-bool is_repeated(const Record& record) {
-  return !record.is_nondeterministic && record.status != Status::inapplicable;
-}
-
-}  // namespace
-
 std::optional<std::vector<Record>> perturbed_records(const Catalog& catalog,
                                                      const std::vector<Record>& records, int number,
                                                      RunOptions options) {
+  constexpr double kLongest = 600;  // seconds: the record has ended without a clock before
   std::vector<Request> requests;
-  for (const Record& record : records)
-    if (is_repeated(record)) requests.push_back(same_request(catalog, record));
+  for (const Record& record : records) {
+    if (record.is_nondeterministic || record.status == Status::inapplicable) continue;
+    const Request& request = requests.emplace_back(request_again(catalog, record, kLongest));
+    require(request.cell == record.cell && build_digest(request) == record.build, [&] {
+      return title_of(request) +
+             ": its record is of another build; run it by this one (isoline run), or keep "
+             "it without perturbations (--perturbations 0)";
+    });
+  }
   const HiddenFolder folder;
   Store store(folder.path());
   options.perturbation = number;

@@ -41,8 +41,6 @@ struct Outcome {
 
 std::string title_of(const Request& request);  // "problem × optimizer, seed 0"
 
-// Runs requests in worker processes, several at once, and stores a record of each as it ends.
-
 struct RunOptions {
   int jobs = 1;
   bool force = false;           // repeat cells that are done
@@ -51,7 +49,6 @@ struct RunOptions {
   bool exclusive = false;       // one at a time, for tables of wall time
   int repeat = 1;               // timings wanted of each cell
   Limits limits;
-  double checkpoint_seconds = 120;  // how often a long run is kept on disk while it goes
   int perturbation = 0;  // of the starts, in the last bit; of 0 alone the records are results
   Progress::Style progress = Progress::Style::silent;
   bool keeps_output = false;   // of cells, in their records
@@ -59,16 +56,7 @@ struct RunOptions {
   bool keeps_spectra = false;  // a record without them is computed again
   std::string command;         // for the record
 
-  // Whether an existing record, if any, prevents nothing.
-  bool redoes(const std::optional<Record>& done) const {
-    return force || (done && (retry.contains(done->status) || lacks_spectrum(*done)));
-  }
-
- private:
-  bool lacks_spectrum(const Record& done) const {
-    return keeps_spectra && !done.spectrum && !is_failure(done.status) &&
-           done.status != Status::inapplicable;
-  }
+  bool redoes(const std::optional<Record>& done) const;  // whether that prevents nothing
 };
 
 // Runs the requests that the store has no record of, and no more. Several processes may run into
@@ -78,27 +66,19 @@ Outcome run_all(const Catalog& catalog, const std::vector<Request>& requests, St
 
 int one_a_core();  // how many cells at a time a machine is meant for
 
-// Runs cells in this process, one after another, for a debugger: nothing separates a mistake from
-// its observer.
-
-// Calls back after each cell. No isolation, no limits but the soft budgets, no verification, no
-// record: a crash ends this process, and leaves a core file if the shell allows it.
+// Runs cells in this process, one after another, for a debugger, and calls back after each. No
+// isolation, no limits but the soft budgets, no verification, no record: a crash ends this process.
 void run_in_process(const Catalog& catalog, const std::vector<Request>& requests,
                     const std::function<void(const Request&, const Trace&)>& ended);
-
-// Recorded runs repeated from starts that differ in the last bit: values that then move depend on
-// rounding, and so on the processor and the libraries, not on the method.
 
 // The request of the record for the components of this program; UsageError if it no longer has
 // them, or if they have other options. The cell is that of this program.
 Request request_again(const Catalog& catalog, const Record& record, double hard_seconds);
 
 // Recorded runs repeated from starts that differ in the last bit: values that then move depend on
-// rounding, and so on the processor and the libraries, not on the method.
-
-// The records of perturbation `number`, run in a folder that is gone afterwards. Left out are cells
-// that a clock or a kill ended, and inapplicable ones. UsageError where a record is of another
-// build: its figures would differ by more than the perturbation. Nothing where it was interrupted.
+// rounding, and so on the processor and the libraries, not on the method. Without cells that a
+// clock or a kill ended, and inapplicable ones. UsageError where a record is of another build.
+// Nothing where it was interrupted.
 std::optional<std::vector<Record>> perturbed_records(const Catalog& catalog,
                                                      const std::vector<Record>& records, int number,
                                                      RunOptions options);

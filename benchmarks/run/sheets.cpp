@@ -10,11 +10,11 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "benchmarks/plan/build_parts.h"
-#include "benchmarks/run/interrupts.h"
+#include "benchmarks/plan/catalog.h"
 #include "benchmarks/run/isolate.h"
 #include "core/clock.h"
 #include "core/decompose.h"
@@ -22,24 +22,18 @@
 #include "core/files.h"
 #include "core/json.h"
 #include "core/options.h"
-#include "core/records/plan.h"
 #include "core/records/provenance.h"
+#include "core/records/request.h"
 #include "optimizers/optimizer.h"
 #include "problems/problem.h"
 
 namespace isoline::benchmarks {
-
-using networks::LayerFactor;
-using networks::LayerMoments;
-using problems::Point;
 namespace {
 
 constexpr double kRoundSeconds = 2e-4;  // of calls, so that a round is many of the short ones
-constexpr double kOracleSeconds = 1e-2, kLongOracleSeconds = 0.15, kMatrixSeconds = 1e-2;
-constexpr double kProblemSeconds = 1;
+constexpr double kOracleSeconds = 1e-2, kLongOracleSeconds = 0.15, kProblemSeconds = 1;
 constexpr double kClockSeconds = 2e-5;  // a call this long can afford the clock of the processor
 constexpr std::size_t kMostPairs = 1000, kMostRounds = 31, kFewRounds = 3;
-constexpr Real kWidest = 4;  // a range over this factor, or down to nothing, says too little
 constexpr Real kTail = 0.1;  // on either side of the middle 80 %
 
 // Buffers for the inputs and outputs of a problem's oracles.
@@ -57,54 +51,31 @@ struct Room {
   Matrix y, x;  // (m, B), (k, B)
   Vector gradient;
   Matrix J, H, dy_dx, bent;
-  std::vector<LayerFactor> factors;
-  std::vector<LayerMoments> moments;
+  std::vector<networks::LayerFactor> factors;
+  std::vector<networks::LayerMoments> moments;
+  Workspace space;
 };
 
-void ask(Oracle oracle, const Problem& problem, Point& at, Room& room) {
-  switch (oracle) {
-    case Oracle::pullback:
-      return problem.pullback(room.w, room.gradient, at);
-    case Oracle::pushforward:
-      return problem.pushforward(room.v, room.y, at);
-    case Oracle::jacobian:
-      return problem.jacobian(room.J, at);
-    case Oracle::hessian:
-      return problem.hessian(room.H, at);
-    case Oracle::curvature:
-      room.bent.resize(problem.inputs(), problem.inputs() * problem.samples());
-      return problem.curvature(room.w, room.bent, at);
-    case Oracle::sensitivity:
-      return problem.sensitivity(room.dy_dx, at);
-    case Oracle::hessian_product:
-      return problem.hessian_product(room.v, room.gradient, at);
-    case Oracle::inverse:
-      problem.local_inverse(problem.target(), room.x, at);
-      return;
-    case Oracle::network:
-      return problem.network_pullback(room.u, room.gradient, at);
-    case Oracle::layer_factors:
-      return problem.layer_factors(room.w, room.factors, at);
-    case Oracle::layer_moments:
-      return problem.layer_moments(room.w, room.moments, room.gradient, at);
-    case Oracle::forward:
-    case Oracle::truth:  // nothing is computed
-      return;
-  }
-}
-
-// All that the problem offers and that is computed: products before the dense matrices, which
-// large networks take up the time with.
-std::vector<Oracle> measured_ones(OracleSet offered) {
-  std::vector<Oracle> products, matrices;
-  for (const OracleRow& row : kOracleTable) {
-    const bool is_computed = row.kind != Oracle::forward && row.kind != Oracle::truth;
-    if (!is_computed || !offered.contains(row.kind)) continue;
-    (row.is_dense_matrix ? matrices : products).push_back(row.kind);
-  }
-  products.insert(products.end(), matrices.begin(), matrices.end());
-  return products;
-}
+// The calls of all oracles that compute something beside the forward solve.
+const std::map<Oracle, std::function<void(const Problem&, Point&, Room&)>> kCalls = {
+    {Oracle::pullback, [](auto& p, auto& at, auto& r) { p.pullback(r.w, r.gradient, at); }},
+    {Oracle::pushforward, [](auto& p, auto& at, auto& r) { p.pushforward(r.v, r.y, at); }},
+    {Oracle::jacobian, [](auto& p, auto& at, auto& r) { p.jacobian(r.J, at); }},
+    {Oracle::hessian, [](auto& p, auto& at, auto& r) { p.hessian(r.H, at); }},
+    {Oracle::curvature,
+     [](auto& p, auto& at, auto& r) {
+       r.bent.resize(p.inputs(), p.inputs() * p.samples());
+       p.curvature(r.w, r.bent, at);
+     }},
+    {Oracle::sensitivity, [](auto& p, auto& at, auto& r) { p.sensitivity(r.dy_dx, at); }},
+    {Oracle::hessian_product,
+     [](auto& p, auto& at, auto& r) { p.hessian_product(r.v, r.gradient, at); }},
+    {Oracle::inverse, [](auto& p, auto& at, auto& r) { p.local_inverse(p.target(), r.x, at); }},
+    {Oracle::network, [](auto& p, auto& at, auto& r) { p.network_pullback(r.u, r.gradient, at); }},
+    {Oracle::layer_factors,
+     [](auto& p, auto& at, auto& r) { p.layer_factors(r.w, r.factors, at); }},
+    {Oracle::layer_moments,
+     [](auto& p, auto& at, auto& r) { p.layer_moments(r.w, r.moments, r.gradient, at); }}};
 
 // Processor time; wall time if another process computes.
 double seconds_by(bool is_elsewhere) {
@@ -130,10 +101,10 @@ Real at_share(std::vector<Real>& values, Real share) {
   return values[static_cast<std::size_t>(at)];
 }
 
-// The expected times of one oracle and of the forward solve before it, in seconds.
+// A call at a point, none for the forward solve alone, and the expected times of the two.
 struct Question {
-  Oracle oracle;
-  double forward, expected;
+  double forward, expected;  // seconds
+  std::function<void(Point&, Room&)> call = {};
 };
 
 struct Rounds {
@@ -152,7 +123,7 @@ void add_round(const Problem& problem, const Question& of, Rounds& rounds) {
     const double solve =
         seconds_of(problem, of.forward, [&] { problem.forward(problem.start(), at); });
     const double call =
-        seconds_of(problem, of.expected, [&] { ask(of.oracle, problem, at, room); });
+        of.call ? seconds_of(problem, of.expected, [&] { of.call(at, room); }) : solve;
     if (i == 0) continue;  // the first allocates
     before.push_back(solve);
     asked.push_back(call);
@@ -160,7 +131,7 @@ void add_round(const Problem& problem, const Question& of, Rounds& rounds) {
   const Real forward = std::max(at_share(before, 0.5), 1e-9);
   rounds.calls += pairs;
   rounds.forward_seconds.push_back(forward);
-  rounds.ratios.push_back(of.oracle == Oracle::forward ? 1 : at_share(asked, 0.5) / forward);
+  rounds.ratios.push_back(of.call ? at_share(asked, 0.5) / forward : 1);
 }
 
 Rounds rounds_of(const Problem& problem, const Question& of) {
@@ -176,7 +147,7 @@ Rounds rounds_of(const Problem& problem, const Question& of) {
 }
 
 MeasuredPrice price_of(std::string_view name, std::int64_t declared, double forward,
-                       Rounds& rounds) {
+                       Rounds rounds) {
   MeasuredPrice price{.oracle = std::string(name),
                       .declared = declared,
                       .price = at_share(rounds.ratios, 0.5),
@@ -189,102 +160,35 @@ MeasuredPrice price_of(std::string_view name, std::int64_t declared, double forw
 }
 
 // The network alone, as `isoline infer` applies it, to the samples of a batch at once: what one of
-// them takes. No forward solve goes before it, since none is needed.
+// them takes.
 MeasuredPrice inference_price(const Problem& problem, double forward) {
   const problems::Network& network = problem.network();
   const Matrix& input = problem.batch().input;
-  const Vector& theta = problem.start();
-  Rounds rounds;
-  const double begin = processor_seconds();
-  while (rounds.ratios.size() < kMostRounds) {
-    Workspace workspace;
-    Matrix x(problem.inputs(), problem.samples());
-    const Vector statistics = network.statistics(theta, input, workspace);
-    const auto infer = [&] { network.infer(theta, statistics, input, x, workspace); };
-    seconds_of(problem, 1, infer);  // allocates
-    const double once = seconds_of(problem, 1, infer);
-    const auto calls = static_cast<std::size_t>(
-        std::clamp(kRoundSeconds / std::max(once, 1e-9), 1.0, static_cast<double>(kMostPairs)));
-    std::vector<Real> seconds;
-    for (std::size_t i = 0; i < calls; ++i) seconds.push_back(seconds_of(problem, once, infer));
-    rounds.calls += calls;
-    rounds.ratios.push_back(std::max(at_share(seconds, 0.5), 1e-9) / forward /
-                            static_cast<Real>(problem.samples()));
-    if (processor_seconds() - begin > kLongOracleSeconds && rounds.ratios.size() >= kFewRounds)
-      break;
-  }
-  return price_of(kInference, 0, forward, rounds);
+  Workspace workspace;
+  const Vector statistics = network.statistics(problem.start(), input, workspace);
+  const auto infer = [&](Point&, Room& room) {
+    network.infer(problem.start(), statistics, input, room.x, room.space);
+  };
+  Rounds rounds = rounds_of(problem, {forward, forward, infer});
+  for (Real& ratio : rounds.ratios) ratio /= static_cast<Real>(problem.samples());
+  return price_of(kInference, 0, forward, std::move(rounds));
 }
 
-}  // namespace
+// --- metadata of problems and optimizers, including plotted landscapes
 
-bool is_resolved(const MeasuredPrice& price, double forward_seconds) {
-  return forward_seconds >= kLeastForwardSeconds && price.low > 0 &&
-         price.high <= kWidest * price.low;
-}
-
-MeasuredPrices measure_prices(const Problem& problem, const std::string& build) {
-  MeasuredPrices measured{.build = build, .processor = this_build()->processor, .oracles = {}};
-  Point at;
-  const std::function<void()> solve = [&] { problem.forward(problem.start(), at); };
-  const double begin = seconds_by(problem.is_elsewhere());
-  seconds_of(problem, 1, solve);  // allocates
-  const double once = std::max(seconds_of(problem, 1, solve), 1e-9);
-  Rounds alone = rounds_of(problem, {Oracle::forward, once, once});
-  measured.forward_seconds = at_share(alone.forward_seconds, 0.5);
-  const OracleCounts declared = problem.prices();
-  const double forward = measured.forward_seconds;
-  measured.oracles.push_back(price_of(name_of(Oracle::forward), 1, forward, alone));
-  if (problem.is_learned()) measured.oracles.push_back(inference_price(problem, forward));
-  for (const Oracle oracle : measured_ones(problem.offers())) {
-    if (seconds_by(problem.is_elsewhere()) - begin > kProblemSeconds) break;
-    const auto kind = static_cast<std::size_t>(oracle);
-    const double expected = forward * static_cast<double>(declared[kind]);
-    if (oracle_row(oracle).is_dense_matrix && expected > kMatrixSeconds) continue;
-    Rounds rounds = rounds_of(problem, {oracle, forward, expected});
-    measured.oracles.push_back(price_of(name_of(oracle), declared[kind], forward, rounds));
-  }
-  return measured;
-}
-
-std::string prices_build(const Component& problem) {
-  return build_digest({.problem = problem, .optimizer = {}});
-}
-
-bool are_ours(const std::optional<MeasuredPrices>& prices, const std::string& build) {
-  return prices && prices->build == build && prices->processor == this_build()->processor;
-}
-
-// Metadata of problems and optimizers, including plotted landscapes.
-
-using optimizers::privileges_of;
-namespace {
-
-constexpr Index kGrid = 81;                       // points a side of a landscape
-constexpr Index kSmall = 16;                      // largest target and truth in a file of metadata
-constexpr Index kMostEntries = Index{256} * 256;  // of a Jacobian that is factorized: 20 ms
-constexpr const char* kInverseNames[] = {"none", "exact", "damped", "estimate", "approximate"};
+constexpr Index kGrid = 81;  // points a side of a landscape
 
 std::vector<std::string> names_of(OracleSet oracles) {
   std::vector<std::string> names;
-  for (std::size_t kind = 0; kind < kOracles; ++kind)
-    if (oracles.contains(static_cast<Oracle>(kind))) names.emplace_back(kOracleNames[kind]);
+  for (const OracleRow& row : kOracleTable)
+    if (oracles.contains(row.kind)) names.emplace_back(row.name);
   return names;
 }
 
-Real grid_point(Real low, Real high, Index i) {
-  return low + (high - low) * static_cast<Real>(i) / static_cast<Real>(kGrid - 1);
-}
-
 std::vector<Real> small(const Matrix& values) {
+  constexpr Index kSmall = 16;  // largest target and truth in a file of metadata
   if (values.size() > kSmall) return {};
   return {values.data(), values.data() + values.size()};
-}
-
-bool has_small_jacobian(const Problem& problem) {
-  const bool is_small = problem.unknowns() * problem.residuals() <= kMostEntries;
-  return !problem.is_learned() && problem.has_identity_network() && is_small &&
-         problem.offers().contains(Oracle::jacobian);
 }
 
 // σ_max / σ_min of J there; nothing if it is not a number.
@@ -303,41 +207,30 @@ std::optional<Real> condition_at(const Problem& problem, VectorRef theta) {
 template <class Visit>
 void for_each_point(const std::array<Real, 4>& window, Visit visit) {
   const auto& [low1, high1, low2, high2] = window;
+  const auto point = [](Real low, Real high, Index i) {
+    return low + (high - low) * static_cast<Real>(i) / static_cast<Real>(kGrid - 1);
+  };
   for (Index j = 0; j < kGrid; ++j)
     for (Index i = 0; i < kGrid; ++i)
-      visit(i, j, Eigen::Vector2d(grid_point(low1, high1, i), grid_point(low2, high2, j)));
+      visit(i, j, Eigen::Vector2d(point(low1, high1, i), point(low2, high2, j)));
 }
-
-// The least box around points, those aside that are not finite: one pole would make it boundless.
-class Box {
- public:
-  void include(const Eigen::Vector2d& point) {
-    if (!point.allFinite()) return;
-    low_ = low_.cwiseMin(point);
-    high_ = high_.cwiseMax(point);
-  }
-  std::optional<std::array<Real, 4>> window() const {
-    if (!low_.allFinite()) return std::nullopt;
-    return std::array<Real, 4>{low_[0], high_[0], low_[1], high_[1]};
-  }
-
- private:
-  Eigen::Vector2d low_ = Eigen::Vector2d::Constant(std::numeric_limits<Real>::infinity());
-  Eigen::Vector2d high_ = -low_;
-};
 
 // L over the problem's window in x, and over the box in y that the window maps into.
 void draw_landscapes(const Problem& problem, Sheet& sheet) {
   Landscape in_x{*problem.window(), Grid(kGrid, kGrid), problem.contour_spacing()};
-  Box image;
+  Eigen::Vector2d low = Eigen::Vector2d::Constant(std::numeric_limits<Real>::infinity());
+  Eigen::Vector2d high = -low;  // y that are not finite aside: one pole would make it boundless
   Point point;
   for_each_point(in_x.window, [&](Index i, Index j, const Eigen::Vector2d& x) {
     problem.forward(x, point);
     in_x.loss(i, j) = point.loss;
-    if (problem.outputs() == 2) image.include(point.y.col(0));
+    if (problem.outputs() != 2 || !point.y.allFinite()) return;
+    low = low.cwiseMin(point.y.col(0));
+    high = high.cwiseMax(point.y.col(0));
   });
   sheet.landscape_x = in_x;
-  const auto window = problem.y_window() ? problem.y_window() : image.window();
+  auto window = problem.y_window();
+  if (!window && low.allFinite()) window = {low[0], high[0], low[1], high[1]};
   if (problem.outputs() != 2 || !window) return;
   Landscape in_y{*window, Grid(kGrid, kGrid), problem.contour_spacing()};
   for_each_point(in_y.window, [&](Index i, Index j, const Eigen::Vector2d& y) {
@@ -369,17 +262,11 @@ std::vector<std::string> possible_privileges(const OptimizerEntry& entry,
     const Problem problem({.physics = std::make_unique<Witness>(kind),
                            .start = Vector::Ones(1),
                            .target = Matrix::Zero(1, 1)});
-    for (const std::string& one : privileges_of(needs_of(entry, component.options, problem), kind))
+    const OracleSet needs = needs_of(entry, component.options, problem);
+    for (const std::string& one : optimizers::privileges_of(needs, kind))
       if (std::ranges::find(all, one) == all.end()) all.push_back(one);
   }
   return all;
-}
-
-// Replaces the adapter's description by the external program's own.
-void add_words_of(const Foreign& foreign, Sheet& sheet) {
-  if (!foreign.label.empty()) sheet.title = foreign.label + ", by another program";
-  if (!foreign.source.empty()) sheet.source = foreign.source;
-  if (!foreign.note.empty()) sheet.note = foreign.note;
 }
 
 // The registry's view of a component, without creating one.
@@ -393,11 +280,140 @@ Sheet described(const char* kind, const Entry& entry, const Component& component
               .source = entry.source,
               .note = entry.note,
               .options_text = json_text(describe_options(entry.options))};
-  if (component.foreign) add_words_of(*component.foreign, sheet);
+  if (const auto& foreign = component.foreign) {  // its words replace those of the adapter
+    if (!foreign->label.empty()) sheet.title = foreign->label + ", by another program";
+    if (!foreign->source.empty()) sheet.source = foreign->source;
+    if (!foreign->note.empty()) sheet.note = foreign->note;
+  }
   return sheet;
 }
 
+// --- the metadata of a plan
+
+// Creates metadata, each in its own process: a failure costs the measured values of one file.
+class SheetWriter {
+ public:
+  SheetWriter(const Catalog& catalog, Store& store, Progress::Style style)
+      : catalog_(catalog), store_(store), progress_(style, "sheets", 0, 0) {}
+
+  void write_problem(const Component& component) {
+    if (!known_.insert("problem " + component.spec).second) return;
+    progress_.started(component.spec);
+    Sheet sheet = described_problem(catalog_, component);
+    if (replace(sheet, [&] { return problem_sheet(catalog_, component); }))
+      sheet.prices = prices_of(component, store_.folder() / "components" / sheet.file_name());
+    write(sheet);
+  }
+
+  void write_optimizer(const Component& component) {
+    if (!known_.insert("optimizer " + component.spec).second) return;
+    Sheet sheet = described_optimizer(catalog_, component);
+    replace(sheet, [&] { return optimizer_sheet(catalog_, component); });
+    write(sheet);
+  }
+
+ private:
+  // By the whole one, where that can be made.
+  bool replace(Sheet& sheet, const std::function<Sheet()>& make) {
+    std::string reason;
+    if (auto made = made_apart(make, reason)) {
+      sheet = std::move(*made);
+      return true;
+    }
+    store_.remark(fmt::format("the metadata of {} contain only what the registry knows: {}",
+                              sheet.spec, reason));
+    return false;
+  }
+
+  void write(const Sheet& sheet) {
+    try {
+      store_.write(sheet);
+    } catch (const std::exception& error) {
+      store_.remark(fmt::format("the metadata of {} are missing: {}", sheet.spec, error.what()));
+    }
+  }
+
+  // Costs that this build has already measured on this processor: a continued run does not change
+  // the report of finished cells. The problem is created again, and a failure of the measurement
+  // does not cost the metadata: then declared costs are counted with.
+  std::optional<MeasuredPrices> prices_of(const Component& component,
+                                          const std::filesystem::path& file) {
+    const std::string build = build_digest({.problem = component, .optimizer = {}});
+    if (is_there(file)) try {
+        const auto stored = sheet_from_text(read_text(file), file.string()).prices;
+        if (stored && stored->build == build && stored->processor == this_build()->processor)
+          return stored;
+      } catch (const std::exception& error) {
+        store_.set_aside(file, error.what());
+      }
+    std::string reason;
+    const auto measured = made_apart(
+        [&] {
+          Sheet sheet;
+          sheet.options_text = "[]";
+          sheet.prices = measure_prices(make_problem(catalog_, component, 0), build);
+          return sheet;
+        },
+        reason);
+    return measured ? measured->prices : std::nullopt;
+  }
+
+  std::optional<Sheet> made_apart(const std::function<Sheet()>& make, std::string& reason) {
+    constexpr double kSeconds = 30;
+    const IsolatedText made = isolated_text([&] { return file_text(make()); }, kSeconds,
+                                            Limits{}.memory_bytes, [&] { progress_.show(); });
+    reason = made.failure;
+    if (made.text) try {
+        return sheet_from_text(*made.text, "its output");
+      } catch (const std::exception& error) {
+        reason = error.what();
+      }
+    return std::nullopt;
+  }
+
+  const Catalog& catalog_;
+  Store& store_;
+  Progress progress_;
+  std::set<std::string> known_;
+};
+
 }  // namespace
+
+bool is_resolved(const MeasuredPrice& price, double forward_seconds) {
+  constexpr double kLeastForwardSeconds = 1e-6;
+  constexpr Real kWidest = 4;  // a range over this factor, or down to nothing, says too little
+  return forward_seconds >= kLeastForwardSeconds && price.low > 0 &&
+         price.high <= kWidest * price.low;
+}
+
+MeasuredPrices measure_prices(const Problem& problem, const std::string& build) {
+  MeasuredPrices measured{.build = build, .processor = this_build()->processor, .oracles = {}};
+  Point at;
+  const std::function<void()> solve = [&] { problem.forward(problem.start(), at); };
+  const double begin = seconds_by(problem.is_elsewhere());
+  seconds_of(problem, 1, solve);  // allocates
+  const double once = std::max(seconds_of(problem, 1, solve), 1e-9);
+  Rounds alone = rounds_of(problem, {once, once});
+  const double forward = measured.forward_seconds = at_share(alone.forward_seconds, 0.5);
+  measured.oracles.push_back(price_of(name_of(Oracle::forward), 1, forward, std::move(alone)));
+  if (problem.is_learned()) measured.oracles.push_back(inference_price(problem, forward));
+  // Products before the dense matrices, which large networks take up the time with.
+  for (const bool is_matrix : {false, true})
+    for (const OracleRow& row : kOracleTable) {
+      const auto found = kCalls.find(row.kind);
+      if (found == kCalls.end() || row.is_dense_matrix != is_matrix ||
+          !problem.offers().contains(row.kind))
+        continue;
+      if (seconds_by(problem.is_elsewhere()) - begin > kProblemSeconds) return measured;
+      const std::int64_t declared = problem.prices()[static_cast<std::size_t>(row.kind)];
+      const double expected = forward * static_cast<double>(declared);
+      if (is_matrix && expected > kOracleSeconds) continue;
+      const auto call = [&](Point& there, Room& room) { found->second(problem, there, room); };
+      measured.oracles.push_back(
+          price_of(row.name, declared, forward, rounds_of(problem, {forward, expected, call})));
+    }
+  return measured;
+}
 
 Sheet described_problem(const Catalog& catalog, const Component& component) {
   const ProblemEntry& entry = catalog.problems.at(component.name);
@@ -419,15 +435,19 @@ Sheet described_optimizer(const Catalog& catalog, const Component& component) {
 }
 
 Sheet problem_sheet(const Catalog& catalog, const Component& component) {
+  constexpr const char* kInverses[] = {"none", "exact", "damped", "estimate", "approximate"};
   const Problem problem = make_problem(catalog, component, 0);
   Sheet sheet = described_problem(catalog, component);
   sheet.aim = problem.aim();  // as its entry has it, or as another program says
   sheet.oracles = names_of(problem.offers());
-  sheet.inverse = kInverseNames[static_cast<int>(problem.inverse_kind())];
+  sheet.inverse = kInverses[static_cast<int>(problem.inverse_kind())];
   sheet.unknowns = problem.unknowns();
   sheet.residuals = problem.residuals();
   sheet.target = small(problem.target());
-  if (has_small_jacobian(problem)) {
+  constexpr Index kMostEntries = Index{256} * 256;  // of a J that is factorized: 20 ms
+  if (!problem.is_learned() && problem.has_identity_network() &&
+      problem.offers().contains(Oracle::jacobian) &&
+      problem.unknowns() * problem.residuals() <= kMostEntries) {
     sheet.start_condition = condition_at(problem, problem.start());
     if (problem.truth()) sheet.condition = condition_at(problem, problem.truth()->reshaped());
   }
@@ -442,102 +462,6 @@ Sheet optimizer_sheet(const Catalog& catalog, const Component& component) {
   sheet.privileges = possible_privileges(catalog.optimizers.at(component.name), component);
   return sheet;
 }
-
-// Writes the metadata of a plan's components, each in its own process, and measures the costs of
-// its problems.
-
-namespace {
-
-constexpr double kSheetSeconds = 30;
-
-// Creates metadata, each in its own process: a failure costs the measured values of one file.
-class SheetWriter {
- public:
-  SheetWriter(const Catalog& catalog, Store& store, Progress::Style style)
-      : catalog_(catalog), store_(store), progress_(style, "sheets", 0, 0) {}
-
-  void write_problem(const Component& component) {
-    if (!known_.insert("problem " + component.spec).second) return;
-    progress_.started(component.spec);
-    Sheet sheet = described_problem(catalog_, component);
-    if (replace(sheet, [&] { return problem_sheet(catalog_, component); }))
-      sheet.prices = prices_of(component, sheet.file_name());
-    write(sheet);
-  }
-
-  void write_optimizer(const Component& component) {
-    if (!known_.insert("optimizer " + component.spec).second) return;
-    Sheet sheet = described_optimizer(catalog_, component);
-    replace(sheet, [&] { return optimizer_sheet(catalog_, component); });
-    write(sheet);
-  }
-
- private:
-  // By the whole one, where that can be made.
-  bool replace(Sheet& sheet, const std::function<Sheet()>& make) {
-    const IsolatedText made = isolated([&] { return file_text(make()); });
-    std::string reason = made.failure;
-    if (made.text) try {
-        sheet = sheet_from_text(*made.text, "its output");
-        return true;
-      } catch (const std::exception& error) {
-        reason = error.what();
-      }
-    store_.remark(fmt::format("the metadata of {} contain only what the registry knows: {}",
-                              sheet.spec, reason));
-    return false;
-  }
-
-  void write(const Sheet& sheet) {
-    try {
-      store_.write(sheet);
-    } catch (const std::exception& error) {
-      store_.remark(fmt::format("the metadata of {} are missing: {}", sheet.spec, error.what()));
-    }
-  }
-
-  std::optional<MeasuredPrices> stored_prices(const std::filesystem::path& file) {
-    if (!is_there(file)) return std::nullopt;
-    try {
-      return sheet_from_text(read_text(file), file.string()).prices;
-    } catch (const std::exception& error) {
-      store_.set_aside(file, error.what());
-      return std::nullopt;
-    }
-  }
-
-  // Costs that this build has already measured on this processor: a continued run does not change
-  // the report of finished cells. The problem is created again, and a failure of the measurement
-  // does not cost the metadata.
-  std::optional<MeasuredPrices> prices_of(const Component& component, const std::string& file) {
-    const std::string build = prices_build(component);
-    auto stored = stored_prices(store_.folder() / "components" / file);
-    if (are_ours(stored, build)) return stored;
-    const auto measured = [&] {
-      Sheet sheet;
-      sheet.options_text = "[]";
-      sheet.prices = measure_prices(make_problem(catalog_, component, 0), build);
-      return file_text(sheet);
-    };
-    const auto text = isolated(measured).text;
-    if (text) try {
-        return sheet_from_text(*text, "prices of " + component.spec).prices;
-      } catch (const UsageError&) {  // declared ones are counted with
-      }
-    return std::nullopt;
-  }
-
-  IsolatedText isolated(const std::function<std::string()>& work) {
-    return isolated_text(work, kSheetSeconds, Limits{}.memory_bytes, [&] { progress_.show(); });
-  }
-
-  const Catalog& catalog_;
-  Store& store_;
-  Progress progress_;
-  std::set<std::string> known_;
-};
-
-}  // namespace
 
 void write_sheets(const Catalog& catalog, const std::vector<Request>& requests, Store& store,
                   Progress::Style style) {

@@ -2,36 +2,26 @@
 // oracles.
 #pragma once
 
-#include <optional>
+#include <string>
 #include <vector>
 
 #include "benchmarks/plan/catalog.h"
 #include "benchmarks/run/progress.h"
 #include "benchmarks/run/store.h"
-#include "core/records/plan.h"
 #include "core/records/request.h"
 #include "core/records/sheet.h"
 
 namespace isoline::benchmarks {
 
-using problems::Problem;
-
-// The cost of each oracle of a problem, measured in forward solves. Budgets count nominal costs;
-// these are stored in the problem's metadata, for reports.
-
 // A cost is resolved if a forward solve takes a microsecond and the rounds agree within a factor:
 // below, a call is mostly overhead, and its cost varies more between sessions than between rounds.
-inline constexpr double kLeastForwardSeconds = 1e-6;
 bool is_resolved(const MeasuredPrice& price, double forward_seconds);
 
-// Every oracle that the problem offers, at its start; for a learned problem, only its network.
-// Takes some 10 ms per oracle. Omits a dense matrix that would take more than 10 ms by its nominal
-// cost, and everything that is left after one second.
+// The cost in forward solves of every oracle that the problem offers, at its start; for a learned
+// problem, also of its network alone. Budgets count nominal costs; these are for reports. Takes
+// some 10 ms per oracle. Omits a dense matrix that would take more than 10 ms by its nominal cost,
+// and everything that is left after one second.
 MeasuredPrices measure_prices(const Problem& problem, const std::string& build);
-
-// The origin of these costs: they hold for one build on one processor.
-std::string prices_build(const Component& problem);
-bool are_ours(const std::optional<MeasuredPrices>& prices, const std::string& build);
 
 // The registry's view of a component: nothing is created, so nothing can fail.
 Sheet described_problem(const Catalog& catalog, const Component& problem);

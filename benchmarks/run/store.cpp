@@ -1,4 +1,5 @@
-// The result folder on disk.
+// The result folder on disk: its files, its locks, which are those of POSIX, owned by the process
+// and not by the open file, and two of its records held against each other.
 #include "benchmarks/run/store.h"
 
 #include <fcntl.h>
@@ -9,12 +10,17 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <set>
 #include <utility>
 
-#include "benchmarks/plan/build_parts.h"
+#include "benchmarks/plan/catalog.h"
 #include "core/errors.h"
 #include "core/files.h"
-#include "core/records/plan.h"
+#include "core/json.h"
+#include "core/records/request.h"
+#include "core/text.h"
 
 namespace isoline::benchmarks {
 namespace fs = std::filesystem;
@@ -26,25 +32,124 @@ fs::path run_path(const fs::path& folder, const std::string& file_name) {
 }
 
 // Held while the plan is read and written: two runs may share a folder.
-class FolderLock {
- public:
+struct FolderLock {
   explicit FolderLock(const fs::path& folder)
-      : descriptor_(open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
-    flock(descriptor_, LOCK_EX);
+      : descriptor(open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
+    flock(descriptor, LOCK_EX);
   }
-  ~FolderLock() { close(descriptor_); }
+  ~FolderLock() { close(descriptor); }
   FolderLock(const FolderLock&) = delete;
   FolderLock& operator=(const FolderLock&) = delete;
 
- private:
-  int descriptor_;
+  const int descriptor;
 };
+
+constexpr const char* kParts[] = {"runs", "components", "checkpoints", ""};
+
+// Nothing if the file does not exist; throws if it is not the record of the request.
+std::optional<Record> stored_record(const fs::path& path, const Request& request) {
+  if (!is_there(path)) return std::nullopt;
+  Record record = read_record(path);
+  require(record.cell == request.cell,
+          [&] { return "it is the record of another cell, " + record.cell; });
+  if (record.status == Status::interrupted) return std::nullopt;
+  return record;
+}
+
+// --- locks
+
+bool lock(int descriptor, short kind, const std::string& cell) {
+  const auto place =
+      static_cast<off_t>(fnv1a(cell) >> 2);  // not negative, with space for the length
+  struct flock one {
+    .l_type = kind, .l_whence = SEEK_SET, .l_start = place, .l_len = 1, .l_pid = 0
+  };
+  while (fcntl(descriptor, F_SETLK, &one) != 0) {
+    if (errno == EACCES || errno == EAGAIN) return false;
+    if (errno != EINTR) break;  // no locks here
+  }
+  return true;
+}
+
+// The locks within [begin, end), each a byte, counted by asking for one and then on either side.
+std::size_t locks_between(int descriptor, off_t begin, off_t end) {
+  if (begin >= end) return 0;
+  struct flock one {
+    .l_type = F_RDLCK, .l_whence = SEEK_SET, .l_start = begin, .l_len = end - begin, .l_pid = 0
+  };
+  if (fcntl(descriptor, F_GETLK, &one) != 0 || one.l_type == F_UNLCK) return 0;
+  if (one.l_start < begin || one.l_start >= end) return 0;  // not one of our locks
+  return 1 + locks_between(descriptor, begin, one.l_start) +
+         locks_between(descriptor, one.l_start + 1, end);
+}
+
+// --- two records of one cell, as they stand in JSON: their curves by iteration, then the rest
+
+std::string shown(const Json& value) {
+  constexpr std::size_t kMost = 60;
+  const std::string text = json_text(value);
+  return text.size() <= kMost ? text : std::string(cut(text, kMost)) + "…";
+}
+
+// The value at a place of a record, or a note that it is missing.
+Json value_at(const Json& json, const Json::json_pointer& place) {
+  return json.contains(place) ? json.at(place) : Json("nothing");
+}
+
+std::string against(const std::string& name, const Json::json_pointer& place, const Json& a,
+                    const Json& b) {
+  return fmt::format("{}: {} against {}", name, shown(value_at(a, place)),
+                     shown(value_at(b, place)));
+}
+
+// The earliest of the first `points` entries of all columns of two curves in which they differ.
+std::string difference_in_curves(const Json& a, const Json& b, std::size_t points) {
+  const Json columns[] = {a.flatten(), b.flatten()};  // by "/counts/forward/17"
+  std::string difference;
+  std::size_t first = points;
+  for (const Json& some : columns)
+    for (const auto& [path, value] : some.items()) {
+      if (value.is_null()) continue;  // a column without entries
+      const Json::json_pointer place(path);
+      const std::size_t i = std::stoul(place.back());
+      if (i >= first || (json_text(value_at(a, place)) == json_text(value_at(b, place)))) continue;
+      first = i;
+      std::string column = place.parent_pointer().to_string().substr(1);
+      std::ranges::replace(column, '/', ' ');
+      std::ranges::replace(column, '_', ' ');
+      column += " at iteration " + shown(a.at("iteration").at(i));
+      difference = against(column, place, a, b);
+    }
+  return difference;
+}
+
+// For spectra, at an iteration where both records have one; then for fields.
+std::string difference_in_what_is_kept(const Record& a, const Record& b) {
+  if (a.spectrum && b.spectrum)
+    for (std::size_t i = 0; i < a.spectrum->iterations.size(); ++i) {
+      const auto& others = b.spectrum->iterations;
+      const auto there = std::ranges::find(others, a.spectrum->iterations[i]);
+      if (there != others.end() &&
+          a.spectrum->sigma[i] !=
+              b.spectrum->sigma[static_cast<std::size_t>(there - others.begin())])
+        return fmt::format("singular values at iteration {}", *there);
+    }
+  if (!a.fields || !b.fields || *a.fields == *b.fields) return "";
+  if (a.fields->iterations != b.fields->iterations) return "iterations of the fields";
+  return fmt::format("fields: {} against {}", a.fields->digest, b.fields->digest);
+}
 
 }  // namespace
 
+// Removes what killed runs of this machine left half-written; all other files belong to someone.
 Store::Store(fs::path folder) : folder_(std::move(folder)) {
   make_folders();
-  sweep();
+  for (const char* part : kParts)
+    for (const std::string& name : names_in(folder_ / part))
+      if (const fs::path path = folder_ / part / name; is_abandoned(path)) {
+        std::error_code error;
+        fs::remove(path, error);
+      }
 }
 
 std::string Store::name_of(const Request& request) {
@@ -56,7 +161,7 @@ bool Store::has(const Request& request) const {
 }
 
 void Store::make_folders() const {
-  for (const char* part : {"runs", "components", "checkpoints", ""}) {
+  for (const char* part : kParts) {
     std::error_code error;
     fs::create_directories(folder_ / part, error);
     require(!error, [&] {
@@ -67,16 +172,6 @@ void Store::make_folders() const {
       return fmt::format("cannot write to {}: {}", (folder_ / part).string(), strerror(errno));
     });
   }
-}
-
-// Removes only what our own writing leaves behind; all other files belong to someone.
-void Store::sweep() const {
-  for (const char* part : {"", "runs", "components", "checkpoints"})
-    for (const std::string& name : names_in(folder_ / part))
-      if (const fs::path path = folder_ / part / name; is_abandoned(path)) {
-        std::error_code error;
-        fs::remove(path, error);
-      }
 }
 
 void Store::set_aside(const fs::path& path, const std::string& reason) {
@@ -123,20 +218,6 @@ void Store::plan(const std::string& suite, const std::vector<PlannedCell>& cells
     if (known.insert(cell.cell).second) plan.cells.push_back(cell);
   write_text(path, file_text(plan));
 }
-
-namespace {
-
-// Nothing if the file does not exist; throws if it is not the record of the request.
-std::optional<Record> stored_record(const fs::path& path, const Request& request) {
-  if (!is_there(path)) return std::nullopt;
-  Record record = read_record(path);
-  require(record.cell == request.cell,
-          [&] { return "it is the record of another cell, " + record.cell; });
-  if (record.status == Status::interrupted) return std::nullopt;
-  return record;
-}
-
-}  // namespace
 
 std::optional<Record> Store::find(const Request& request) {
   const fs::path path = run_path(folder_, name_of(request));
@@ -186,32 +267,29 @@ void Store::write(Record record, const std::optional<Record>& earlier) {
                  earlier->repeat_wall_seconds.end());
     std::ranges::sort(times);
   }
-  try_to_write([&] { write_files(record); });
+  const fs::path path = run_path(folder_, record.file_name()), fields = field_path(path);
+  try_to_write([&] {
+    if (record.fields && !record.fields->numbers.empty()) {
+      clear_way(fields);
+      write_text(fields, field_file(*record.fields));
+    }
+    clear_way(path);
+    write_text(path, file_text(record));
+    std::error_code unknown;
+    if (!record.fields) fs::remove(fields, unknown);  // of an earlier run that kept them
+  });
 }
 
 void Store::try_to_write(const std::function<void()>& write) {
   constexpr int kTries = 3;
   for (int i = 1;; ++i) {
     try {
+      if (i > 1) make_folders();
       return write();
     } catch (const std::exception&) {
       if (i == kTries) throw;
-      make_folders();
     }
   }
-}
-
-void Store::write_files(const Record& record) {
-  const fs::path path = run_path(folder_, record.file_name());
-  const fs::path fields = field_path(path);
-  if (record.fields && !record.fields->numbers.empty()) {
-    clear_way(fields);
-    write_text(fields, field_file(*record.fields));
-  }
-  clear_way(path);
-  write_text(path, file_text(record));
-  std::error_code unknown;
-  if (!record.fields) fs::remove(fields, unknown);  // of an earlier run that kept them
 }
 
 fs::path Store::checkpoint_path(const Request& request) const {
@@ -229,6 +307,63 @@ void Store::write(const Sheet& sheet) {
     clear_way(path);
     write_text(path, file_text(sheet));
   });
+}
+
+Holds::Holds(const std::filesystem::path& folder)
+    : descriptor_(open((folder / "cells.lock").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644)) {
+  require(descriptor_ >= 0, [&] {
+    return fmt::format("cannot write in {}: {}", folder.string(), std::strerror(errno));
+  });
+}
+
+Holds::~Holds() { close(descriptor_); }
+
+bool Holds::take(const std::string& cell) { return lock(descriptor_, F_WRLCK, cell); }
+
+void Holds::release(const std::string& cell) { lock(descriptor_, F_UNLCK, cell); }
+
+std::size_t held_cells(const std::filesystem::path& folder) {
+  const int descriptor = open((folder / "cells.lock").c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+  if (descriptor < 0) return 0;
+  const std::size_t count = locks_between(descriptor, 0, std::numeric_limits<off_t>::max());
+  close(descriptor);
+  return count;
+}
+
+bool same_result(const Record& a, const Record& b) {
+  Json left = without_timings(to_json(a)), right = without_timings(to_json(b));
+  left.erase("provenance");
+  right.erase("provenance");
+  return left == right && difference_in_what_is_kept(a, b).empty();
+}
+
+Comparison compare_results(const Record& a, const Record& b) {
+  Comparison found{.is_up_to_there = a.is_nondeterministic || b.is_nondeterministic};
+  const auto &of_a = a.curve.iteration, &of_b = b.curve.iteration;
+  std::size_t points = std::min(of_a.size(), of_b.size());
+  // The last point of a run that was ended is where it was ended.
+  const std::int64_t end = points > 0 ? std::min(of_a.back(), of_b.back()) : 0;
+  while (found.is_up_to_there && points > 0 && std::max(of_a[points - 1], of_b[points - 1]) >= end)
+    --points;
+  if (points > 0) found.iterations = of_a[points - 1];
+  Json left = result_of(to_json(a)), right = result_of(to_json(b));
+  found.difference = difference_in_curves(left.at("curve"), right.at("curve"), points);
+  if (!found.difference.empty() || found.is_up_to_there) return found;
+  if (of_a.size() != of_b.size()) {
+    found.difference =
+        fmt::format("last iteration: {} against {}", a.summary.iterations, b.summary.iterations);
+    return found;
+  }
+  for (Json* rest : {&left, &right})  // what another build names otherwise
+    for (const char* name : {"curve", "build", "build_parts"}) rest->erase(name);
+  const Json patch = Json::diff(left, right);
+  if (patch.empty()) {
+    found.difference = difference_in_what_is_kept(a, b);
+  } else {
+    const std::string path = patch[0].at("path");
+    found.difference = against(path.substr(1), Json::json_pointer(path), left, right);
+  }
+  return found;
 }
 
 }  // namespace isoline::benchmarks

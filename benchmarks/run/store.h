@@ -1,17 +1,17 @@
-// A result folder: what was planned, what is done, and one whole file a record.
+// A result folder: what was planned, what is done, what is being done, and one whole file a record.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <map>
 #include <optional>
-#include <set>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "core/records/plan.h"
 #include "core/records/record.h"
+#include "core/records/request.h"
 #include "core/records/sheet.h"
 
 namespace isoline::benchmarks {
@@ -27,19 +27,18 @@ class Store {
   void plan(const std::string& suite, const std::vector<PlannedCell>& cells);
 
   // The record of this request by this build, unless it is missing, damaged or interrupted. A
-  // damaged one is moved away; `find_in`, which only reads, leaves it in place.
+  // damaged one is moved away, by `find_in` it is left.
   std::optional<Record> find(const Request& request);
   static std::optional<Record> find_in(const std::filesystem::path& folder, const Request& request);
 
-  // The file name of this build's record of the request, and whether a file of any kind has this
-  // name.
+  // The file name of this build's record of the request, and whether anything has this name.
   static std::string name_of(const Request& request);
   bool has(const Request& request) const;
 
   // Creates the folder and its subfolders if they are missing; UsageError if that fails.
   void make_folders() const;
-  // Moves a file that cannot be read as what it should be into `damaged/`, where nothing is ever
-  // overwritten, with a remark that names it and the reason.
+  // Moves a file that is not what it should be into `damaged/`, where nothing is ever overwritten,
+  // with a remark that names it and the reason.
   void set_aside(const std::filesystem::path& path, const std::string& reason);
 
   // Messages for the user, one sentence each.
@@ -55,10 +54,8 @@ class Store {
   void remove_checkpoint(const Request& request) const;
 
  private:
-  void write_files(const Record& record);
   // Creates the folders again if they are removed during the run.
   void try_to_write(const std::function<void()>& write);
-  void sweep() const;  // removes what killed runs of this machine left half-written
   void clear_way(
       const std::filesystem::path& path);  // where a file is to stand: of a folder, a pipe
 
@@ -78,5 +75,39 @@ class RecordsOfAnyBuild {
  private:
   std::map<std::string, std::vector<std::filesystem::path>> paths_;  // by cell
 };
+
+// Locks on one file of the folder, one byte per cell. The system releases them when their process
+// ends, in whatever way; its children do not share them. On a file system without locks some work
+// is done twice, and nothing is lost. One object per folder and process: closing the file drops
+// all.
+class Holds {
+ public:
+  explicit Holds(const std::filesystem::path& folder);
+  ~Holds();
+  Holds(const Holds&) = delete;
+  Holds& operator=(const Holds&) = delete;
+
+  bool take(const std::string& cell);  // false while another process has it
+  void release(const std::string& cell);
+
+ private:
+  int descriptor_;
+};
+
+// How many cells of a result folder runs in other processes hold at the moment, according to the
+// file system; 0 if the folder has none.
+std::size_t held_cells(const std::filesystem::path& folder);
+
+// Whether two runs of one cell by one build gave the same, bit for bit, timings aside.
+bool same_result(const Record& a, const Record& b);
+
+struct Comparison {
+  std::string difference;       // the first, "loss at iteration 17: 0.25 against 0.26"; empty: none
+  std::int64_t iterations = 0;  // up to here
+  bool is_up_to_there = false;  // a clock or a kill ended one of them: only so far
+};
+
+// The curve first, by iteration, then all else that the request and not the build decides.
+Comparison compare_results(const Record& a, const Record& b);
 
 }  // namespace isoline::benchmarks

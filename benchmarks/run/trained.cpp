@@ -5,7 +5,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cstring>
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <numeric>
@@ -15,15 +14,13 @@
 #include "core/files.h"
 #include "core/json.h"
 #include "core/options.h"
-#include "core/records/schema.h"
+#include "core/records/json_view.h"
 #include "core/text.h"
 
 namespace isoline::benchmarks {
 
 using problems::Batch;
 namespace {
-
-constexpr const char* kSchema = "isoline.network/1";
 
 Json component_json(const Component& component) {
   return {
@@ -36,52 +33,11 @@ Component component_from(const Json& json) {
           .spec = json.at("spec")};
 }
 
-Json header_of(const TrainedNetwork& network) {
-  return {{"schema", kSchema},
-          {"problem", component_json(network.problem)},
-          {"optimizer", component_json(network.optimizer)},
-          {"seed", network.seed},
-          {"iterations", network.iterations},
-          {"loss", json_number(network.loss)},
-          {"x_error", json_number(network.x_error)},
-          {"parameters", network.theta.size()},
-          {"statistics", network.statistics.size()}};
-}
-
-// All but its numbers, by a header of the right form.
-TrainedNetwork from_header(const Json& json) {
-  static const Schema schema(parse_json(std::string(builtin_schemas().at("network")), "schema"));
-  const std::vector<std::string> violations = schema.violations(json);
-  require(violations.empty(), [&] { return violations[0]; });
-  return {.problem = component_from(json.at("problem")),
-          .optimizer = component_from(json.at("optimizer")),
-          .seed = json.at("seed"),
-          .iterations = json.at("iterations"),
-          .loss = real_of(json.at("loss")),
-          .x_error = real_of(json.at("x_error")),
-          .theta = {},
-          .statistics = {}};
-}
-
 Json values_of(const Vector& vector) {
   return json_numbers({vector.data(), static_cast<std::size_t>(vector.size())});
 }
 
-std::string_view bytes_of(const Vector& vector) {
-  return {reinterpret_cast<const char*>(vector.data()),
-          sizeof(Real) * static_cast<std::size_t>(vector.size())};
-}
-
-// The number in the header must equal the number of values: memory is never allocated by the header
-// alone.
-void require_count(const Json& header, const char* name, std::size_t there) {
-  const auto said = header.at(name).get<std::uint64_t>();
-  require(said == there, [&] {
-    return fmt::format("its \"{}\" is {}, but it has {} numbers", name, count_text(said),
-                       count_text(there));
-  });
-}
-
+// The numbers of a list, which leaves the document: the schema holds the rest.
 Vector taken(Json& json, const char* list) {
   require(json.contains(list), [&] { return fmt::format("it has no \"{}\"", list); });
   require(json[list].is_array(), [&] { return fmt::format("its \"{}\" is not a list", list); });
@@ -90,44 +46,12 @@ Vector taken(Json& json, const char* list) {
   return Eigen::Map<const Vector>(values.data(), static_cast<Index>(values.size()));
 }
 
-TrainedNetwork from_json(Json json) {
-  require(json.is_object(), "it is not a JSON object");
-  const Vector theta = taken(json, "theta"), statistics = taken(json, "mean_statistics");
-  TrainedNetwork network = from_header(json);
-  require_count(json, "parameters", static_cast<std::size_t>(theta.size()));
-  require_count(json, "statistics", static_cast<std::size_t>(statistics.size()));
-  network.theta = theta;
-  network.statistics = statistics;
-  return network;
-}
-
-// A line that is an object without "theta" is a header: raw numbers follow it.
-Json header_in(const std::string& line) {
-  try {
-    Json header = parse_json(line, "its header");
-    return header.is_object() && !header.contains("theta") ? header : Json();
-  } catch (const UsageError&) {  // the beginning of a document of many lines
-    return {};
-  }
-}
-
-TrainedNetwork from_raw(const Json& header, std::string_view numbers) {
-  TrainedNetwork network = from_header(header);
-  const auto said = header.at("parameters").get<std::uint64_t>();
-  const std::size_t there = numbers.size() / sizeof(Real);
-  require(numbers.size() % sizeof(Real) == 0 && said <= there, [&] {
-    return fmt::format(
-        "it is truncated: {} bytes follow its header, which declares {} numbers of 8",
-        numbers.size(), count_text(said));
+void require_count(const Json& json, const char* name, Index there) {
+  const auto said = json.at(name).get<std::uint64_t>(), found = static_cast<std::uint64_t>(there);
+  require(said == found, [&] {
+    return fmt::format("its \"{}\" is {}, but it has {} numbers", name, count_text(said),
+                       count_text(found));
   });
-  require_count(header, "statistics", there - said);
-  network.theta.resize(static_cast<Index>(said));
-  network.statistics.resize(static_cast<Index>(there - said));
-  if (said > 0) std::memcpy(network.theta.data(), numbers.data(), said * sizeof(Real));
-  if (said < there)
-    std::memcpy(network.statistics.data(), numbers.data() + said * sizeof(Real),
-                (there - said) * sizeof(Real));
-  return network;
 }
 
 // N where samples are N×N grids, else 0.
@@ -159,25 +83,37 @@ Matrix samples_of(const NumberArray& input, Index inputs, const std::string& ori
 }  // namespace
 
 void write_network(const TrainedNetwork& network, const std::filesystem::path& path) {
-  Json json = header_of(network);
-  if (path.extension() == ".json") {
-    json["theta"] = values_of(network.theta);
-    json["mean_statistics"] = values_of(network.statistics);
-    return write_text(path, json_text(json) + "\n");
-  }
-  std::string text = json_text(json) + "\n";
-  text += bytes_of(network.theta);
-  text += bytes_of(network.statistics);
-  write_text(path, text);
+  const Json json{{"schema", "isoline.network/1"},
+                  {"problem", component_json(network.problem)},
+                  {"optimizer", component_json(network.optimizer)},
+                  {"seed", network.seed},
+                  {"iterations", network.iterations},
+                  {"loss", json_number(network.loss)},
+                  {"x_error", json_number(network.x_error)},
+                  {"parameters", network.theta.size()},
+                  {"statistics", network.statistics.size()},
+                  {"theta", values_of(network.theta)},
+                  {"mean_statistics", values_of(network.statistics)}};
+  write_text(path, json_text(json) + "\n");
 }
 
-// However a JSON document is laid out.
 TrainedNetwork network_from_text(const std::string& text) {
-  const std::size_t end = text.find('\n');
-  const bool has_more = end != std::string::npos && end + 1 < text.size();
-  const Json header = has_more ? header_in(text.substr(0, end)) : Json();
-  if (header.is_object()) return from_raw(header, std::string_view(text).substr(end + 1));
-  return from_json(parse_json(text, "it"));
+  static const Schema schema(parse_json(std::string(builtin_schemas().at("network")), "schema"));
+  Json json = parse_json(text, "it");
+  require(json.is_object(), "it is not a JSON object");
+  const Vector theta = taken(json, "theta"), statistics = taken(json, "mean_statistics");
+  const std::vector<std::string> violations = schema.violations(json);
+  require(violations.empty(), [&] { return violations[0]; });
+  require_count(json, "parameters", theta.size());
+  require_count(json, "statistics", statistics.size());
+  return {.problem = component_from(json.at("problem")),
+          .optimizer = component_from(json.at("optimizer")),
+          .seed = json.at("seed"),
+          .iterations = json.at("iterations"),
+          .loss = real_of(json.at("loss")),
+          .x_error = real_of(json.at("x_error")),
+          .theta = theta,
+          .statistics = statistics};
 }
 
 TrainedNetwork read_network(const std::filesystem::path& path) {

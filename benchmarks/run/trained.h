@@ -18,8 +18,7 @@ struct TrainedNetwork {
   Vector theta, statistics;    // (n), and what Network::infer is given
 };
 
-// As JSON where the name ends in .json, else the same with its numbers as raw bytes behind it.
-// Whole or not at all.
+// As JSON, whole or not at all.
 void write_network(const TrainedNetwork& network, const std::filesystem::path& path);
 TrainedNetwork read_network(const std::filesystem::path& path);  // UsageError if it is not valid
 TrainedNetwork network_from_text(const std::string& text);       // what such a file holds

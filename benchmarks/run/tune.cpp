@@ -1,4 +1,4 @@
-// Grids of tuning: the option of a method, the values and their unit.
+// The option of a method that is tuned, its values and their unit, their scores, and the choice.
 #include "benchmarks/run/tune.h"
 
 #include <fmt/format.h>
@@ -10,8 +10,8 @@
 
 #include "benchmarks/run/isolate.h"
 #include "core/json.h"
-#include "core/ladder.h"
 #include "core/options.h"
+#include "core/status.h"
 #include "optimizers/optimizer.h"
 #include "problems/problem.h"
 
@@ -20,7 +20,6 @@ namespace isoline::benchmarks {
 using optimizers::Tunable;
 namespace {
 
-constexpr double kUnitSeconds = 30;
 constexpr const char* kNested = "network-optimizer";
 
 const OptionField* field_of(const OptimizerEntry& entry, const std::string& option) {
@@ -28,17 +27,15 @@ const OptionField* field_of(const OptimizerEntry& entry, const std::string& opti
   return at == entry.options.end() ? nullptr : &*at;
 }
 
-Real number_of(const OptionValue& value) {
-  if (const Index* whole = std::get_if<Index>(&value)) return static_cast<Real>(*whole);
-  const Real* number = std::get_if<Real>(&value);
-  return number ? *number : 1;
-}
-
 Knob knob_of_field(const OptimizerEntry& entry, const OptionField& field) {
+  const Index* const whole = std::get_if<Index>(&field.standard);
+  const Real* const number = std::get_if<Real>(&field.standard);
   return {.option = field.name,
-          .standard = number_of(field.standard),
+          .standard = whole    ? static_cast<Real>(*whole)
+                      : number ? *number
+                               : 1,
           .range = field.range,
-          .is_whole = std::holds_alternative<Index>(field.standard),
+          .is_whole = whole != nullptr,
           .tunable = entry.tunable};
 }
 
@@ -62,6 +59,28 @@ Knob knob_inside(const Catalog& catalog, const OptimizerEntry& outer, const Comp
   return knob;
 }
 
+// For an option that is named; UsageError where the method has no such number.
+Knob knob_named(const Catalog& catalog, const std::string& optimizer, const Component& problem,
+                const OptionValues& given, const std::string& option) {
+  const OptimizerEntry& entry = catalog.optimizers.at(optimizer);
+  const OptionField* field = field_of(entry, option);
+  if (!field && option == "rate" && field_of(entry, kNested))
+    return knob_inside(catalog, entry, problem, given);
+  const bool is_number = field && !std::holds_alternative<bool>(field->standard) &&
+                         !std::holds_alternative<std::string>(field->standard);
+  require(is_number, [&] { return fmt::format("{} has no number {} to tune", optimizer, option); });
+  Knob knob = knob_of_field(entry, *field);
+  knob.standard = given.number(option, knob.standard);
+  return knob;
+}
+
+Real three_digits(Real value) {  // enough of a rate, and they read well
+  Real result = 0;
+  const std::string text = fmt::format("{:.3g}", value);
+  std::from_chars(text.data(), text.data() + text.size(), result);
+  return result;
+}
+
 std::optional<Real> allowed(const Knob& knob, Real value) {
   value = knob.is_whole ? std::round(value) : three_digits(value);
   return value > 0 && contains(knob.range, value) ? std::optional(value) : std::nullopt;
@@ -80,6 +99,156 @@ Real measured_cauchy_step(const Problem& problem) {
   return gradient.squaredNorm() / pushed.cwiseProduct(curved).sum();
 }
 
+// ‖∇L‖²/‖J∇L‖² at the problem's start, in a process of its own; 1 where it cannot be had.
+Real cauchy_step(const Catalog& catalog, const Component& problem) {
+  constexpr double kSeconds = 30;
+  const auto measured = [&] {
+    return json_text(json_number(measured_cauchy_step(make_problem(catalog, problem, 0))));
+  };
+  const auto text = isolated_text(measured, kSeconds).text;
+  const Real step = text ? real_of(parse_json(*text, "Cauchy step")) : 1;
+  return std::isfinite(step) && step > 0 ? step : 1;
+}
+
+// --- scores, read off records
+
+Real median(std::vector<Real> values) {
+  std::ranges::sort(values, [](Real a, Real b) { return std::isnan(b) ? !std::isnan(a) : a < b; });
+  const std::size_t half = values.size() / 2;
+  return values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
+}
+
+// Until solved in x at stored iterations, or in loss; infinite if neither.
+Real work_of(const Record& run) {
+  const std::size_t target = rung_of(1e-6);
+  if (run.aim == Aim::loss) {
+    const bool is_hit = run.hits && run.hits->work.at(target) >= 0;
+    return is_hit ? static_cast<Real>(run.hits->work[target]) : INFINITY;
+  }
+  if (!run.x_scale) return INFINITY;
+  const Real goal = x_goal(rung(target), *run.x_scale, run.x_floor);
+  for (std::size_t i = 0; i < run.curve.x_error.size(); ++i)
+    if (run.curve.x_error[i] <= goal) return static_cast<Real>(run.curve.work[i]);
+  return INFINITY;
+}
+
+// --- the choice of one option over a recorded grid
+
+struct Candidate {
+  TunedPair pair;
+  Knob knob;
+  TunedOption tuned = {};
+  std::vector<std::vector<Request>> runs = {};  // of each value; none: it is new
+  bool may_grow = false, is_inapplicable = false;
+  int below = 0, above = 0;  // values added at either edge
+};
+
+OptionValues options_at(const Candidate& candidate, Real value) {
+  return with_value(candidate.knob, candidate.pair.options, value);
+}
+
+void add_value(Candidate& candidate, std::size_t place, Real value) {
+  const auto at = static_cast<std::ptrdiff_t>(place);
+  TunedOption& tuned = candidate.tuned;
+  tuned.values.insert(tuned.values.begin() + at, value);
+  tuned.scores.insert(tuned.scores.begin() + at, TuningScore());
+  candidate.runs.emplace(candidate.runs.begin() + at);
+}
+
+Candidate candidate_of(const Catalog& catalog, const TunedPair& pair, const TuningPlan& plan) {
+  std::optional<Knob> knob;
+  std::vector<Real> values;
+  if (const auto& grid = plan.grid) {
+    knob = knob_named(catalog, pair.optimizer, pair.problem, pair.options, grid->option);
+    Real unit = grid->unit == "published" ? knob->standard : 1;
+    if (grid->unit == "cauchy") unit = cauchy_step(catalog, pair.problem);
+    for (const Real each : grid->values)
+      values.push_back(knob->is_whole ? std::round(unit * each) : three_digits(unit * each));
+  } else {
+    knob = knob_of(catalog, pair.optimizer, pair.problem, pair.options);
+    require(knob.has_value(), [&] { return pair.optimizer + " has nothing to tune"; });
+    const bool in_cauchy_steps = knob->tunable.unit == Tunable::Unit::cauchy;
+    values = grid_of(*knob, in_cauchy_steps ? cauchy_step(catalog, pair.problem) : knob->standard);
+  }
+  Candidate candidate{.pair = pair, .knob = *knob, .may_grow = !plan.grid};
+  candidate.tuned.problem = pair.problem.spec;
+  candidate.tuned.optimizer = pair.optimizer;
+  candidate.tuned.option = knob->option + (knob->rule.empty() ? "" : " of " + knob->rule);
+  for (std::size_t i = 0; i < values.size(); ++i) add_value(candidate, i, values[i]);
+  return candidate;
+}
+
+// The runs of the values that have none yet.
+void add_runs(const Catalog& catalog, const TuningPlan& plan, Candidate& candidate,
+              std::vector<Request>& all) {
+  const TunedPair& pair = candidate.pair;
+  for (std::size_t i = 0; i < candidate.runs.size(); ++i) {
+    std::vector<Request>& runs = candidate.runs[i];
+    if (!runs.empty()) continue;
+    const OptionValues options = options_at(candidate, candidate.tuned.values[i]);
+    const Component optimizer = complete_optimizer(catalog, pair.optimizer, options);
+    for (const std::uint64_t seed : plan.seeds)
+      runs.push_back(named(
+          {.problem = pair.problem, .optimizer = optimizer, .seed = seed, .budget = pair.budget}));
+    all.insert(all.end(), runs.begin(), runs.end());
+  }
+}
+
+void judge(const std::filesystem::path& folder, Candidate& candidate) {
+  TunedOption& tuned = candidate.tuned;
+  for (std::size_t i = 0; i < tuned.values.size(); ++i) {
+    std::vector<Record> records;
+    for (const Request& request : candidate.runs[i])
+      if (auto record = Store::find_in(folder, request)) records.push_back(std::move(*record));
+    candidate.is_inapplicable |= std::ranges::any_of(
+        records, [](const Record& record) { return record.status == Status::inapplicable; });
+    const bool is_whole = records.size() == candidate.runs[i].size();
+    tuned.scores[i] = is_whole ? score_of(records) : TuningScore();
+  }
+  tuned.best = best_value(tuned.values, tuned.scores, candidate.knob.standard);
+  // After a tie with its neighbour, no further value is tried.
+  const std::size_t last = tuned.values.size() - 1;
+  const bool is_last = tuned.best == last, is_outermost = tuned.best == 0 || is_last;
+  tuned.is_at_edge =
+      last > 0 && is_outermost && tuned.scores[tuned.best] < tuned.scores[is_last ? last - 1 : 1];
+}
+
+// One more value beyond the edge that the best stands at; whether there may be one.
+bool grow(Candidate& candidate) {
+  const TunedOption& tuned = candidate.tuned;
+  if (!candidate.may_grow || candidate.is_inapplicable || !tuned.is_at_edge) return false;
+  const bool upward = tuned.best > 0;
+  int& added = upward ? candidate.above : candidate.below;
+  const auto value = value_beyond(candidate.knob, tuned.values, upward);
+  if (!value || added == kMostExtensions) return false;
+  ++added;
+  add_value(candidate, upward ? tuned.values.size() : 0, *value);
+  return true;
+}
+
+Json candidate_row(const Candidate& candidate, const Budget& usual) {
+  const auto number_of = [](Real value) {
+    return std::isfinite(value) ? Json(three_digits(value)) : json_number(value);
+  };
+  const TunedOption& tuned = candidate.tuned;
+  Json scores = Json::array(), expected = Json::array();
+  std::vector<Real> left;
+  for (const TuningScore& score : tuned.scores) {
+    left.push_back(score.left);
+    scores.push_back({json_number(score.work), number_of(score.left)});
+  }
+  for (const Real each : best_of(left)) expected.push_back(number_of(each));
+  Json source{
+      {"grid", {{candidate.knob.option, tuned.values}}}, {"score", scores}, {"best_of", expected}};
+  if (tuned.is_at_edge) source["edge"] = true;
+  const Budget& budget = candidate.pair.budget;
+  if (budget.work != usual.work) source["work"] = budget.work;
+  return {{"problem", tuned.problem},
+          {"optimizer", tuned.optimizer},
+          {"options", to_json(options_at(candidate, tuned.values[tuned.best]))},
+          {"source", source}};
+}
+
 }  // namespace
 
 std::optional<Knob> knob_of(const Catalog& catalog, const std::string& optimizer,
@@ -92,20 +261,6 @@ std::optional<Knob> knob_of(const Catalog& catalog, const std::string& optimizer
   return knob_named(catalog, optimizer, problem, given, tunable.option);
 }
 
-Knob knob_named(const Catalog& catalog, const std::string& optimizer, const Component& problem,
-                const OptionValues& given, const std::string& option) {
-  const OptimizerEntry& entry = catalog.optimizers.at(optimizer);
-  const OptionField* field = field_of(entry, option);
-  if (!field && option == "rate" && field_of(entry, kNested))
-    return knob_inside(catalog, entry, problem, given);
-  const bool is_number = field && !std::holds_alternative<bool>(field->standard) &&
-                         !std::holds_alternative<std::string>(field->standard);
-  require(is_number, [&] { return fmt::format("{} has no number {} to tune", optimizer, option); });
-  Knob knob = knob_of_field(entry, *field);
-  knob.standard = given.number(option, knob.standard);
-  return knob;
-}
-
 OptionValues with_value(const Knob& knob, OptionValues given, Real value) {
   if (knob.is_whole)
     given.set(knob.option, static_cast<Index>(std::round(value)));
@@ -114,15 +269,6 @@ OptionValues with_value(const Knob& knob, OptionValues given, Real value) {
   else
     given.set(kNested, fmt::format("{}[{}={}]", knob.rule, knob.option, value));
   return given;
-}
-
-Real cauchy_step(const Catalog& catalog, const Component& problem) {
-  const auto measured = [&] {
-    return json_text(json_number(measured_cauchy_step(make_problem(catalog, problem, 0))));
-  };
-  const auto text = isolated_text(measured, kUnitSeconds).text;
-  const Real step = text ? real_of(parse_json(*text, "Cauchy step")) : 1;
-  return std::isfinite(step) && step > 0 ? step : 1;
 }
 
 std::vector<Real> grid_of(const Knob& knob, Real unit) {
@@ -147,20 +293,6 @@ std::optional<Real> value_beyond(const Knob& knob, const std::vector<Real>& valu
   return each && *each != values.front() && *each != values.back() ? each : std::nullopt;
 }
 
-Real three_digits(Real value) {
-  Real result = 0;
-  const std::string text = fmt::format("{:.3g}", value);
-  std::from_chars(text.data(), text.data() + text.size(), result);
-  return result;
-}
-
-std::vector<Real> values_of(const Knob& knob, const GivenGrid& grid, Real unit) {
-  std::vector<Real> values;
-  for (const Real each : grid.values)
-    values.push_back(knob.is_whole ? std::round(unit * each) : three_digits(unit * each));
-  return values;
-}
-
 GivenGrid parse_grid(const std::string& text, const std::string& unit) {
   const auto equals = text.find('='), dots = text.find(".."), cross = text.rfind('x');
   Real low = 0, high = 0;
@@ -182,34 +314,6 @@ GivenGrid parse_grid(const std::string& text, const std::string& unit) {
     grid.values.push_back(low * std::pow(high / low, count > 1 ? Real(i) / (count - 1) : 0));
   return grid;
 }
-
-// Scores of tuning, read off records.
-
-namespace {
-
-constexpr Real kTolerance = 1e-6;
-
-Real median(std::vector<Real> values) {
-  std::ranges::sort(values, [](Real a, Real b) { return std::isnan(b) ? !std::isnan(a) : a < b; });
-  const std::size_t half = values.size() / 2;
-  return values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
-}
-
-// Until solved in x at stored iterations, or in loss; infinite if neither.
-Real work_of(const Record& run) {
-  const std::size_t target = rung_of(kTolerance);
-  if (run.aim == Aim::loss) {
-    const bool is_hit = run.hits && run.hits->work.at(target) >= 0;
-    return is_hit ? static_cast<Real>(run.hits->work[target]) : INFINITY;
-  }
-  if (!run.x_scale) return INFINITY;
-  const Real goal = x_goal(rung(target), *run.x_scale, run.x_floor);
-  for (std::size_t i = 0; i < run.curve.x_error.size(); ++i)
-    if (run.curve.x_error[i] <= goal) return static_cast<Real>(run.curve.work[i]);
-  return INFINITY;
-}
-
-}  // namespace
 
 TuningScore score_of(const std::vector<Record>& runs) {
   std::vector<Real> work, left;
@@ -251,177 +355,30 @@ std::vector<Real> best_of(std::vector<Real> losses) {
   return expected;
 }
 
-// The choice of one option over a recorded grid.
-
-using optimizers::Tunable;
-namespace {
-
-struct Trial {
-  Real value = 0;
-  std::vector<Request> runs = {};
-  std::optional<TuningScore> score = {};
-};
-
-// One pair: its grid of values, ascending, and what each came to.
-struct Candidate {
-  TunedPair pair;
-  Knob knob;
-  std::vector<Trial> trials = {};
-  bool may_grow = false, is_inapplicable = false;
-  int below = 0, above = 0;  // values added at either edge
-
-  std::vector<Real> values() const {
-    std::vector<Real> all;
-    for (const Trial& trial : trials) all.push_back(trial.value);
-    return all;
-  }
-  std::vector<TuningScore> scores() const {
-    std::vector<TuningScore> all;
-    for (const Trial& trial : trials) all.push_back(trial.score.value_or(TuningScore{}));
-    return all;
-  }
-  std::size_t best() const { return best_value(values(), scores(), knob.standard); }
-  // The best value is at an edge, and better than its neighbour; after a tie, no further value is
-  // tried.
-  bool is_at_edge() const {
-    const std::size_t i = best(), last = trials.size() - 1;
-    if (last == 0 || (i > 0 && i < last)) return false;
-    const std::vector<TuningScore> all = scores();
-    return all[i] < all[i == 0 ? 1 : last - 1];
-  }
-};
-
-Candidate candidate_of(const Catalog& catalog, const TunedPair& pair, const TuningPlan& plan) {
-  Candidate candidate{.pair = pair};
-  std::vector<Real> values;
-  if (const auto& grid = plan.grid) {
-    candidate.knob = knob_named(catalog, pair.optimizer, pair.problem, pair.options, grid->option);
-    Real unit = grid->unit == "published" ? candidate.knob.standard : 1;
-    if (grid->unit == "cauchy") unit = cauchy_step(catalog, pair.problem);
-    values = values_of(candidate.knob, *grid, unit);
-  } else {
-    const auto knob = knob_of(catalog, pair.optimizer, pair.problem, pair.options);
-    require(knob.has_value(), [&] { return pair.optimizer + " has nothing to tune"; });
-    const bool in_cauchy_steps = knob->tunable.unit == Tunable::Unit::cauchy;
-    candidate.knob = *knob;
-    candidate.may_grow = true;
-    values = grid_of(*knob, in_cauchy_steps ? cauchy_step(catalog, pair.problem) : knob->standard);
-  }
-  for (const Real value : values) candidate.trials.push_back({.value = value});
-  return candidate;
-}
-
-OptionValues options_at(const Candidate& candidate, Real value) {
-  return with_value(candidate.knob, candidate.pair.options, value);
-}
-
-// The runs of the values that have none yet.
-void add_runs(const Catalog& catalog, const TuningPlan& plan, Candidate& candidate,
-              std::vector<Request>& all) {
-  const TunedPair& pair = candidate.pair;
-  for (Trial& trial : candidate.trials) {
-    if (!trial.runs.empty()) continue;
-    const Component optimizer =
-        complete_optimizer(catalog, pair.optimizer, options_at(candidate, trial.value));
-    for (const std::uint64_t seed : plan.seeds)
-      trial.runs.push_back(named(
-          {.problem = pair.problem, .optimizer = optimizer, .seed = seed, .budget = pair.budget}));
-    all.insert(all.end(), trial.runs.begin(), trial.runs.end());
-  }
-}
-
-void judge(const std::filesystem::path& folder, Candidate& candidate) {
-  for (Trial& trial : candidate.trials) {
-    if (trial.score) continue;
-    std::vector<Record> records;
-    for (const Request& request : trial.runs)
-      if (auto record = Store::find_in(folder, request)) records.push_back(std::move(*record));
-    candidate.is_inapplicable |= std::ranges::any_of(
-        records, [](const Record& record) { return record.status == Status::inapplicable; });
-    const bool is_whole = records.size() == trial.runs.size();
-    trial.score = is_whole ? score_of(records) : TuningScore{};
-  }
-}
-
-// One more value beyond the edge that the best stands at, where there may be one.
-void grow(Candidate& candidate) {
-  if (!candidate.may_grow || candidate.is_inapplicable || !candidate.is_at_edge()) return;
-  const bool upward = candidate.best() > 0;
-  int& added = upward ? candidate.above : candidate.below;
-  const auto value = value_beyond(candidate.knob, candidate.values(), upward);
-  if (!value || added == kMostExtensions) return;
-  ++added;
-  auto& trials = candidate.trials;
-  trials.insert(upward ? trials.end() : trials.begin(), {.value = *value});
-}
-
-Json number_of(Real value) {
-  return std::isfinite(value) ? Json(three_digits(value)) : json_number(value);
-}
-
-Json candidate_row(const Candidate& candidate, const Budget& usual) {
-  Json values = Json::array(), scores = Json::array(), expected = Json::array();
-  std::vector<Real> left;
-  for (const Trial& trial : candidate.trials) {
-    const TuningScore score = trial.score.value_or(TuningScore{});
-    left.push_back(score.left);
-    values.push_back(trial.value);
-    scores.push_back({json_number(score.work), number_of(score.left)});
-  }
-  for (const Real each : best_of(left)) expected.push_back(number_of(each));
-  const Real chosen = candidate.trials[candidate.best()].value;
-  Json source{
-      {"grid", {{candidate.knob.option, values}}}, {"score", scores}, {"best_of", expected}};
-  if (candidate.is_at_edge()) source["edge"] = true;
-  const Budget& budget = candidate.pair.budget;
-  if (budget.work != usual.work) source["work"] = budget.work;
-  return {{"problem", candidate.pair.problem.spec},
-          {"optimizer", candidate.pair.optimizer},
-          {"options", to_json(options_at(candidate, chosen))},
-          {"source", source}};
-}
-
-TunedOption tuned_of(const Candidate& candidate) {
-  const Knob& knob = candidate.knob;
-  return {.problem = candidate.pair.problem.spec,
-          .optimizer = candidate.pair.optimizer,
-          .option = knob.rule.empty() ? knob.option : knob.option + " of " + knob.rule,
-          .values = candidate.values(),
-          .scores = candidate.scores(),
-          .best = candidate.best(),
-          .is_at_edge = candidate.is_at_edge()};
-}
-
-void add_round(TuningResult& result, Outcome round) {
-  round.run += result.outcome.run;
-  round.seconds += result.outcome.seconds;
-  result.outcome = std::move(round);
-}
-
-}  // namespace
-
 TuningResult tune(const Catalog& catalog, const TuningPlan& plan,
                   const std::filesystem::path& folder, const RunOptions& options) {
   std::vector<Candidate> candidates;
   for (const TunedPair& pair : plan.pairs) candidates.push_back(candidate_of(catalog, pair, plan));
+  std::vector<Candidate*> open;  // those with new values
+  for (Candidate& candidate : candidates) open.push_back(&candidate);
   TuningResult result{.rows = std::make_shared<Json>(Json::array()), .tuned = {}, .outcome = {}};
-  while (true) {
+  while (!open.empty()) {
     std::vector<Request> requests;
-    for (Candidate& candidate : candidates) add_runs(catalog, plan, candidate, requests);
-    if (requests.empty()) break;
-    add_round(result, run_plan(catalog, "tuning", requests, folder, options));
+    for (Candidate* candidate : open) add_runs(catalog, plan, *candidate, requests);
+    Outcome round = run_plan(catalog, "tuning", requests, folder, options);
+    round.run += result.outcome.run;
+    round.seconds += result.outcome.seconds;
+    result.outcome = std::move(round);
     if (result.outcome.is_interrupted) return result;
-    for (Candidate& candidate : candidates) {
-      judge(folder, candidate);
-      grow(candidate);
-    }
+    for (Candidate* candidate : open) judge(folder, *candidate);
+    std::erase_if(open, [](Candidate* candidate) { return !grow(*candidate); });
   }
   Json rows = Json::array();
   for (const Candidate& candidate : candidates) {
     result.inapplicable += candidate.is_inapplicable;
     if (candidate.is_inapplicable) continue;
     rows.push_back(candidate_row(candidate, plan.pairs[0].budget));
-    result.tuned.push_back(tuned_of(candidate));
+    result.tuned.push_back(candidate.tuned);
   }
   result.rows = std::make_shared<const Json>(std::move(rows));
   return result;

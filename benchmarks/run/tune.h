@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
@@ -15,6 +16,8 @@
 
 namespace isoline::benchmarks {
 
+using Json = nlohmann::json;
+
 // The option that is tuned for a pair of problem and optimizer: the method's tunable option, or
 // that of the gradient rule inside its network-optimizer, if the problem has a network to train.
 struct Knob {
@@ -26,19 +29,12 @@ struct Knob {
   optimizers::Tunable tunable;  // the tunable option of the method
 };
 
-// The tunable option of a method, if it has one. `given` are the options that the pair
-// has anyway.
+// The tunable option of a method, if it has one. `given` are options that the pair has anyway.
 std::optional<Knob> knob_of(const Catalog& catalog, const std::string& optimizer,
                             const Component& problem, const OptionValues& given);
-// The same for an option that is named; UsageError where the method has no such number.
-Knob knob_named(const Catalog& catalog, const std::string& optimizer, const Component& problem,
-                const OptionValues& given, const std::string& option);
 
 // The options of the pair with the knob set.
 OptionValues with_value(const Knob& knob, OptionValues given, Real value);
-
-// ‖∇L‖²/‖J∇L‖² at the problem's start, in a process of its own; 1 where it cannot be had.
-Real cauchy_step(const Catalog& catalog, const Component& problem);
 
 inline constexpr int kGridValues = 7, kMostExtensions = 3;
 
@@ -58,11 +54,6 @@ struct GivenGrid {
   std::string unit = "one";
 };
 GivenGrid parse_grid(const std::string& text, const std::string& unit);
-std::vector<Real> values_of(const Knob& knob, const GivenGrid& grid, Real unit);
-
-Real three_digits(Real value);  // enough of a rate, and they read well
-
-// The score of a value of a tuned option, and the choice of the best.
 
 // The median work to τ = 1e-6 of what the problem's user wants, then the median of what was left at
 // the end, the loss or the error in x; less is better.
@@ -75,8 +66,8 @@ struct TuningScore {
   }
 };
 
-// From the runs of one value, one per seed. A diverged or failed run gives neither number. Learning
-// problems are judged by the remainder on their validation samples only.
+// From the runs of one value, one per seed. A diverged or failed run gives neither number, a
+// learning problem the second alone, on its validation samples.
 TuningScore score_of(const std::vector<Record>& runs);
 
 // Which of the values is best. Ties go to the default, or to what is nearest to it on a logarithmic
@@ -87,11 +78,6 @@ std::size_t best_value(const std::vector<Real>& values, const std::vector<Tuning
 // E[best of b] of n losses: Σ y₍ᵢ₎ C(n − i, b − 1)/C(n, b) over the sorted ones, for b = 1 … n.
 std::vector<Real> best_of(std::vector<Real> losses);
 
-// Chooses one option of each pair of problem and optimizer over a grid, with an equal budget for
-// all and on seeds of their own, and keeps the whole grid beside the winner.
-
-using Json = nlohmann::json;
-
 struct TunedPair {
   Component problem;
   std::string optimizer;  // a name
@@ -99,9 +85,8 @@ struct TunedPair {
   OptionValues options = {};  // that it has anyway, as from a paper
 };
 
-// Every pair is tried at seven values of its method's tunable option. While the best stands at an
-// edge, one more is tried beyond it, three at most. A grid of one's own is for all pairs, and is
-// not extended.
+// Every pair is tried at seven values of its method's option, and while the best stands at an edge
+// at one more beyond it, three at most. A grid of one's own is for all pairs, and is not extended.
 struct TuningPlan {
   std::vector<TunedPair> pairs;
   std::vector<std::uint64_t> seeds;
@@ -124,10 +109,9 @@ struct TuningResult {
   Outcome outcome;                   // runs and seconds are those of all rounds
 };
 
-// A row has the values, their scores, the expected least loss (or error in x) of the best of b
-// randomly sampled ones, for b = 1 to all, whether the best is at an edge, and the budget of work
-// if it differs from that of the first pair. Inapplicable pairs have none; if every value failed,
-// the one nearest to the default is used.
+// A row has the values, their scores, `best_of`, whether the best is at an edge, and the budget of
+// work if it differs from that of the first pair. Inapplicable pairs have none; if every value
+// failed, the one nearest to the default is used.
 TuningResult tune(const Catalog& catalog, const TuningPlan& plan,
                   const std::filesystem::path& folder, const RunOptions& options);
 

@@ -13,9 +13,11 @@
 #include <queue>
 #include <unordered_map>
 
+#include "benchmarks/run/store.h"
 #include "core/errors.h"
 #include "core/files.h"
 #include "core/records/json_view.h"
+#include "core/records/record.h"
 
 namespace isoline::benchmarks {
 namespace fs = std::filesystem;
@@ -238,6 +240,26 @@ std::vector<fs::path> result_folders(const fs::path& whole) {
     if (fs::is_directory(whole / "shards" / name / "runs", unknown))
       folders.push_back(whole / "shards" / name);
   return folders;
+}
+
+void adopt_records(const std::vector<Request>& requests, const fs::path& whole,
+                   const fs::path& shard) {
+  for (const fs::path& other : result_folders(whole)) {
+    const std::vector<std::string> there = names_in(other / "runs");
+    if (other == shard || there.empty()) continue;
+    const Store store(shard);
+    for (const Request& request : requests) {
+      const std::string name = Store::name_of(request);
+      if (!std::ranges::binary_search(there, name) || store.has(request)) continue;
+      const fs::path from = other / "runs" / name, to = shard / "runs" / name;
+      try {
+        if (const fs::path fields = field_path(from); is_there(fields))
+          write_text(field_path(to), read_text(fields));
+        write_text(to, read_text(from));
+      } catch (const UsageError&) {  // it is missing or not a record: then the cell runs
+      }
+    }
+  }
 }
 
 }  // namespace isoline::benchmarks

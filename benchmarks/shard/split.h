@@ -74,4 +74,9 @@ std::vector<Request> part_of(std::vector<Request> requests, const std::vector<st
 // folder itself, first, where it holds records of its own.
 std::vector<std::filesystem::path> result_folders(const std::filesystem::path& whole);
 
+// Copies into the folder of a shard the records of its requests, by this build, that stand in the
+// folder of the whole or in that of another shard; none that it has itself.
+void adopt_records(const std::vector<Request>& requests, const std::filesystem::path& whole,
+                   const std::filesystem::path& shard);
+
 }  // namespace isoline::benchmarks

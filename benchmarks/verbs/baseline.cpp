@@ -1,6 +1,4 @@
 // isoline baseline RESULTS: what later results are compared with, as one small file.
-#include "reports/compare/baseline.h"
-
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -12,6 +10,7 @@
 #include "core/files.h"
 #include "core/results/study.h"
 #include "core/text.h"
+#include "reports/compare/gate.h"
 #include "reports/sections/words.h"
 
 namespace isoline::benchmarks {

@@ -8,6 +8,7 @@
 
 #include "benchmarks/cli/terminal.h"
 #include "benchmarks/cli/verb.h"
+#include "benchmarks/plan/claim_cells.h"
 #include "benchmarks/run/run_plan.h"
 #include "core/json.h"
 #include "core/text.h"
@@ -15,18 +16,6 @@
 
 namespace isoline::benchmarks {
 
-using reports::claim_section;
-using reports::claims_json;
-using reports::claims_section;
-using reports::claims_summary;
-using reports::counted;
-using reports::joined;
-using reports::Judgement;
-using reports::kFewRows;
-using reports::read_study;
-using reports::terminal_claim;
-using reports::terminal_section;
-using reports::Verdict;
 namespace {
 
 struct ClaimArguments {
@@ -67,9 +56,10 @@ int list_claims(const std::vector<Claim>& claims, const ClaimArguments& given) {
   std::vector<std::string> groups;
   for (const Claim& claim : claims)
     if (groups.empty() || groups.back() != claim.group) groups.push_back(claim.group);
-  const std::size_t shown = given.lists_all ? claims.size() : std::min(kFewRows, claims.size());
-  say(stdout, fmt::format("{} in {}: {}\n\n{}", counted(claims.size(), "claim"),
-                          counted(groups.size(), "group"), joined(groups),
+  const std::size_t shown =
+      given.lists_all ? claims.size() : std::min(reports::kFewRows, claims.size());
+  say(stdout, fmt::format("{} in {}: {}\n\n{}", reports::counted(claims.size(), "claim"),
+                          reports::counted(groups.size(), "group"), reports::joined(groups),
                           listed_by_groups(claims, shown)));
   if (shown < claims.size())
     say(stdout, fmt::format("… and {} more; --all lists them\n", claims.size() - shown));
@@ -85,20 +75,22 @@ Outcome run_missing(const ClaimArguments& given, const std::vector<Claim>& claim
       run_plan(session.catalog(), "claims", cells_of(claims, given.with_long), given.out, options);
   print_failures(outcome, given.out);
   if (!given.as_json && outcome.run > 0)
-    say(stderr, fmt::format("{} run, {} reused in {}\n", counted(std::size_t(outcome.run), "cell"),
-                            outcome.reused, duration_text(outcome.seconds)));
+    say(stderr,
+        fmt::format("{} run, {} reused in {}\n", reports::counted(std::size_t(outcome.run), "cell"),
+                    outcome.reused, duration_text(outcome.seconds)));
   return outcome;
 }
 
 // One claim with all that decides it; of several the verdicts.
-std::string terminal_text_of(const std::vector<Judgement>& judgements, bool lists_all) {
-  if (judgements.size() == 1) return terminal_claim(claim_section(judgements[0]));
-  const std::string text = lists_all ? terminal_section(claims_section(judgements))
-                                     : terminal_section(claims_summary(judgements), kFewRows);
+std::string terminal_text_of(const std::vector<reports::Judgement>& judgements, bool lists_all) {
+  if (judgements.size() == 1) return reports::terminal_claim(reports::claim_section(judgements[0]));
+  const std::string text =
+      lists_all ? reports::terminal_section(reports::claims_section(judgements))
+                : reports::terminal_section(reports::claims_summary(judgements), reports::kFewRows);
   return text + "`isoline claims ID` shows the evidence of one claim.\n";
 }
 
-std::string papers_page(const std::vector<Judgement>& judgements) {
+std::string papers_page(const std::vector<reports::Judgement>& judgements) {
   return "# What do the papers say, and what comes of it here?\n\n"
          "`./isoline claims --no-run --papers --out results/papers` makes this page of the claims in "
          "`benchmarks/claims` and of the runs in a folder of results: a row a claim, with the "
@@ -106,11 +98,12 @@ std::string papers_page(const std::vector<Judgement>& judgements) {
          reports::markdown_section(reports::papers_section(judgements), reports::kAllRows);
 }
 
-int exit_code_of(const std::vector<Judgement>& judgements) {
+int exit_code_of(const std::vector<reports::Judgement>& judgements) {
   const auto has = [&](auto&& is_so) {
-    return std::ranges::any_of(judgements, is_so, &Judgement::verdict);
+    return std::ranges::any_of(judgements, is_so, &reports::Judgement::verdict);
   };
-  if (has([](Verdict verdict) { return verdict == Verdict::not_reproduced; })) return kWorse;
+  if (has([](reports::Verdict verdict) { return verdict == reports::Verdict::not_reproduced; }))
+    return kWorse;
   return has(reports::is_decided) ? kGood : kNotComparable;
 }
 
@@ -120,8 +113,9 @@ int run(const ClaimArguments& given, Session& session) {
   if (given.is_list) return list_claims(claims, given);
   Outcome outcome;
   if (!given.no_run) outcome = run_missing(given, claims, session);
-  const std::vector<Judgement> judgements = judged(claims, read_study({given.out}).runs);
-  say(stdout, given.as_json     ? json_text(claims_json(judgements), 2) + "\n"
+  const std::vector<reports::Judgement> judgements =
+      reports::judge(json_of(claims), reports::read_study({given.out}).runs);
+  say(stdout, given.as_json     ? json_text(reports::claims_json(judgements), 2) + "\n"
               : given.as_papers ? papers_page(judgements)
                                 : terminal_text_of(judgements, given.lists_all));
   const int of_runs = exit_code_of(outcome);
@@ -135,12 +129,10 @@ void register_claims(VerbRegistry& registry) {
       {.name = "claims",
        .help_position = 110,
        .summary = "Check the claims of papers; runs missing cells first",
-       .examples =
-           "  isoline claims --list                        the claims and their sources\n"
-           "  isoline claims exponential                   one group of claims\n"
-           "  isoline claims sip-better-in-x-worse-in-loss     one claim, with its evidence\n"
-           "  isoline claims --no-run --out results/quick      the claims that the runs of a "
-           "suite decide",
+       .examples = R"(  isoline claims --list                        the claims and their sources
+  isoline claims exponential                   one group of claims
+  isoline claims sip-better-in-x-worse-in-loss     one claim, with its evidence
+  isoline claims --no-run --out results/quick      the claims that the runs of a suite decide)",
        .notes =
            "A claim is reproduced where what is measured lies within the source's own error of reading,\n"
            "partly where only the direction holds; of fewer than six seeds it is consistent or at odds.\n"

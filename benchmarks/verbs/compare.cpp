@@ -3,7 +3,6 @@
 
 #include "benchmarks/cli/terminal.h"
 #include "benchmarks/cli/verb.h"
-#include "core/errors.h"
 #include "core/text.h"
 #include "reports/compare/gate.h"
 
@@ -13,8 +12,7 @@ namespace {
 struct CompareArguments {
   std::string before, after;
   double tolerance = -1, noise = -1;  // −1: bit for bit; the standard band
-  std::vector<std::string> timed;
-  std::string allowed;  // a list of cells that NEW may lack, or may judge otherwise
+  std::string allowed;                // a list of cells that NEW may lack, or may judge otherwise
   bool is_common_only = false, as_markdown = false, as_json = false, lists_all = false;
 };
 
@@ -23,9 +21,6 @@ void declare(VerbArguments& verb, CompareArguments& given) {
   verb.text("NEW", given.after, "Result folder").required();
   verb.real("--tolerance", given.tolerance, between(0, 1),
             "Relative tolerance of values (default: bit for bit)");
-  verb.texts("--time-cells", given.timed,
-             "Cells (digests or prefixes) whose times are compared, at most 20")
-      .between_commas();
   verb.real("--noise", given.noise, between(0, 10),
             "Least band of noise of times, relative (default: 0.1)");
   verb.text(
@@ -39,11 +34,7 @@ void declare(VerbArguments& verb, CompareArguments& given) {
 }
 
 int run(const CompareArguments& given, Session&) {
-  require(given.timed.size() <= reports::kMostTimed, [&] {
-    return fmt::format("--time-cells takes at most {} cells, got {}", reports::kMostTimed,
-                       given.timed.size());
-  });
-  reports::GateOptions options{.timed = given.timed, .is_common_only = given.is_common_only};
+  reports::GateOptions options{.is_common_only = given.is_common_only};
   if (given.tolerance >= 0) options.tolerance = given.tolerance;
   if (given.noise >= 0) options.least_noise = given.noise;
   if (!given.allowed.empty()) options.allowed = reports::read_allowed(given.allowed);
@@ -65,10 +56,9 @@ void register_compare(VerbRegistry& registry) {
       {.name = "compare",
        .help_position = 40,
        .summary = "Compare two results and list regressions",
-       .examples =
-           "  isoline compare results/old results/new\n"
-           "  isoline compare baseline.json results/quick --tolerance 1e-6 --all\n"
-           "  isoline compare results/old results/new --markdown     for the summary of a job",
+       .examples = R"(  isoline compare results/old results/new
+  isoline compare baseline.json results/quick --tolerance 1e-6 --all
+  isoline compare results/old results/new --markdown     for the summary of a job)",
        .notes =
            "Exit codes: 0 no worse and no better; 2 worse, or NEW lacks a cell of BASE; 3 better only;\n"
            "4 not comparable: a clock ended a cell, its record contradicts itself, success is judged by\n"
@@ -77,7 +67,7 @@ void register_compare(VerbRegistry& registry) {
            "default is compared, and named.\n"
            "Time is judged where both sides have 9 repetitions (run --repeat 9): Mann-Whitney with\n"
            "Benjamini-Hochberg at 0.05, and the whole 95 % interval of the ratio outside the noise that\n"
-           "the repetitions show. Without --time-cells the 20 slowest such cells of BASE are judged."},
+           "the repetitions show. The 20 slowest such cells of BASE are judged."},
       declare, run));
 }
 

@@ -1,6 +1,7 @@
-// isoline export DIR... --format csv|coco|bencher --out PATH: results in the forms of others.
+// isoline export DIR... --format csv|coco --out PATH: results in the forms of others.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "benchmarks/cli/terminal.h"
@@ -8,7 +9,7 @@
 #include "core/errors.h"
 #include "core/files.h"
 #include "core/text.h"
-#include "reports/exports/exports.h"
+#include "reports/formats/formats.h"
 #include "reports/sections/words.h"
 
 namespace isoline::benchmarks {
@@ -22,28 +23,23 @@ struct ExportArguments {
 };
 
 void declare(VerbArguments& verb, ExportArguments& given) {
+  std::vector<std::string> names;
+  static const std::string help = [] {
+    std::string text;
+    for (const reports::ExportFormat& format : reports::kExportFormats)
+      text += fmt::format("{}{}: {}", text.empty() ? "" : "; ", format.name, format.help);
+    return text;
+  }();
+  for (const reports::ExportFormat& format : reports::kExportFormats)
+    names.emplace_back(format.name);
   verb.texts("DIR", given.folders, kFolders).required();
-  verb.text("--format", given.format,
-            "csv: one row per stored point; coco: data folders for its post-processing; bencher: "
-            "Bencher "
-            "Metric Format")
-      .one_of({reports::kExportNames.begin(), reports::kExportNames.end()})
-      .shown();
-  verb.text("--out", given.out, "Output: a file; for coco, a new folder").required();
+  verb.text("--format", given.format, help.c_str()).one_of(names).shown();
+  verb.text("--out", given.out, "Output: a file, or a new folder for several").required();
 }
 
 void write_file(const fs::path& out, const std::string& text) {
   if (out.has_parent_path()) fs::create_directories(out.parent_path());
   write_text(out, text);
-}
-
-void write_folder(const fs::path& out, const reports::CocoExport& coco) {
-  std::error_code unknown;
-  require(!is_there(out) || (fs::is_directory(out, unknown) && names_in(out).empty()),
-          [&] { return fmt::format("{} exists already: export into a new folder", out.string()); });
-  for (const reports::ExportedFile& file : coco.files) write_file(out / file.name, file.text);
-  for (const std::string& sentence : coco.left_out)
-    say(stderr, fmt::format("left out: {}\n", sentence));
 }
 
 int run(const ExportArguments& given, Session&) {
@@ -53,12 +49,17 @@ int run(const ExportArguments& given, Session&) {
     return fmt::format("no records in {}: `isoline run --out FOLDER` writes them",
                        reports::joined(given.folders));
   });
-  const reports::Comparison comparison = compare_optimizers(study);
-  if (given.format == "coco")
-    write_folder(given.out, reports::coco_export(comparison));
-  else
-    write_file(given.out, given.format == "csv" ? reports::curves_csv(comparison)
-                                                : reports::bencher_json(comparison));
+  const fs::path out = given.out;
+  const auto* format =
+      std::ranges::find(reports::kExportFormats, given.format, &reports::ExportFormat::name);
+  const reports::Export made = format->write(compare_optimizers(study));
+  std::error_code unknown;
+  const bool is_file = made.files.contains("");
+  require(is_file || !is_there(out) || (fs::is_directory(out, unknown) && names_in(out).empty()),
+          [&] { return fmt::format("{} exists already: export into a new folder", given.out); });
+  for (const auto& [name, text] : made.files) write_file(is_file ? out : out / name, text);
+  for (const std::string& sentence : made.left_out)
+    say(stderr, fmt::format("left out: {}\n", sentence));
   say(stdout, fmt::format("{}: {} as {}\n", given.out, reports::counted(study.runs.size(), "run"),
                           given.format));
   return kGood;
@@ -70,17 +71,11 @@ void register_export(VerbRegistry& registry) {
   registry.add(verb_of(
       {.name = "export",
        .help_position = 120,
-       .summary = "Write curves as CSV, as COCO data, or as Bencher metrics",
+       .summary = "Write curves as CSV or as COCO data",
        .examples =
-           "  isoline export results/quick --out curves.csv             one row per stored point\n"
-           "  isoline export results/quick --format coco --out exdata   for COCO's "
-           "post-processing\n"
-           "  isoline export results.tar.gz --format bencher --out metrics.json",
-       .notes =
-           "Numbers survive the round trip exactly, including inf, -inf and nan. Bencher's format "
-           "has no\n"
-           "infinity: it omits values that half of the runs do not reach; reached-1e-6 counts "
-           "those that do."},
+           R"(  isoline export results/quick --out curves.csv             one row per stored point
+  isoline export results/quick --format coco --out exdata   for COCO's post-processing)",
+       .notes = "Numbers survive the round trip exactly, including inf, -inf and nan."},
       declare, run));
 }
 

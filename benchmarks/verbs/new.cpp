@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <string_view>
-#include <vector>
 
 #include "benchmarks/cli/verb.h"
 #include "benchmarks/plan/catalog.h"
@@ -40,40 +40,31 @@ void declare(VerbArguments& verb, NewArguments& given) {
   verb.flag("--python", given.is_python, "In Python, for process[command=…]").excludes(c);
 }
 
-// A component's name as each place writes it.
-struct Spelling {
-  std::string name, identifier, type, words;  // "my-chain", "my_chain", "MyChain", "My chain"
-};
-
-Spelling spelling_of(const std::string& name) {
-  Spelling all{.name = name, .identifier = name, .words = name};
-  std::ranges::replace(all.identifier, '-', '_');
-  std::ranges::replace(all.words, '-', ' ');
+// A component's name as each place writes it: "my-chain", "my_chain", "MyChain", "My chain".
+std::array<std::string, 4> spellings_of(const std::string& name) {
+  std::string identifier = name, type, words = name;
+  std::ranges::replace(identifier, '-', '_');
+  std::ranges::replace(words, '-', ' ');
   const auto upper = [](char letter) { return static_cast<char>(std::toupper(letter)); };
-  all.words[0] = upper(name[0]);
+  words[0] = upper(name[0]);
   for (std::size_t i = 0; i < name.size(); ++i)
-    if (name[i] != '-') all.type += i == 0 || name[i - 1] == '-' ? upper(name[i]) : name[i];
-  return all;
+    if (name[i] != '-') type += i == 0 || name[i - 1] == '-' ? upper(name[i]) : name[i];
+  return {name, identifier, type, words};
 }
-
-// The name of the component in the files of clients/start/.
-Spelling spelling_in_start(const std::string& kind) { return spelling_of("my-" + kind); }
 
 void put(std::string& text, const std::string& before, const std::string& after) {
   for (std::size_t at = 0; (at = text.find(before, at)) != std::string::npos; at += after.size())
     text.replace(at, before.size(), after);
 }
 
-// By way of a mark that no text has: a name may hold the other one.
-std::string renamed(std::string_view start, const Spelling& from, const Spelling& to) {
+// The file of clients/start/ for a name, by way of a mark that no text has: a name may hold the one
+// in that file.
+std::string renamed(std::string_view start, const std::string& kind, const std::string& name) {
   std::string text(start);
-  const std::string Spelling::*forms[] = {&Spelling::name, &Spelling::identifier, &Spelling::type,
-                                          &Spelling::words};
+  const auto from = spellings_of("my-" + kind), to = spellings_of(name);
   const auto mark = [](std::size_t form) { return std::string(1, static_cast<char>(1 + form)); };
-  for (std::size_t form = 0; form < std::size(forms); ++form)
-    put(text, from.*forms[form], mark(form));
-  for (std::size_t form = 0; form < std::size(forms); ++form)
-    put(text, mark(form), to.*forms[form]);
+  for (std::size_t form = 0; form < from.size(); ++form) put(text, from[form], mark(form));
+  for (std::size_t form = 0; form < to.size(); ++form) put(text, mark(form), to[form]);
   return text;
 }
 
@@ -96,80 +87,68 @@ void require_name(const std::string& name, const Catalog& catalog) {
   });
 }
 
-// A file that is written unless it exists.
-struct Draft {
-  fs::path path;
-  std::string text;
-};
-
-// All that is to be done next, in the words of a shell.
-struct Beginning {
-  Draft file;
-  std::vector<Draft> besides;  // what it is built with; what is there already stays as it is
-  std::string next;
-};
-
-Beginning begin_c(const std::string& kind, const Spelling& to) {
-  const bool is_problem = kind == "problem";
-  const std::string_view start =
-      is_problem ? embedded_start_problem_c() : embedded_start_optimizer_c();
-  const std::string use = is_problem ? "check " + to.name : "audit " + to.name;
-  return {.file = {to.identifier + ".c", renamed(start, spelling_in_start(kind), to)},
-          .besides = {{"isoline.h", std::string(embedded_isoline_h())}},
-          .next = fmt::format("cc -O2 -shared -fPIC -o lib{0}.so {0}.c && isoline {1} --plugin "
-                              "./lib{0}.so",
-                              to.identifier, use)};
-}
-
-// A script needs no other file: the process adapter sets the path of isoline.py.
-Beginning begin_python(const std::string& kind, const Spelling& to) {
-  const bool is_problem = kind == "problem";
-  const std::string_view start =
-      is_problem ? embedded_start_problem_py() : embedded_start_optimizer_py();
-  const std::string use = is_problem ? "check" : "run --problem rosenbrock --optimizer";
-  return {
-      .file = {to.identifier + ".py", renamed(start, spelling_in_start(kind), to)},
-      .besides = {},
-      .next = fmt::format("isoline {} 'process[command=\"python3 {}.py\"]'", use, to.identifier)};
-}
-
 // Where this is Isoline's own tree, its launcher builds.
 bool is_in_the_tree() {
   return is_there("CMakeLists.txt") &&
          read_text("CMakeLists.txt").find("project(isoline ") != std::string::npos;
 }
 
-Beginning begin_cpp(const std::string& kind, const Spelling& to) {
-  const bool is_problem = kind == "problem";
-  const std::string_view start =
-      is_problem ? embedded_start_problem_cpp() : embedded_start_optimizer_cpp();
-  const std::string use = is_problem ? "check " + to.name : "audit " + to.name;
+// A component in one language: its file, what it is built with, and what is to be done next.
+struct Draft {
+  std::string_view problem, optimizer;  // files of clients/start/
+  fs::path file;
+  fs::path besides;  // stays as it is where it exists; empty: none
+  std::string_view besides_text;
+  std::string next;  // in the words of a shell
+};
+
+Draft draft_of(const NewArguments& given, const std::string& identifier) {
+  const bool is_problem = given.kind == "problem";
+  const std::string use = (is_problem ? "check " : "audit ") + given.name;
+  if (given.is_c)
+    return {embedded_start_problem_c(),
+            embedded_start_optimizer_c(),
+            identifier + ".c",
+            "isoline.h",
+            embedded_isoline_h(),
+            fmt::format("cc -O2 -shared -fPIC -o lib{0}.so {0}.c && isoline {1} --plugin "
+                        "./lib{0}.so",
+                        identifier, use)};
+  if (given.is_python)  // needs no other file: the process adapter sets the path of isoline.py
+    return {embedded_start_problem_py(),
+            embedded_start_optimizer_py(),
+            identifier + ".py",
+            "",
+            "",
+            fmt::format("isoline {} 'process[command=\"python3 {}.py\"]'",
+                        is_problem ? "check" : "run --problem rosenbrock --optimizer", identifier)};
   const std::string build = "cmake -S . -B build && cmake --build build && build/mine ";
-  return {.file = {fs::path(kind + "s") / (to.identifier + ".cpp"),
-                   renamed(start, spelling_in_start(kind), to)},
-          .besides = {{"CMakeLists.txt", std::string(embedded_start_cmake())}},
-          .next = (is_in_the_tree() ? "./isoline " : build) + use};
+  return {embedded_start_problem_cpp(),
+          embedded_start_optimizer_cpp(),
+          fs::path(given.kind + "s") / (identifier + ".cpp"),
+          "CMakeLists.txt",
+          embedded_start_cmake(),
+          (is_in_the_tree() ? "./isoline " : build) + use};
+}
+
+void write_new(const fs::path& path, std::string_view text) {
+  if (is_there(path)) return;
+  std::error_code error;  // the write below reports it
+  if (path.has_parent_path()) fs::create_directories(path.parent_path(), error);
+  write_text(path, std::string(text));
+  say(stdout, fmt::format("wrote {}\n", path.string()));
 }
 
 int run(const NewArguments& given, Session& session) {
   require_name(given.name, session.catalog());
-  const Spelling to = spelling_of(given.name);
-  const Beginning begun = given.is_c        ? begin_c(given.kind, to)
-                          : given.is_python ? begin_python(given.kind, to)
-                                            : begin_cpp(given.kind, to);
-  require(!is_there(begun.file.path), [&] {
-    return fmt::format("{} exists already and is not overwritten", begun.file.path.string());
+  const Draft draft = draft_of(given, spellings_of(given.name)[1]);
+  require(!is_there(draft.file), [&] {
+    return fmt::format("{} exists already and is not overwritten", draft.file.string());
   });
-  std::vector<Draft> drafts = begun.besides;
-  drafts.push_back(begun.file);
-  for (const Draft& draft : drafts) {
-    if (is_there(draft.path)) continue;
-    std::error_code error;  // the write below reports it
-    if (draft.path.has_parent_path()) fs::create_directories(draft.path.parent_path(), error);
-    write_text(draft.path, draft.text);
-    say(stdout, fmt::format("wrote {}\n", draft.path.string()));
-  }
-  say(stdout, fmt::format("next: {}\n", begun.next));
+  if (!draft.besides.empty()) write_new(draft.besides, draft.besides_text);
+  write_new(draft.file, renamed(given.kind == "problem" ? draft.problem : draft.optimizer,
+                                given.kind, given.name));
+  say(stdout, fmt::format("next: {}\n", draft.next));
   return kGood;
 }
 

@@ -38,6 +38,21 @@ void declare(VerbArguments& verb, PlanArguments& given) {
   verb.flag("--json", given.as_json, "Print JSON");
 }
 
+struct ShardPlan {
+  Weights weights = Weights::written;
+  std::vector<PreviewCounts> shards;
+};
+
+// Divides the cells; writes the folder's predictions where it has none.
+ShardPlan shard_plan(const PlannedRun& all, std::size_t count, Preview& shown) {
+  ShardPlan plan{.weights = keep_predictions(all.folder, shown),
+                 .shards = std::vector<PreviewCounts>(count)};
+  const std::vector<double> weights = weights_of(all.requests, all.folder);
+  const std::vector<std::size_t> shards = split(all.requests, weights, count);
+  for (std::size_t i = 0; i < shards.size(); ++i) plan.shards[shards[i]].add(shown.cells[i]);
+  return plan;
+}
+
 std::string counts_json(const PreviewCounts& counts) {
   return fmt::format(
       "\"cells\": {}, \"cached\": {}, \"inapplicable\": {}, \"missing\": {}, \"seconds\": {}",
@@ -111,10 +126,9 @@ void register_plan(VerbRegistry& registry) {
        .help_position = 20,
        .summary = "Show what a run would do, how long it may take, and how it divides into shards",
        .examples =
-           "  isoline plan quick                           cells, finished cells, predicted time\n"
-           "  isoline plan quick --shards 16 --from results/before     sixteen shards of equal "
-           "time\n"
-           "  isoline plan quick --shards 16 --json        for the matrix of a workflow",
+           R"(  isoline plan quick                           cells, finished cells, predicted time
+  isoline plan quick --shards 16 --from results/before     sixteen shards of equal time
+  isoline plan quick --shards 16 --json        for the matrix of a workflow)",
        .notes =
            "The prediction of a cell is its time, or that of the same cell with other seeds, in "
            "records of the\n"

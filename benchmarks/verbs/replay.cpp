@@ -2,17 +2,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <filesystem>
+#include <optional>
 #include <random>
 
-#include "benchmarks/cli/command_line.h"
-#include "benchmarks/cli/terminal.h"
 #include "benchmarks/cli/verb.h"
-#include "benchmarks/plan/build_parts.h"
 #include "benchmarks/run/runner.h"
-#include "benchmarks/run/same_result.h"
-#include "core/draws.h"
+#include "benchmarks/run/store.h"
 #include "core/errors.h"
 #include "core/files.h"
 #include "core/text.h"
@@ -24,8 +22,8 @@ namespace fs = std::filesystem;
 
 struct ReplayArguments {
   std::vector<std::string> records;
-  std::string sample;             // "1%", "20"; empty: all that are named
-  std::uint64_t seed = 0;         // of the sample; 0: drawn
+  std::string sample;             // "1%", "20"; empty: all of the records
+  std::uint64_t seed = 0;         // of the sample; 0: another one each time
   std::int64_t memory_bytes = 0;  // 0: as the runner has it
 };
 
@@ -33,17 +31,10 @@ void declare(VerbArguments& verb, ReplayArguments& given) {
   verb.texts("RECORD", given.records,
              "Records of `isoline run`: files in runs/; with --sample result folders")
       .required();
-  verb.text("--sample", given.sample,
-            "Replay so many records of result folders, drawn at random: 1%, or 20");
+  verb.text("--sample", given.sample, "Replay a random sample of the records: 1%, or 20 of them");
   verb.seed("--seed", given.seed, "Seed of the sample; 0: another one each time, which is printed");
   verb.memory("--memory", given.memory_bytes, "Most memory of a cell (default: 4GB)");
   verb.plugins();
-}
-
-// A limit for a machine that may be slower, and busy.
-double most_seconds_of(const Record& record) {
-  constexpr double kLeast = 60, kSlower = 10;
-  return std::max(kLeast, kSlower * record.summary.wall_seconds);
 }
 
 // Why the two were not made by the same program on the same platform; empty where they were.
@@ -58,24 +49,6 @@ std::string difference_of_builds(const Record& record, const Request& request) {
     parts += (parts.empty() ? "" : ", ") + part;
   }
   return "another build computed it, which differs in: " + parts;
-}
-
-// One run of the request; no record if it was stopped or killed.
-struct Rerun {
-  std::optional<Record> record;
-  bool is_interrupted = false;
-};
-Rerun run_again(const Request& request, const Record& kept, const ReplayArguments& given,
-                Session& session) {
-  const HiddenFolder folder;
-  Store store(folder.path());
-  RunOptions options{.force = true,
-                     .keeps_fields = kept.fields.has_value(),
-                     .keeps_spectra = kept.spectrum.has_value(),
-                     .command = session.command()};
-  if (given.memory_bytes > 0) options.limits.memory_bytes = given.memory_bytes;
-  const Outcome outcome = run_all(session.catalog(), {request}, store, options);
-  return {store.find(request), outcome.is_interrupted};
 }
 
 std::string comparison_text(const Comparison& found) {
@@ -95,22 +68,30 @@ int replay(const std::string& path, const ReplayArguments& given, Session& sessi
   const std::string title = fmt::format("{}: {}", path, title_of(record.request));
   Request request;
   try {
-    request = request_again(session.catalog(), record, most_seconds_of(record));
+    constexpr double kLeast = 60, kSlower = 10;  // the machine may be slower, and busy
+    request = request_again(session.catalog(), record,
+                            std::max(kLeast, kSlower * record.summary.wall_seconds));
   } catch (const UsageError& error) {
     say(stdout, fmt::format("{}: not comparable: {}\n", title, error.what()));
     return kNotComparable;
   }
   const std::string builds = difference_of_builds(record, request);
-  const auto [again, is_interrupted] = run_again(request, record, given, session);
-  if (is_interrupted) return kInterrupted;
+  RunOptions options{.force = true,
+                     .keeps_fields = record.fields.has_value(),
+                     .keeps_spectra = record.spectrum.has_value(),
+                     .command = session.command()};
+  if (given.memory_bytes > 0) options.limits.memory_bytes = given.memory_bytes;
+  const HiddenFolder folder;
+  Store store(folder.path());
+  if (run_all(session.catalog(), {request}, store, options).is_interrupted) return kInterrupted;
+  std::optional<Record> again = store.find(request);
   if (!again) {
     say(stdout, fmt::format("{}: not comparable: it was killed from outside\n", title));
     return kNotComparable;
   }
-  Record same_asked = *again;
-  same_asked.cell = record.cell;  // compared above
-  same_asked.request = record.request;
-  const Comparison found = compare_results(record, same_asked);
+  again->cell = record.cell;  // compared above
+  again->request = record.request;
+  const Comparison found = compare_results(record, *again);
   say(stdout,
       fmt::format("{}: {}{}\n", title, builds.empty() ? "" : "not comparable: " + builds + "; ",
                   comparison_text(found)));
@@ -118,32 +99,27 @@ int replay(const std::string& path, const ReplayArguments& given, Session& sessi
   return found.difference.empty() ? kGood : kWorse;
 }
 
-// How many of so many: "1%" of them, one at least, or the number itself.
-std::size_t sample_size(const std::string& asked, std::size_t all) {
-  const bool is_share = asked.ends_with('%');
-  const double number =
-      read_real("--sample", is_share ? asked.substr(0, asked.size() - 1) : asked, above(0));
-  const double wanted = is_share ? std::ceil(number / 100 * double(all)) : std::floor(number);
-  return std::min(all, static_cast<std::size_t>(std::max(wanted, 1.0)));
-}
-
-// Records of the folders, without any twice, in the order drawn.
+// Some records of the folders: a share ("1%", one at least), or a number of them.
 std::vector<std::string> sampled_records(const ReplayArguments& given) {
-  std::vector<std::string> records;
+  std::vector<std::string> records, sample;
   for (const fs::path folder : given.records)
     for (const std::string& name : names_in(folder / "runs"))
       if (name.ends_with(".json")) records.push_back((folder / "runs" / name).string());
-  require(!records.empty(), "--sample takes result folders, and there is no record in these");
-  std::ranges::sort(records);
+  require(!records.empty(), "--sample expects result folders, and these have no records");
+  const bool is_share = given.sample.ends_with('%');
+  double number = 0;
+  const char *begin = given.sample.data(), *end = begin + given.sample.size() - is_share;
+  require(std::from_chars(begin, end, number).ptr == end && number > 0, [&] {
+    return "--sample expects a share such as 1% or a number such as 20, got '" + given.sample + "'";
+  });
+  if (is_share) number = std::ceil(number / 100 * double(records.size()));
+  number = std::clamp(std::floor(number), 1.0, double(records.size()));
   const std::uint64_t seed = given.seed != 0 ? given.seed : std::random_device()();
-  const std::size_t count = sample_size(given.sample, records.size());
-  Draws random(seed, "replay", "sample");
-  for (std::size_t i = 0; i < count; ++i)
-    std::swap(records[i],
-              records[i + static_cast<std::size_t>(random.uniform(0, double(records.size() - i)))]);
-  say(stdout, fmt::format("{} of {} records, drawn with --seed {}\n", count, records.size(), seed));
-  records.resize(count);
-  return records;
+  std::ranges::sample(records, std::back_inserter(sample), std::ptrdiff_t(number),
+                      std::mt19937_64(seed));
+  say(stdout, fmt::format("{} of {} records, sampled with --seed {}\n", sample.size(),
+                          records.size(), seed));
+  return sample;
 }
 
 int run(const ReplayArguments& given, Session& session) {

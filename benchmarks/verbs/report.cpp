@@ -10,7 +10,7 @@
 #include "benchmarks/cli/terminal.h"
 #include "benchmarks/cli/verb.h"
 #include "core/errors.h"
-#include "core/results/targets.h"
+#include "core/results/study.h"
 #include "core/text.h"
 #include "reports/sections/words.h"
 

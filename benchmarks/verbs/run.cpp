@@ -11,7 +11,6 @@
 #include "benchmarks/cli/verb.h"
 #include "benchmarks/run/run_plan.h"
 #include "benchmarks/run/runner.h"
-#include "benchmarks/shard/census.h"
 #include "benchmarks/shard/split.h"
 #include "core/text.h"
 
@@ -123,15 +122,13 @@ void register_run(VerbRegistry& registry) {
        .help_position = 10,
        .summary = "Run a suite or your own matrix; finished cells are not repeated",
        .examples =
-           "  isoline run                                  the suite quick, then its report\n"
-           "  isoline run notebook --seeds 5 --jobs 4      another suite, on five seeds\n"
-           "  isoline run --problem 'sine[xi=1|32],heat' --optimizer 'adam[rate=1e-3],ceres-lm'\n"
-           "  isoline run quick --optimizer adam --dry-run     which cells would run, and how "
-           "long\n"
-           "  isoline run quick --retry failed,crashed     failed cells again\n"
-           "  isoline run quick --shard 3/16               one shard; `isoline merge` joins them\n"
-           "  isoline run --problem square --optimizer gd --seeds =3 --in-process     for a "
-           "debugger",
+           R"(  isoline run                                  the suite quick, then its report
+  isoline run notebook --seeds 5 --jobs 4      another suite, on five seeds
+  isoline run --problem 'sine[xi=1|32],heat' --optimizer 'adam[rate=1e-3],ceres-lm'
+  isoline run quick --optimizer adam --dry-run     which cells would run, and how long
+  isoline run quick --retry failed,crashed     failed cells again
+  isoline run quick --shard 3/16               one shard; `isoline merge` joins them
+  isoline run --problem square --optimizer gd --seeds =3 --in-process     for a debugger)",
        .notes =
            "The same command continues where it was stopped. A crash ends one cell only: each has "
            "its "

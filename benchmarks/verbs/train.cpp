@@ -10,12 +10,12 @@
 
 #include "benchmarks/cli/verb.h"
 #include "benchmarks/plan/suite.h"
-#include "benchmarks/run/certificate.h"
 #include "benchmarks/run/execute.h"
 #include "benchmarks/run/isolate.h"
+#include "benchmarks/run/run_plan.h"
 #include "benchmarks/run/runner.h"
 #include "benchmarks/run/trained.h"
-#include "core/learning_options.h"
+#include "core/options.h"
 #include "core/text.h"
 #include "reports/sections/words.h"
 
@@ -33,7 +33,7 @@ struct TrainArguments {
 
 void declare(VerbArguments& verb, TrainArguments& given) {
   verb.text("PROBLEM", given.problem, "Problem: 'sine[xi=32]'; mode=learn is implied").required();
-  verb.text("--out", given.out, "Output file: .json, or any other name for raw numbers").required();
+  verb.text("--out", given.out, "Output file, JSON").required();
   verb.text("--optimizer", given.optimizer, "Training method").shown();
   verb.whole("--iterations", given.iterations, "Steps of training");
   verb.seed("--seed", given.seed, "Seed of the start and of the samples");

@@ -97,37 +97,29 @@ TuningPlan plan_of(const Catalog& catalog, const TuneArguments& given) {
   return plan;
 }
 
-// The rows of the table that are not replaced, and the new ones, in order.
-Json joined(const Json& old_rows, const Json& new_rows) {
-  std::map<std::pair<std::string, std::string>, Json> rows;
-  for (const Json* some : {&old_rows, &new_rows})
-    for (const Json& row : *some) rows[{row.at("problem"), row.at("optimizer")}] = row;
-  Json all = Json::array();
-  for (const auto& [pair, row] : rows) all.push_back(row);
-  return all;
-}
-
-// One row per line, so that a diff shows one row per change.
-std::string rates_text(const Json& grid, const Json& rows) {
-  std::string text = fmt::format("{{\"schema\": \"isoline.rates/1\",\n\"grid\": {},\n\"rows\": [",
-                                 json_text(grid));
-  const char* separator = "\n";
-  for (const Json& row : rows) {
-    text += separator + json_text(row);
-    separator = ",\n";
-  }
-  return text + "\n]}\n";
-}
-
-void write_table(const TuneArguments& given, const TuningPlan& plan, Json rows) {
-  if (std::filesystem::exists(given.table)) rows = joined(read_json(given.table).at("rows"), rows);
+// The rows of the table that are not replaced, and the new ones, in order; one row per line, so
+// that a diff shows one row per change.
+void write_table(const TuneArguments& given, const TuningPlan& plan, const Json& new_rows) {
+  std::map<std::pair<std::string, std::string>, std::string> rows;
+  const auto add = [&](const Json& some) {
+    for (const Json& row : some) rows[{row.at("problem"), row.at("optimizer")}] = json_text(row);
+  };
+  if (std::filesystem::exists(given.table)) add(read_json(given.table).at("rows"));
+  add(new_rows);
   const Budget& budget = plan.pairs[0].budget;
   Json grid{{"points", plan.grid ? plan.grid->values.size() : kGridValues},
             {"seeds", given.seeds},
             {"budget", {{"iterations", budget.iterations}, {"work", budget.work}}},
             {"score", kScore}};
   if (!plan.grid) grid["extensions"] = kMostExtensions;
-  write_text(given.table, rates_text(grid, rows));
+  std::string text = fmt::format("{{\"schema\": \"isoline.rates/1\",\n\"grid\": {},\n\"rows\": [",
+                                 json_text(grid));
+  const char* separator = "\n";
+  for (const auto& [pair, row] : rows) {
+    text += separator + row;
+    separator = ",\n";
+  }
+  write_text(given.table, text + "\n]}\n");
 }
 
 bool is_failed(const TuningScore& score) {
@@ -161,15 +153,11 @@ std::vector<std::string> tied_values(const TunedOption& tuned) {
   return ties;
 }
 
-const char* edge_name(const TunedOption& tuned) {
-  if (!tuned.is_at_edge) return "";
-  return tuned.best == 0 ? "lowest" : "highest";
-}
-
 std::vector<reports::TableCell> tuning_row(const TunedOption& tuned) {
   const TuningScore& best = tuned.scores[tuned.best];
   std::string remark;
-  if (tuned.is_at_edge) remark = fmt::format("at the edge: the {} value tried", edge_name(tuned));
+  if (tuned.is_at_edge)
+    remark = fmt::format("at the edge: the {} value tried", tuned.best == 0 ? "lowest" : "highest");
   if (const auto ties = tied_values(tuned); !ties.empty())
     remark += (remark.empty() ? "ties with " : "; ties with ") + reports::joined(ties);
   if (is_failed(best)) remark = "every value failed; the one nearest to the default is used";
@@ -197,29 +185,8 @@ std::string tuning_summary(const TuningResult& result) {
                             duration_text(result.outcome.seconds));
 }
 
-// By what decides: the work where any value reaches the target, else what is left.
-reports::Plot tuning_plot(const TunedOption& tuned) {
-  const bool is_reached = std::ranges::any_of(
-      tuned.scores, [](const TuningScore& score) { return std::isfinite(score.work); });
-  reports::Plot plot{
-      .kind = reports::Plot::Kind::lines,
-      .x_label = tuned.option,
-      .y_label = is_reached ? "median work to the target" : "median of what is left at the end",
-      .is_log_x = true,
-      .is_log_y = true};
-  reports::PlotSeries line{.name = fmt::format("{} × {}", tuned.problem, tuned.optimizer)};
-  for (std::size_t i = 0; i < tuned.values.size(); ++i) {
-    const Real value = is_reached ? tuned.scores[i].work : tuned.scores[i].left;
-    line.x.push_back(tuned.values[i]);
-    line.y.push_back(std::isfinite(value) && value > 0 ? value : std::nan(""));
-  }
-  plot.series.push_back(std::move(line));
-  return plot;
-}
-
 // How many pairs were tuned, at which edges the best stand and what ties; one line per pair, twenty
-// at most unless all are wanted, with a plot of its scores in a few characters; for a single pair a
-// larger plot.
+// at most unless all are wanted, with a plot of its scores in a few characters.
 std::string tuning_text(const TuningResult& result, bool lists_all) {
   reports::Section section{
       .id = "tuning", .title = "Tuning", .otherwise = "No pair could be tuned."};
@@ -233,11 +200,7 @@ std::string tuning_text(const TuningResult& result, bool lists_all) {
       "to the target, ✗ not reached; left: median loss or error in x at the end.";
   for (const TunedOption& tuned : result.tuned) table.rows.push_back(tuning_row(tuned));
   if (!table.rows.empty()) section.tables.push_back(std::move(table));
-  std::string text =
-      reports::terminal_section(section, lists_all ? reports::kAllRows : reports::kFewRows);
-  const bool is_one = result.tuned.size() == 1 && result.tuned[0].values.size() > 1;
-  if (is_one) text += "\n" + reports::text_plot(tuning_plot(result.tuned[0]));
-  return text;
+  return reports::terminal_section(section, lists_all ? reports::kAllRows : reports::kFewRows);
 }
 
 int run(const TuneArguments& given, Session& session) {

@@ -9,17 +9,19 @@
 #include <optional>
 #include <set>
 #include <sstream>
+#include <string_view>
+#include <tuple>
 
 #include "benchmarks/cli/terminal.h"
 #include "benchmarks/cli/verb.h"
-#include "benchmarks/merge/record_union.h"
+#include "benchmarks/merge/merge.h"
 #include "benchmarks/plan/catalog.h"
 #include "core/errors.h"
 #include "core/files.h"
 #include "core/json.h"
-#include "core/records/integrity.h"
+#include "core/records/json_view.h"
 #include "core/records/record.h"
-#include "core/records/schema.h"
+#include "core/records/request.h"
 #include "core/text.h"
 #include "core/threads.h"
 #include "reports/sections/words.h"
@@ -46,6 +48,17 @@ const Schema* schema_of(const std::string& name) {
   return &known.try_emplace(name, parse_json(std::string(found->second), name)).first->second;
 }
 
+// The identity of a record, and its place.
+struct RecordIdentity {
+  std::string file, cell, build;
+
+  auto place() const {
+    const std::size_t folder = file.find_last_of('/') + 1;
+    return std::tuple(std::string_view(file).substr(0, folder), std::string_view(cell),
+                      std::string_view(build));
+  }
+};
+
 // The errors in a file; for a record, also its cell and build.
 struct Examined {
   std::vector<std::string> violations;
@@ -53,12 +66,14 @@ struct Examined {
 };
 
 Examined examined_record(const Json& record, const std::string& path) {
-  Examined examined;
-  if (std::string violation = cell_violation(record); !violation.empty())
-    examined.violations.push_back(std::move(violation));
+  Examined examined{.violations = {}, .identity = {{path, record.at("cell"), record.at("build")}}};
+  const std::string& claimed = examined.identity->cell;
+  const std::string cell = request_from_json(record.at("request")).cell;
+  if (cell != claimed)
+    examined.violations.push_back(
+        fmt::format("its cell is {}, the digest of its request is {}", claimed, cell));
   if (std::string violation = fields_violation(record, path); !violation.empty())
     examined.violations.push_back(std::move(violation));
-  examined.identity = RecordIdentity{path, record.at("cell"), record.at("build")};
   return examined;
 }
 
@@ -78,8 +93,7 @@ Examined examined_document(const Json& document, const std::string& path) {
   const Schema* schema = schema_of(name);
   if (schema == nullptr) return {{fmt::format("unknown schema '{}'", claimed)}, {}};
   std::vector<std::string> violations = schema->violations(document);
-  const bool is_sound_record = violations.empty() && claimed == kRunSchema;
-  if (is_sound_record) return examined_record(document, path);
+  if (violations.empty() && claimed == kRunSchema) return examined_record(document, path);
   return {std::move(violations), {}};
 }
 
@@ -162,6 +176,23 @@ void compare_with_manifest(const fs::path& folder, Wrong& wrong) {
   }
 }
 
+// Names a record that differs from another one of its folder, cell and build in more than timings.
+void compare_doubles(std::vector<RecordIdentity> records, Wrong& wrong) {
+  std::ranges::sort(records, {}, [](const RecordIdentity& record) {
+    return std::tuple_cat(record.place(), std::tuple(std::string_view(record.file)));
+  });
+  for (std::size_t i = 1; i < records.size(); ++i) {
+    const RecordIdentity &first = records[i - 1], &second = records[i];
+    if (first.place() != second.place()) continue;
+    Json record = read_json(first.file);
+    const std::string difference = unite_records(record, read_json(second.file));
+    if (!difference.empty())
+      wrong[second.file].push_back(fmt::format("{} is of the same cell and build and differs at {}",
+                                               fs::path(first.file).filename().string(),
+                                               difference));
+  }
+}
+
 int run(const ValidateArguments& given, Session&) {
   Wrong wrong;
   const std::vector<std::string> files = files_under(given.paths, wrong);
@@ -175,12 +206,12 @@ int run(const ValidateArguments& given, Session&) {
     if (!all[i].violations.empty()) wrong[files[i]] = std::move(all[i].violations);
     if (all[i].identity) records.push_back(std::move(*all[i].identity));
   }
-  for (DoubleRecord& record : double_records(std::move(records)))
-    wrong[record.file].push_back(std::move(record.violation));
+  compare_doubles(std::move(records), wrong);
   for (const auto& [file, violations] : wrong)
     for (const std::string& violation : violations)
       say(stdout, fmt::format("{}: {}\n", file, violation));
-  say(stdout, fmt::format("{}, {} wrong\n", reports::counted(files.size(), "file"), wrong.size()));
+  say(stdout, fmt::format("{} checked, {} invalid\n", reports::counted(files.size(), "file"),
+                          wrong.size()));
   return wrong.empty() ? kGood : kWorse;
 }
 

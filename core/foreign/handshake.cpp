@@ -67,14 +67,13 @@ class Said {
   bool has(const char* name) const { return json_.contains(name) && !json_[name].is_null(); }
 
   std::string text(const char* name) const {
-    if (!has(name)) return "";
-    if (!json_[name].is_string()) refuse(name, "text");
-    return json_[name].get<std::string>();
+    return value<std::string>(name, &Json::is_string, "text").value_or("");
   }
   bool flag(const char* name) const {
-    if (!has(name)) return false;
-    if (!json_[name].is_boolean()) refuse(name, "true or false");
-    return json_[name].get<bool>();
+    return value<bool>(name, &Json::is_boolean, "true or false").value_or(false);
+  }
+  std::optional<Real> number(const char* name) const {
+    return value<Real>(name, &Json::is_number, "a number");
   }
   // `standard`: where it is not said; nothing where it must be.
   std::int64_t whole(const char* name, std::int64_t least, std::int64_t most,
@@ -95,11 +94,6 @@ class Said {
     if (!has(name) && !is_required) return {};
     if (!has(name)) refuse(name, law);
     return reals(json_[name], count, name, law);
-  }
-  std::optional<Real> number(const char* name) const {
-    if (!has(name)) return std::nullopt;
-    if (!json_[name].is_number()) refuse(name, "a number");
-    return json_[name].get<Real>();
   }
   template <class Names>
   std::string choice(const char* name, const Names& names) const {
@@ -147,6 +141,13 @@ class Said {
   }
 
  private:
+  template <class Value>
+  std::optional<Value> value(const char* name, bool (Json::*is_one)() const noexcept,
+                             const char* law) const {
+    if (!has(name)) return std::nullopt;
+    if (!(json_[name].*is_one)()) refuse(name, law);
+    return json_[name].get<Value>();
+  }
   std::vector<Real> reals(const Json& list, std::int64_t count, const char* name,
                           const std::string& law) const {
     if (!list.is_array() || list.size() != static_cast<std::size_t>(count)) refuse(name, law);

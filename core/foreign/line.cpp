@@ -41,19 +41,6 @@ constexpr std::array<std::pair<Verb, std::string_view>, 18> kNames{{
     {Verb::claim, "claim"},
 }};
 
-}  // namespace
-
-std::string_view name_of(Verb verb) {
-  const auto* const found =
-      std::ranges::find(kNames, verb, &std::pair<Verb, std::string_view>::first);
-  return found == kNames.end() ? "an unknown verb" : found->second;
-}
-
-// Frames over a socket of the Unix domain: whole in one call where the system lets it, waited for
-// by a short spin and then by poll.
-
-namespace {
-
 // An answer that comes soon is met awake: to be woken takes as long as it does itself.
 constexpr std::int64_t kSpinNanoseconds = 20'000;
 constexpr std::size_t kMostPieces = 4;
@@ -67,6 +54,15 @@ std::span<char> bytes_of(std::span<Real> numbers) {
 }
 
 }  // namespace
+
+std::string_view name_of(Verb verb) {
+  const auto* const found =
+      std::ranges::find(kNames, verb, &std::pair<Verb, std::string_view>::first);
+  return found == kNames.end() ? "an unknown verb" : found->second;
+}
+
+// Frames over a socket of the Unix domain: whole in one call where the system lets it, waited for
+// by a short spin and then by poll.
 
 struct Line::Deadline {
   double seconds;

@@ -13,7 +13,7 @@
 #include <string>
 #include <string_view>
 
-#include "core/foreign/child.h"
+#include "core/foreign/foreign.h"
 #include "core/real.h"
 
 namespace isoline {
@@ -63,9 +63,6 @@ static_assert(sizeof(FrameHead) == 16);
 
 std::string_view name_of(Verb verb);  // "pullback"; "an unknown verb"
 
-// A line to another program: a socket that frames go over, and the program at its other end, where
-// this one started it.
-
 // The other program broke off, or said what it must not. The text names it, how it ended and what
 // it printed last.
 struct LineError : std::runtime_error {
@@ -79,6 +76,7 @@ struct KilledProgram : LineError {
 
 inline constexpr double kNoDeadline = std::numeric_limits<double>::infinity();
 
+// A socket that frames go over, and the program at its other end, where this one started it.
 class Line {
  public:
   // Starts the program, which finds its end of the line as a descriptor by ISOLINE_FD.

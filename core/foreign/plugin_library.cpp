@@ -10,7 +10,6 @@
 #include <filesystem>
 #include <stdexcept>
 
-#include "core/digest.h"
 #include "core/files.h"
 #include "core/foreign/isoline.h"
 #include "core/text.h"
@@ -54,60 +53,50 @@ class Reader {
   }
 
  private:
-  template <class Law>
-  void hold(bool holds, const Law& law) const {
-    require(holds, [&] { return fmt::format("{}: {}: {}", path_, words_, law()); });
-  }
-  void hold(bool holds, const char* law) const {
-    hold(holds, [&] { return std::string(law); });
+  template <class... Parts>
+  void hold(bool holds, fmt::format_string<const Parts&...> law, const Parts&... parts) const {
+    require(holds,
+            [&] { return fmt::format("{}: {}: {}", path_, words_, fmt::format(law, parts...)); });
   }
 
   void check_version(const isoline_component& given) const {
-    hold(given.version == ISOLINE_VERSION, [&] {
-      return fmt::format("a component must have version {} of isoline.h, got {}",
-                         static_cast<int>(ISOLINE_VERSION), given.version);
-    });
-    hold(given.bytes == sizeof given, [&] {
-      return fmt::format("`bytes` must be sizeof(isoline_component), {}, got {}", sizeof given,
-                         given.bytes);
-    });
+    hold(given.version == ISOLINE_VERSION, "a component must have version {} of isoline.h, got {}",
+         int{ISOLINE_VERSION}, given.version);
+    hold(given.bytes == sizeof given, "`bytes` must be sizeof(isoline_component), {}, got {}",
+         sizeof given, given.bytes);
   }
 
   std::string name_of(const char* given, const char* what) const {
-    hold(given != nullptr, [&] { return fmt::format("`{}` is null", what); });
+    hold(given != nullptr, "`{}` is null", what);
     const std::string name(given, strnlen(given, kMostName + 1));
     const auto is_allowed = [](char letter) {
       return (letter >= 'a' && letter <= 'z') || (letter >= '0' && letter <= '9') || letter == '-';
     };
     const bool is_name = !name.empty() && name.size() <= kMostName && name[0] >= 'a' &&
                          name[0] <= 'z' && std::ranges::all_of(name, is_allowed);
-    hold(is_name, [&] {
-      return fmt::format(
-          "`{}` must be lower-case letters, digits and hyphens, {} at most and the "
-          "first a letter, got '{}'",
-          what, kMostName, valid_utf8(name));
-    });
+    hold(is_name,
+         "`{}` must be lower-case letters, digits and hyphens, {} at most and the first a letter, "
+         "got '{}'",
+         what, kMostName, valid_utf8(name));
     return name;
   }
 
   std::string checked_text(const char* what, const char* given) const {
-    hold(given != nullptr && given[0] != '\0',
-         [&] { return fmt::format("`{}` is {}", what, given == nullptr ? "null" : "empty"); });
+    hold(given != nullptr && given[0] != '\0', "`{}` is {}", what,
+         given == nullptr ? "null" : "empty");
     return valid_utf8(std::string(given, strnlen(given, kMostText)));
   }
 
   // That the mask promises a function is to have it.
   template <class Function>
   void require_function(bool is_promised, const char* name, Function function) const {
-    hold(!is_promised || function != nullptr,
-         [&] { return fmt::format("its capabilities include {}(), which is null", name); });
+    hold(!is_promised || function != nullptr, "its capabilities include {}(), which is null", name);
   }
 
   void check_problem(const isoline_component& given) const {
     const std::uint64_t can = given.capabilities;
-    hold((can & ~kOfProblems) == 0, [&] {
-      return fmt::format("capabilities {:#x} are not valid for a problem", can & ~kOfProblems);
-    });
+    hold((can & ~kOfProblems) == 0, "capabilities {:#x} are not valid for a problem",
+         can & ~kOfProblems);
     hold(has(can, ISOLINE_FORWARD),
          "a problem must have ISOLINE_FORWARD, an optimizer "
          "ISOLINE_STEP or ISOLINE_SOLVE");
@@ -122,25 +111,23 @@ class Reader {
 
   void check_optimizer(const isoline_component& given) const {
     const std::uint64_t can = given.capabilities;
-    hold((can & ~kOfOptimizers) == 0, [&] {
-      return fmt::format("capabilities {:#x} are not valid for an optimizer", can & ~kOfOptimizers);
-    });
+    hold((can & ~kOfOptimizers) == 0, "capabilities {:#x} are not valid for an optimizer",
+         can & ~kOfOptimizers);
     hold(!has(can, ISOLINE_STEP | ISOLINE_SOLVE),
          "an optimizer must have either ISOLINE_STEP or ISOLINE_SOLVE, got both");
     require_function(true, "step", given.step);
   }
 
   void read_options(const isoline_component& given, PluginComponent& made) const {
-    hold(given.option_count <= kMostOptions, [&] {
-      return fmt::format("it may have {} options, got {}", kMostOptions, given.option_count);
-    });
+    hold(given.option_count <= kMostOptions, "it may have {} options, got {}", kMostOptions,
+         given.option_count);
     hold(given.option_count == 0 || given.options != nullptr, "`options` is null");
     for (std::uint64_t i = 0; i < given.option_count; ++i) {
       const isoline_option& option = given.options[i];
       OptionField field = field_of(option);
       const bool is_new =
           std::ranges::find(made.options, field.name, &OptionField::name) == made.options.end();
-      hold(is_new, [&] { return fmt::format("option '{}' occurs twice", field.name); });
+      hold(is_new, "option '{}' occurs twice", field.name);
       hold(option.is_tuned == 0 || made.tuned.empty(), "at most one option may be tuned");
       if (option.is_tuned != 0) made.tuned = field.name;
       made.options.push_back(std::move(field));
@@ -150,10 +137,8 @@ class Reader {
   OptionField field_of(const isoline_option& option) const {
     const std::string name = name_of(option.name, "name of an option");
     const Range range = between(option.low, option.high);
-    hold(contains(range, option.standard), [&] {
-      return fmt::format("the default of option '{}' must be in {}, got {}", name,
-                         range_text(range), option.standard);
-    });
+    hold(contains(range, option.standard), "the default of option '{}' must be in {}, got {}", name,
+         range_text(range), option.standard);
     return {name, option.standard, range, {}, checked_text("about of an option", option.about)};
   }
 

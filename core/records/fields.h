@@ -12,8 +12,11 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
+#include <concepts>
 #include <limits>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -21,18 +24,19 @@
 #include <vector>
 
 #include "core/errors.h"
+#include "core/json.h"
 #include "core/options.h"
 #include "core/oracle.h"
-#include "core/real.h"
 #include "core/records/json_view.h"
 #include "core/status.h"
+#include "core/text.h"
 
 namespace isoline {
 
 template <class Given, class Type>
 concept Like = std::is_same_v<std::remove_const_t<Given>, Type>;
 
-// The JSON form of a type's values: write(value, place), read(view, value), law(place), its schema.
+// The JSON form of a type's values: write(value, out), read(view, value), law(out), its schema.
 template <class Type>
 struct Form;
 
@@ -57,135 +61,122 @@ bool is_absent(const Value& value) {
     return value == Value{};
 }
 
-class FieldWriter {
+// How a member stands in a file. Our programs always write an `expected` one, but a record may lack
+// it; the same holds of a `forgiven` one, which is written where it is empty, too.
+enum class Presence { always, forgiven, expected, optional };
+
+// The calls of fields(); each use defines member().
+template <class Use>
+class Fields {
+ public:
+  template <class Value>
+  void operator()(const char* name, Value&& value, const char* law = "") {
+    use().template member<Presence::always>(name, value, law);
+  }
+  template <class Value>
+  void optional(const char* name, Value& value, const char* law = "") {
+    use().template member<Presence::optional>(name, value, law);
+  }
+  template <class Value>
+  void expected(const char* name, Value& value, const char* law = "") {
+    use().template member<Presence::expected>(name, value, law);
+  }
+  template <class Value>
+  void forgiven(const char* name, Value& value, const char* law = "") {
+    use().template member<Presence::forgiven>(name, value, law);
+  }
+  void allow_others() {}  // by the schema: members that are not declared
+
+ private:
+  Use& use() { return static_cast<Use&>(*this); }
+};
+
+class FieldWriter : public Fields<FieldWriter> {
  public:
   static constexpr bool kReads = false;
-  explicit FieldWriter(JsonPlace out) : out_(out) { out_.make_object(); }
+  explicit FieldWriter(Json& out) : out_(out) { out_ = Json::object(); }
 
-  void constant(const char* name, const char* value) { out_[name].set(value); }
-  template <class Value>
-  void operator()(const char* name, const Value& value, const char* = "") {
-    Form<Value>::write(value, out_[name]);
+  template <Presence presence, class Value>
+  void member(const char* name, const Value& value, const char*) {
+    if constexpr (presence <= Presence::forgiven)
+      Form<Value>::write(value, out_[name]);
+    else if (!is_absent(value))
+      FormOfHeld<const Value>::write(held(value), out_[name]);
   }
-  template <class Value>
-  void optional(const char* name, const Value& value, const char* = "") {
-    if (!is_absent(value)) (*this)(name, held(value));
-  }
-  template <class Value>
-  void expected(const char* name, const Value& value, const char* = "") {
-    optional(name, value);
-  }
-  template <class Value>
-  void forgiven(const char* name, const Value& value, const char* = "") {
-    (*this)(name, value);
-  }
-  template <class Value>
-  void when(bool holds, const char* name, const Value& value, const char* = "") {
-    if (holds) (*this)(name, value);
-  }
-  void other(const char*) {}
-  void rest(const std::string& others, bool = true) {
-    if (!others.empty()) out_.include(others);
+  void constant(const char* name, const char* value) { out_[name] = value; }
+  template <class Members>
+  void group(const char* name, Members members) {
+    FieldWriter inner(out_[name]);
+    members(inner);
   }
 
  private:
-  JsonPlace out_;
+  Json& out_;
 };
 
-class FieldReader {
+class FieldReader : public Fields<FieldReader> {
  public:
   static constexpr bool kReads = true;
   explicit FieldReader(const JsonView& in) : in_(in) {}
 
+  template <Presence presence, class Value>
+  void member(const char* name, Value& value, const char*) {
+    if (presence != Presence::always && !in_.contains(name)) return;
+    if constexpr (presence <= Presence::forgiven) {
+      Form<Value>::read(in_.at(name), value);
+    } else {
+      if constexpr (requires { value.has_value(); }) value.emplace();
+      FormOfHeld<Value>::read(in_.at(name), held(value));
+    }
+  }
   void constant(const char* name, const char* value) {
     require(in_.at(name).get<std::string>() == value, "it has another schema");
   }
-  template <class Value>
-  void operator()(const char* name, Value&& value, const char* = "") {
-    Form<std::remove_cvref_t<Value>>::read(in_.at(name), value);
-    known_.push_back(name);
-  }
-  template <class Value>
-  void optional(const char* name, Value& value, const char* = "") {
-    if (!in_.contains(name)) return;
-    if constexpr (requires { value.has_value(); }) value.emplace();
-    (*this)(name, held(value));
-  }
-  template <class Value>
-  void expected(const char* name, Value& value, const char* = "") {
-    optional(name, value);
-  }
-  template <class Value>
-  void forgiven(const char* name, Value& value, const char* = "") {
-    if (in_.contains(name)) (*this)(name, value);
-  }
-  template <class Value>
-  void when(bool holds, const char* name, Value& value, const char* = "") {
-    if (holds) (*this)(name, value);
-  }
-  void other(const char* name) { known_.push_back(name); }  // stands here, and is read elsewhere
-  // All members that no other field has read, as the text of an object.
-  void rest(std::string& others, bool = true) {
-    others.clear();
-    for (const auto& [name, value] : in_.items())
-      if (std::ranges::find(known_, name) == known_.end())
-        others += (others.empty() ? "{" : ",") + json_of_text(name) + ":" + value.text();
-    if (!others.empty()) others += "}";
+  template <class Members>
+  void group(const char* name, Members members) {
+    const JsonView view = in_.at(name);
+    FieldReader inner(view);
+    members(inner);
   }
 
  private:
   const JsonView& in_;
-  std::vector<std::string_view> known_;
 };
 
-class FieldSchema {
+class FieldSchema : public Fields<FieldSchema> {
  public:
   static constexpr bool kReads = false;
-  explicit FieldSchema(JsonPlace out) : out_(out) {
-    out_.parse(R"({"type": "object", "required": [], "properties": {},
-                   "additionalProperties": false})");
+  explicit FieldSchema(Json& out) : out_(out) {
+    out_ = {{"type", "object"},
+            {"required", Json::array()},
+            {"properties", Json::object()},
+            {"additionalProperties", false}};
   }
 
-  void constant(const char* name, const char* value) { place_of(name, true)["const"].set(value); }
-  template <class Value>
-  void operator()(const char* name, const Value&, const char* law = "") {
-    describe<Form<Value>>(place_of(name, true), law);
+  // A constraint that refers to a definition is complete in itself.
+  template <Presence presence, class Value>
+  void member(const char* name, const Value&, const char* law) {
+    Json& place = place_of(name, presence != Presence::optional);
+    if constexpr (presence <= Presence::forgiven)
+      Form<Value>::law(place);
+    else
+      FormOfHeld<const Value>::law(place);
+    if (*law == '\0') return;
+    if (place.contains("$ref"))
+      place = {{"allOf", {place, Json::parse(law)}}};
+    else
+      place.update(Json::parse(law));
   }
-  template <class Value>
-  void optional(const char* name, const Value&, const char* law = "") {
-    describe<FormOfHeld<const Value>>(place_of(name, false), law);
-  }
-  // Our programs always write it, but a record may lack it.
-  template <class Value>
-  void expected(const char* name, const Value&, const char* law = "") {
-    describe<FormOfHeld<const Value>>(place_of(name, true), law);
-  }
-  // The same, written where it is empty too.
-  template <class Value>
-  void forgiven(const char* name, const Value&, const char* law = "") {
-    describe<Form<Value>>(place_of(name, true), law);
-  }
-  template <class Value>
-  void when(bool, const char* name, const Value&, const char* law = "") {
-    describe<Form<Value>>(place_of(name, false), law);
-  }
-  void other(const char*) {}
-  void rest(const std::string&, bool is_lawful = true) {
-    out_["additionalProperties"].set(is_lawful);
-  }
+  void constant(const char* name, const char* value) { place_of(name, true)["const"] = value; }
+  void allow_others() { out_["additionalProperties"] = true; }
 
  private:
-  JsonPlace place_of(const char* name, bool is_required) const {
-    if (is_required) out_["required"].next().set(name);
+  Json& place_of(const char* name, bool is_required) const {
+    if (is_required) out_["required"].push_back(name);
     return out_["properties"][name];
   }
-  template <class Described>
-  static void describe(JsonPlace place, const char* law) {
-    Described::law(place);
-    if (*law != '\0') place.restrict(law);
-  }
 
-  JsonPlace out_;
+  Json& out_;
 };
 
 // Structs that name their members.
@@ -196,7 +187,7 @@ concept Declared = requires(Type& value, FieldSchema& field) {
 
 template <Declared Type>
 struct Form<Type> {
-  static void write(const Type& value, JsonPlace out) {
+  static void write(const Type& value, Json& out) {
     FieldWriter writer(out);
     fields(value, writer);
   }
@@ -204,63 +195,79 @@ struct Form<Type> {
     FieldReader reader(json);
     fields(value, reader);
   }
-  static void law(JsonPlace out) {
+  static void law(Json& out) {
     Type sample;
     FieldSchema described(out);
     fields(sample, described);
   }
 };
 
+// Whole files.
+
+template <class Type>
+Json json_of(const Type& value) {
+  Json json;
+  Form<Type>::write(value, json);
+  return json;
+}
+
+// UsageError, which begins with `refusal` or names the origin of what is no JSON.
+template <class Type>
+Type from_text(const std::string& text, const std::string& origin, const std::string& refusal) {
+  static thread_local JsonReader reader;
+  const JsonView json = reader.parse(text, origin);
+  try {
+    Type value;
+    Form<Type>::read(json, value);
+    return value;
+  } catch (const UsageError& error) {
+    throw UsageError(refusal + ": " + error.what());
+  }
+}
+
+template <class Type>
+Json schema_of(const char* title) {
+  Json schema;
+  Form<Type>::law(schema);
+  schema["$schema"] = "http://json-schema.org/draft-07/schema#";
+  schema["title"] = title;
+  schema["definitions"]["number"] = {
+      {"description", "a number, or the text inf, -inf or nan"},
+      {"anyOf", {{{"type", "number"}}, {{"enum", {"inf", "-inf", "nan"}}}}}};
+  return schema;
+}
+
 // How the types of members stand in JSON.
 
-// Types that are JSON's own.
-template <class Type, class Written = Type>
-struct PlainForm {
-  static void write(const Type& value, JsonPlace out) { out.set(static_cast<Written>(value)); }
+template <std::integral Type>
+struct Form<Type> {
+  static void write(Type value, Json& out) { out = value; }
   static void read(const JsonView& json, Type& value) { json.get_to(value); }
+  static void law(Json& out) {
+    out["type"] = std::is_same_v<Type, bool> ? "boolean" : "integer";
+    if (std::is_same_v<Type, std::uint64_t>) out["minimum"] = 0;
+  }
 };
 template <>
-struct Form<bool> : PlainForm<bool> {
-  static void law(JsonPlace out) { out["type"].set("boolean"); }
-};
-template <>
-struct Form<int> : PlainForm<int, std::int64_t> {
-  static void law(JsonPlace out) { out["type"].set("integer"); }
-};
-template <>
-struct Form<std::int64_t> : PlainForm<std::int64_t> {
-  static void law(JsonPlace out) { out["type"].set("integer"); }
-};
-template <>
-struct Form<std::uint64_t> : PlainForm<std::uint64_t> {
-  static void law(JsonPlace out) { out.parse(R"({"type": "integer", "minimum": 0})"); }
-};
-template <>
-struct Form<std::string> : PlainForm<std::string, std::string_view> {
-  static void law(JsonPlace out) { out["type"].set("string"); }
+struct Form<std::string> {
+  static void write(const std::string& value, Json& out) { out = valid_utf8(value); }
+  static void read(const JsonView& json, std::string& value) { json.get_to(value); }
+  static void law(Json& out) { out["type"] = "string"; }
 };
 
 // Also infinite, or not a number.
 template <>
 struct Form<Real> {
-  static void write(Real value, JsonPlace out) { out.set(value); }
+  static void write(Real value, Json& out) { out = json_number(value); }
   static void read(const JsonView& json, Real& value) { value = real_of(json); }
-  static void law(JsonPlace out) { out["$ref"].set("#/definitions/number"); }
+  static void law(Json& out) { out["$ref"] = "#/definitions/number"; }
 };
-
-// The rest of a schema: its dialect, its title, and the definition that constraints of numbers
-// refer to.
-void complete_schema(JsonPlace schema, const char* title);
 
 template <class Value>
 struct Form<std::vector<Value>> {
-  static void write(const std::vector<Value>& values, JsonPlace out) {
-    if constexpr (std::is_same_v<Value, Real>) {
-      out.set(std::span<const Real>(values));
-    } else {
-      out.make_list();
-      for (const Value& value : values) Form<Value>::write(value, out.next());
-    }
+  static void write(const std::vector<Value>& values, Json& out) {
+    out = Json::array();
+    for (const Value& value : values) Form<Value>::write(value, out.emplace_back());
   }
   static void read(const JsonView& json, std::vector<Value>& values) {
     if constexpr (std::is_same_v<Value, Real>) {
@@ -272,15 +279,15 @@ struct Form<std::vector<Value>> {
       for (const JsonView& each : json.values()) Form<Value>::read(each, values.emplace_back());
     }
   }
-  static void law(JsonPlace out) {
-    out["type"].set("array");
+  static void law(Json& out) {
+    out["type"] = "array";
     Form<Value>::law(out["items"]);
   }
 };
 
 template <class Value, std::size_t count>
 struct Form<std::array<Value, count>> {
-  static void write(const std::array<Value, count>& values, JsonPlace out) {
+  static void write(const std::array<Value, count>& values, Json& out) {
     Form<std::vector<Value>>::write({values.begin(), values.end()}, out);
   }
   static void read(const JsonView& json, std::array<Value, count>& values) {
@@ -289,22 +296,25 @@ struct Form<std::array<Value, count>> {
     require(list.size() == count, "a list has the wrong length");
     std::ranges::copy(list, values.begin());
   }
-  static void law(JsonPlace out) {
+  static void law(Json& out) {
     Form<std::vector<Value>>::law(out);
-    for (const char* bound : {"minItems", "maxItems"})
-      out[bound].set(static_cast<std::int64_t>(count));
+    out["minItems"] = out["maxItems"] = count;
   }
 };
 
 inline std::string key_text(const std::string& key) { return key; }
 inline std::string key_text(std::int64_t key) { return std::to_string(key); }
 inline void read_key(const std::string& text, std::string& key) { key = text; }
-void read_key(const std::string& text, std::int64_t& key);  // UsageError if it is not a number
+inline void read_key(const std::string& text, std::int64_t& key) {
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), key);
+  require(error == std::errc() && end == text.data() + text.size(),
+          [&] { return "expected an integer, got " + text; });
+}
 
 template <class Key, class Value>
 struct Form<std::map<Key, Value>> {
-  static void write(const std::map<Key, Value>& values, JsonPlace out) {
-    out.make_object();
+  static void write(const std::map<Key, Value>& values, Json& out) {
+    out = Json::object();
     for (const auto& [key, value] : values) Form<Value>::write(value, out[key_text(key)]);
   }
   static void read(const JsonView& json, std::map<Key, Value>& values) {
@@ -315,8 +325,8 @@ struct Form<std::map<Key, Value>> {
       Form<Value>::read(value, values[key]);
     }
   }
-  static void law(JsonPlace out) {
-    out["type"].set("object");
+  static void law(Json& out) {
+    out["type"] = "object";
     Form<Value>::law(out["additionalProperties"]);
   }
 };
@@ -324,58 +334,95 @@ struct Form<std::map<Key, Value>> {
 // null if it does not exist.
 template <class Value>
 struct Form<std::optional<Value>> {
-  static void write(const std::optional<Value>& value, JsonPlace out) {
-    if (value)
-      Form<Value>::write(*value, out);
-    else
-      out.set_null();
+  static void write(const std::optional<Value>& value, Json& out) {
+    out = nullptr;
+    if (value) Form<Value>::write(*value, out);
   }
   static void read(const JsonView& json, std::optional<Value>& value) {
     value.reset();
     if (!json.is_null()) Form<Value>::read(json, value.emplace());
   }
-  static void law(JsonPlace out) {
-    const JsonPlace either = out["anyOf"];
-    Form<Value>::law(either.next());
-    either.next()["type"].set("null");
+  static void law(Json& out) {
+    Form<Value>::law(out["anyOf"].emplace_back());
+    out["anyOf"].push_back({{"type", "null"}});
   }
 };
 
 // By name; older records lack what was counted later.
 template <>
 struct Form<OracleCounts> {
-  static void write(const OracleCounts& counts, JsonPlace out);
-  static void read(const JsonView& json, OracleCounts& counts);
-  static void law(JsonPlace out);
+  static void write(const OracleCounts& counts, Json& out) {
+    for (std::size_t kind = 0; kind < kOracles; ++kind)
+      out[std::string(kOracleNames[kind])] = counts[kind];
+  }
+  static void read(const JsonView& json, OracleCounts& counts) {
+    for (std::size_t kind = 0; kind < kOracles; ++kind)
+      if (json.contains(kOracleNames[kind])) counts[kind] = json.at(kOracleNames[kind]);
+  }
+  static void law(Json& out) {
+    out = {{"type", "object"}, {"additionalProperties", false}, {"required", Json::array()}};
+    for (const OracleRow& oracle : kOracleTable) {
+      out["properties"][std::string(oracle.name)] = {{"type", "integer"}, {"minimum", 0}};
+      if (oracle.is_in_every_record) out["required"].push_back(oracle.name);
+    }
+  }
 };
 
 template <>
 struct Form<OptionValues> {
-  static void write(const OptionValues& options, JsonPlace out);
-  static void read(const JsonView& json, OptionValues& options);
-  static void law(JsonPlace out) { out["type"].set("object"); }
+  static void write(const OptionValues& options, Json& out) { out = to_json(options); }
+  static void read(const JsonView& json, OptionValues& options) {
+    options = option_values_from(json.json());
+  }
+  static void law(Json& out) { out["type"] = "object"; }
 };
 
 template <>
 struct Form<Status> {
-  static void write(Status status, JsonPlace out) { out.set(name_of(status)); }
-  static void read(const JsonView& json, Status& status);
-  static void law(JsonPlace out);
+  static void write(Status status, Json& out) { out = name_of(status); }
+  static void read(const JsonView& json, Status& status) {
+    const auto found = status_of(json.get<std::string>());
+    require(found.has_value(), [&] { return "unknown status " + json.get<std::string>(); });
+    require(found != Status::running, "it was written before its run ended");
+    status = *found;
+  }
+  static void law(Json& out) {
+    for (const std::string_view name : kStatusNames)
+      if (name != name_of(Status::running)) out["enum"].push_back(name);  // it is never written
+  }
 };
 
 template <>
 struct Form<Aim> {
-  static void write(Aim aim, JsonPlace out) { out.set(name_of(aim)); }
-  static void read(const JsonView& json, Aim& aim);
-  static void law(JsonPlace out);
+  static void write(Aim aim, Json& out) { out = name_of(aim); }
+  static void read(const JsonView& json, Aim& aim) {
+    const auto found = aim_of(json.get<std::string>());
+    require(found.has_value(), [&] { return "unknown aim " + json.get<std::string>(); });
+    aim = *found;
+  }
+  static void law(Json& out) { out["enum"] = kAimNames; }
 };
 
 // A list of columns.
 template <>
 struct Form<Grid> {
-  static void write(const Grid& grid, JsonPlace out);
-  static void read(const JsonView& json, Grid& grid);
-  static void law(JsonPlace out) { Form<std::vector<std::vector<Real>>>::law(out); }
+  static void write(const Grid& grid, Json& out) {
+    out = Json::array();
+    for (Index j = 0; j < grid.columns(); ++j) out.push_back(json_numbers(grid.column(j)));
+  }
+  static void read(const JsonView& json, Grid& grid) {
+    std::vector<Real> values;
+    const std::vector<JsonView> columns = json.values();
+    std::size_t rows = 0;
+    for (const JsonView& column : columns) {
+      const std::vector<Real> numbers = reals_of(column);
+      if (&column == &columns.front()) rows = numbers.size();
+      require(numbers.size() == rows, "the columns of an array differ in length");
+      values.insert(values.end(), numbers.begin(), numbers.end());
+    }
+    grid = Grid(static_cast<Index>(rows), static_cast<Index>(columns.size()), std::move(values));
+  }
+  static void law(Json& out) { Form<std::vector<std::vector<Real>>>::law(out); }
 };
 
 // A number that stands for "no limit" where it is the largest of its type: null.
@@ -387,17 +434,15 @@ template <class Value>
 struct Form<Unlimited<Value>> {
   static constexpr auto kNone = std::numeric_limits<std::remove_const_t<Value>>::max();
 
-  static void write(const Unlimited<Value>& limit, JsonPlace out) {
-    if (limit.value < kNone)
-      out.set(limit.value);
-    else
-      out.set_null();
+  static void write(const Unlimited<Value>& limit, Json& out) {
+    out = nullptr;
+    if (limit.value < kNone) out = limit.value;
   }
   static void read(const JsonView& json, const Unlimited<Value>& limit) {
     limit.value = kNone;
     if (!json.is_null()) json.get_to(limit.value);
   }
-  static void law(JsonPlace out) { out.parse(R"({"type": ["integer", "null"]})"); }
+  static void law(Json& out) { out["type"] = {"integer", "null"}; }
 };
 
 // A list or an object kept as its text.
@@ -407,11 +452,11 @@ struct JsonAsText {
 };
 template <class Text>
 struct Form<JsonAsText<Text>> {
-  static void write(const JsonAsText<Text>& value, JsonPlace out) { out.parse(value.text); }
+  static void write(const JsonAsText<Text>& value, Json& out) { out = Json::parse(value.text); }
   static void read(const JsonView& json, const JsonAsText<Text>& value) {
-    value.text = json.tree_text();
+    value.text = json_text(json.json());
   }
-  static void law(JsonPlace out) { out.make_object(); }
+  static void law(Json& out) { out = Json::object(); }
 };
 
 }  // namespace isoline

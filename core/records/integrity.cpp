@@ -1,6 +1,4 @@
 // The invariants of a record, each with the sentence that names what breaks it.
-#include "core/records/integrity.h"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -8,8 +6,9 @@
 #include <cmath>
 #include <functional>
 
-#include "core/digest.h"
-#include "core/ladder.h"
+#include "core/files.h"
+#include "core/records/record.h"
+#include "core/status.h"
 
 namespace isoline {
 namespace {
@@ -33,10 +32,14 @@ class Invariants {
       : record_(record), curve_(record.curve), summary_(record.summary) {
     const bool is_own = !record.imported && record.status != Status::inapplicable;
     const bool broke_off = is_failure(record.status) || record.status == Status::interrupted;
-    check_criterion();
+    hold(record.criterion.empty() || record.criterion == digest_of(criterion_of(record)),
+         "its criterion is not the digest of its f_L, scale, x_scale, x_floor, aim and prices");
     check_signs();
     if (!is_own) return;
-    check_order();
+    hold(std::ranges::adjacent_find(curve_.iteration, std::greater_equal()) ==
+             curve_.iteration.end(),
+         "the iterations of its curve do not ascend");
+    hold(std::ranges::is_sorted(curve_.work), "the work of its curve descends");
     if (!broke_off) check_ends();
     check_prices();
     check_losses();
@@ -47,32 +50,21 @@ class Invariants {
   std::vector<std::string> broken() && { return std::move(broken_); }
 
  private:
-  void hold(bool holds, std::string sentence) {
-    if (!holds) broken_.push_back(std::move(sentence));
-  }
-
-  void check_criterion() {
-    hold(record_.criterion.empty() || record_.criterion == digest_of(criterion_of(record_)),
-         "its criterion is not the digest of its f_L, scale, x_scale, x_floor, aim and prices");
+  template <class... Parts>
+  void hold(bool holds, fmt::format_string<const Parts&...> law, const Parts&... parts) {
+    if (!holds) broken_.push_back(fmt::format(law, parts...));
   }
 
   void check_signs() {
     const auto is_negative = [](Real value) { return value < 0; };  // not-a-number is allowed
     for (const auto& [name, works] :
          {std::pair("iterations", &curve_.iteration), {"work", &curve_.work}})
-      hold(std::ranges::none_of(*works, is_negative), fmt::format("its {} are negative", name));
+      hold(std::ranges::none_of(*works, is_negative), "its {} are negative", name);
     for (const std::vector<Real>* times :
          {&curve_.wall_seconds, &curve_.processor_seconds, &record_.repeat_wall_seconds})
       hold(std::ranges::none_of(*times, is_negative), "its times are negative");
     hold(summary_.work >= 0 && summary_.iterations >= 0 && !is_negative(summary_.wall_seconds),
          "its summary has negative work, iterations or time");
-  }
-
-  void check_order() {
-    hold(std::ranges::adjacent_find(curve_.iteration, std::greater_equal()) ==
-             curve_.iteration.end(),
-         "the iterations of its curve do not ascend");
-    hold(std::ranges::is_sorted(curve_.work), "the work of its curve descends");
   }
 
   // The summary is the first and the last point of the curve. Of one point both are it.
@@ -93,18 +85,16 @@ class Invariants {
     const std::size_t count = curve_.iteration.size() > 1 ? std::size(ends) : std::size(ends) - 2;
     for (std::size_t i = 0; i < count; ++i)
       hold(are_same(ends[i].summary, ends[i].curve),
-           fmt::format("its {} is {} in the summary and {} in the curve", ends[i].name,
-                       ends[i].summary, ends[i].curve));
+           "its {} is {} in the summary and {} in the curve", ends[i].name, ends[i].summary,
+           ends[i].curve);
     for (std::size_t kind = 0; kind < kOracles; ++kind) {
       const auto column = curve_.counts.find(std::string(kOracleNames[kind]));
       if (column != curve_.counts.end())
         hold(column->second.back() == record_.counts[kind],
-             fmt::format("its calls of {} are {}, and {} at the end of the curve", column->first,
-                         record_.counts[kind], column->second.back()));
+             "its calls of {} are {}, and {} at the end of the curve", column->first,
+             record_.counts[kind], column->second.back());
     }
   }
-
-  bool is_priced() const { return std::ranges::any_of(record_.prices, std::identity()); }
 
   // The work of counts by oracle, in the place i of each column.
   std::int64_t priced_work(const std::map<std::string, Works>& counts, std::size_t i) const {
@@ -116,19 +106,18 @@ class Invariants {
   }
 
   void check_prices() {
-    if (!is_priced()) return;
+    if (std::ranges::none_of(record_.prices, std::identity())) return;
     std::int64_t total = 0;
     for (std::size_t kind = 0; kind < kOracles; ++kind)
       total += record_.counts[kind] * record_.prices[kind];
-    hold(total == summary_.work,
-         fmt::format("its work is {}, its counts times its prices {}", summary_.work, total));
+    hold(total == summary_.work, "its work is {}, its counts times its prices {}", summary_.work,
+         total);
     const auto check = [&](const char* whose, const std::map<std::string, Works>& counts,
                            const Works& works) {
       if (counts.empty()) return;
       for (std::size_t i = 0; i < works.size(); ++i)
         if (works[i] >= 0 && priced_work(counts, i) != works[i])
-          return hold(false,
-                      fmt::format("the work of its {} is not its counts times its prices", whose));
+          return hold(false, "the work of its {} is not its counts times its prices", whose);
     };
     check("curve", curve_.counts, curve_.work);
     if (record_.hits) check("hits", record_.hits->counts, record_.hits->work);
@@ -141,14 +130,14 @@ class Invariants {
   void check_losses() {
     for (const Real loss : curve_.loss)
       if (std::isfinite(loss) && !(summary_.best_loss <= loss))
-        return hold(false, fmt::format("its best loss is {}, and one of its curve is {}",
-                                       summary_.best_loss, loss));
+        return hold(false, "its best loss is {}, and one of its curve is {}", summary_.best_loss,
+                    loss);
     // Older records do not say whether f_L is declared, or the best loss known.
     const bool is_declared = !record_.criterion.empty() && !record_.is_best_known;
     if (is_declared && record_.minimum)
       hold(!(summary_.best_loss < *record_.minimum - kBelowMinimum * size()),
-           fmt::format("its best loss, {}, is below the minimum that its problem declares, {}",
-                       summary_.best_loss, *record_.minimum));
+           "its best loss, {}, is below the minimum that its problem declares, {}",
+           summary_.best_loss, *record_.minimum);
   }
 
   Real goal_at(Real tau) const { return *record_.minimum + tau * *record_.scale; }
@@ -160,18 +149,19 @@ class Invariants {
       const Real goal = goal_at(hits.target[j]);
       if (hits.iteration[j] < 0) {
         hold(!(summary_.best_loss < goal - slack()),
-             fmt::format("it never met the target {}, and its best loss is {}", hits.target[j],
-                         summary_.best_loss));
+             "it never met the target {}, and its best loss is {}", hits.target[j],
+             summary_.best_loss);
         continue;
       }
       hold(summary_.best_loss <= goal + slack(),
-           fmt::format("it met the target {}, {}, and its best loss is {}", hits.target[j], goal,
-                       summary_.best_loss));
+           "it met the target {}, {}, and its best loss is {}", hits.target[j], goal,
+           summary_.best_loss);
       for (std::size_t i = 0; i < curve_.iteration.size(); ++i)
         if (is_beside(hits, j, i, goal))
-          return hold(false, fmt::format("its target {} is not met where its curve meets it, at "
-                                         "iteration {}",
-                                         hits.target[j], curve_.iteration[i]));
+          return hold(false,
+                      "its target {} is not met where its curve meets it, at "
+                      "iteration {}",
+                      hits.target[j], curve_.iteration[i]);
     }
   }
 
@@ -189,8 +179,8 @@ class Invariants {
       for (const auto& [text, tau] : kVerified)
         if (const auto at = verdicts.find(text); at != verdicts.end() && at->second)
           hold(*at->second == (has_returned && is_met(tau)),
-               fmt::format("it is {}{} to {}, and its last point says otherwise",
-                           *at->second ? "" : "not ", name, text));
+               "it is {}{} to {}, and its last point says otherwise", *at->second ? "" : "not ",
+               name, text);
     };
     if (record_.minimum && record_.scale)
       check("verified", record_.verified, [&](Real tau) {
@@ -207,8 +197,7 @@ class Invariants {
                          summary_.x_error <= x_goal(tau, *record_.x_scale, record_.x_floor);
     const Real of_loss = record_.aim == Aim::x ? tau * tau : tau;
     hold(is_in_x || (record_.minimum && summary_.best_loss <= goal_at(of_loss) + slack()),
-         fmt::format("its status is target, and its best loss, {}, is above it",
-                     summary_.best_loss));
+         "its status is target, and its best loss, {}, is above it", summary_.best_loss);
   }
 
   const Record& record_;

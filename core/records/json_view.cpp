@@ -1,53 +1,30 @@
-// Places in a tree of nlohmann-json.
+// Values of JSON as simdjson leaves them on its tape, and schemas by valijson: the only adapter to
+// both.
 #include "core/records/json_view.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <simdjson.h>
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
+#include <valijson/adapters/nlohmann_json_adapter.hpp>
+#include <valijson/schema.hpp>
+#include <valijson/schema_parser.hpp>
+#include <valijson/validation_results.hpp>
+#include <valijson/validator.hpp>
 
 #include "core/errors.h"
 #include "core/json.h"
-#include "core/records/schema.h"
-#include "core/text.h"
 
 namespace isoline {
-
-JsonPlace JsonPlace::operator[](std::string_view member) const {
-  return JsonPlace((*here_)[std::string(member)]);
-}
-JsonPlace JsonPlace::next() const {
-  here_->push_back(nullptr);
-  return JsonPlace(here_->back());
-}
-void JsonPlace::make_object() const { *here_ = Json::object(); }
-void JsonPlace::make_list() const { *here_ = Json::array(); }
-void JsonPlace::set_null() const { *here_ = nullptr; }
-void JsonPlace::set(bool value) const { *here_ = value; }
-void JsonPlace::set(std::int64_t value) const { *here_ = value; }
-void JsonPlace::set(std::uint64_t value) const { *here_ = value; }
-void JsonPlace::set(std::string_view value) const { *here_ = valid_utf8(value); }
-void JsonPlace::set(Real value) const { *here_ = json_number(value); }
-void JsonPlace::set(std::span<const Real> values) const { *here_ = json_numbers(values); }
-void JsonPlace::set(Json value) const { *here_ = std::move(value); }
-
-void JsonPlace::parse(std::string_view text) const { *here_ = Json::parse(text); }
-void JsonPlace::include(std::string_view text) const { here_->update(Json::parse(text)); }
-void JsonPlace::restrict(std::string_view law) const {
-  if (here_->contains("$ref"))
-    *here_ = {{"allOf", {*here_, Json::parse(law)}}};
-  else
-    include(law);
-}
-
-// Values of JSON as simdjson leaves them on its tape.
-
 namespace {
 
 using simdjson::dom::element;
@@ -61,11 +38,10 @@ JsonView view_of(const element& value) { return JsonView(std::bit_cast<JsonView:
   throw UsageError(fmt::format("expected {}, got {}", expected, simdjson::minify(value)));
 }
 
-// The value, or what was expected instead.
 template <class Value>
-Value checked(simdjson::simdjson_result<Value> result, const char* expected, const element& value) {
+Value checked(const element& value, const char* expected) {
   Value out{};
-  if (std::move(result).get(out) != simdjson::SUCCESS) fail(expected, value);
+  if (value.get(out) != simdjson::SUCCESS) fail(expected, value);
   return out;
 }
 
@@ -80,12 +56,10 @@ Real real(const element& value) {
   fail("a number", value);
 }
 
-std::int64_t integer(const element& value) {
-  return checked(value.get_int64(), "an integer", value);
-}
+std::int64_t integer(const element& value) { return checked<std::int64_t>(value, "an integer"); }
 
 simdjson::dom::array array(const element& value) {
-  return checked(value.get_array(), "a list", value);
+  return checked<simdjson::dom::array>(value, "a list");
 }
 
 template <class Value, class Read>
@@ -96,63 +70,28 @@ void read_all(const element& list, std::vector<Value>& out, Read read) {
   for (const element value : values) out.push_back(read(value));
 }
 
-Json copy_of(const element& value);
-
-Json copy_of(const simdjson::dom::object& object) {
-  Json json = Json::object();
-  for (const auto& field : object) json.emplace(std::string(field.key), copy_of(field.value));
-  return json;
-}
-
-Json copy_of(const simdjson::dom::array& list) {
-  Json json = Json::array();
-  for (const element value : list) json.push_back(copy_of(value));
-  return json;
-}
-
-Json copy_of(const element& value) {
-  switch (value.type()) {
-    case element_type::OBJECT:
-      return copy_of(value.get_object().value_unsafe());
-    case element_type::ARRAY:
-      return copy_of(value.get_array().value_unsafe());
-    case element_type::STRING:
-      return std::string(value.get_string().value_unsafe());
-    case element_type::INT64: {
-      const std::int64_t number = value.get_int64().value_unsafe();
-      return number < 0 ? Json(number) : Json(static_cast<std::uint64_t>(number));
-    }
-    case element_type::UINT64:
-      return value.get_uint64().value_unsafe();
-    case element_type::DOUBLE:
-      return value.get_double().value_unsafe();
-    case element_type::BOOL:
-      return value.get_bool().value_unsafe();
-    case element_type::NULL_VALUE:
-      break;
-  }
-  return nullptr;
-}
+Json copy_of(const element& value) { return Json::parse(simdjson::minify(value)); }
 
 // Nothing where an element is neither number nor text.
 std::optional<Json> outline_of_column(const simdjson::dom::array& column) {
-  std::map<element_type, std::pair<Json, Json>> extremes;
+  std::map<element_type, std::pair<element, element>> extremes;
   std::set<std::string_view> texts;
+  const auto size = [](const element& number) { return number.get_double().value_unsafe(); };
   for (const element value : column) {
     if (value.is_string()) {
       texts.insert(value.get_string().value_unsafe());
     } else if (value.is_number()) {
-      const Json number = copy_of(value);
-      auto& [least, most] = extremes.try_emplace(value.type(), number, number).first->second;
-      if (number < least) least = number;
-      if (number > most) most = number;
+      auto& [least, most] = extremes.try_emplace(value.type(), value, value).first->second;
+      if (size(value) < size(least)) least = value;
+      if (size(value) > size(most)) most = value;
     } else {
       return std::nullopt;
     }
   }
   Json list = Json::array();
-  for (const auto& [type, ends] : extremes) list.insert(list.end(), {ends.first, ends.second});
-  for (const std::string_view text : texts) list.push_back(std::string(text));
+  for (const auto& [type, ends] : extremes)
+    list.insert(list.end(), {copy_of(ends.first), copy_of(ends.second)});
+  for (const std::string_view text : texts) list.push_back(text);
   return list;
 }
 
@@ -171,6 +110,24 @@ Json outline(const element& value) {
   json = Json::array();
   for (const element each : list) json.push_back(outline(each));
   return json;
+}
+
+// valijson reads integers as signed ones: beyond them a seed would be below zero.
+bool is_beyond(const Json& value) {
+  return value.is_number_unsigned() &&
+         value.get<std::uint64_t>() > std::numeric_limits<std::int64_t>::max();
+}
+bool holds_beyond(const Json& value) {
+  if (value.is_structured()) return std::ranges::any_of(value, holds_beyond);
+  return is_beyond(value);
+}
+
+// Larger numbers are replaced by the largest that it reads.
+void bring_within(Json& value) {
+  if (value.is_structured())
+    for (Json& each : value) bring_within(each);
+  else if (is_beyond(value))
+    value = std::numeric_limits<std::int64_t>::max();
 }
 
 }  // namespace
@@ -201,15 +158,12 @@ std::vector<JsonView> JsonView::values() const {
 
 std::vector<std::pair<std::string, JsonView>> JsonView::items() const {
   std::vector<std::pair<std::string, JsonView>> all;
-  const element here = element_at(place_);
-  for (const auto& field : checked(here.get_object(), "an object", here))
+  for (const auto& field : checked<simdjson::dom::object>(element_at(place_), "an object"))
     all.emplace_back(field.key, view_of(field.value));
   return all;
 }
 
 std::string JsonView::text() const { return simdjson::minify(element_at(place_)); }
-
-std::string JsonView::tree_text() const { return json_text(json()); }
 
 std::string json_of_text(const std::string& text) { return json_text(Json(text)); }
 
@@ -217,14 +171,10 @@ Json JsonView::json() const { return copy_of(element_at(place_)); }
 
 bool JsonView::is_null() const { return element_at(place_).is_null(); }
 
-void JsonView::get_to(bool& out) const {
-  const element here = element_at(place_);
-  out = checked(here.get_bool(), "a truth", here);
-}
+void JsonView::get_to(bool& out) const { out = checked<bool>(element_at(place_), "a truth"); }
 void JsonView::get_to(std::int64_t& out) const { out = integer(element_at(place_)); }
 void JsonView::get_to(std::uint64_t& out) const {
-  const element here = element_at(place_);
-  out = checked(here.get_uint64(), "an unsigned integer", here);
+  out = checked<std::uint64_t>(element_at(place_), "an unsigned integer");
 }
 void JsonView::get_to(int& out) const {
   const element here = element_at(place_);
@@ -233,8 +183,7 @@ void JsonView::get_to(int& out) const {
   out = static_cast<int>(number);
 }
 void JsonView::get_to(std::string& out) const {
-  const element here = element_at(place_);
-  out = checked(here.get_string(), "a text", here);
+  out = checked<std::string_view>(element_at(place_), "a text");
 }
 void JsonView::get_to(std::vector<std::int64_t>& out) const {
   read_all(element_at(place_), out, integer);
@@ -265,6 +214,40 @@ JsonView JsonReader::parse(const std::string& text, const std::string& origin) {
   if (error == simdjson::SUCCESS) return view_of(root);
   parse_json(text, origin);
   throw UsageError(fmt::format("{} is not JSON: {}", origin, simdjson::error_message(error)));
+}
+
+// Schemas, by valijson.
+
+using Adapter = valijson::adapters::NlohmannJsonAdapter;
+
+struct Schema::Parsed {
+  valijson::Schema schema;
+};
+
+Schema::Schema(const Json& schema) {
+  auto parsed = std::make_unique<Parsed>();
+  valijson::SchemaParser().populateSchema(Adapter(schema), parsed->schema);
+  parsed_ = std::move(parsed);
+}
+
+Schema::~Schema() = default;
+
+std::vector<std::string> Schema::violations(const Json& document) const {
+  if (holds_beyond(document)) {
+    Json within = document;
+    bring_within(within);
+    return violations(within);
+  }
+  valijson::ValidationResults results;
+  valijson::Validator().validate(parsed_->schema, Adapter(document), &results);
+  std::vector<std::string> violations;
+  for (valijson::ValidationResults::Error error; results.popError(error);)
+    violations.push_back(fmt::format("{}: {}", fmt::join(error.context, ""), error.description));
+  return violations;
+}
+
+std::vector<std::string> schema_violations(const Json& document, const Json& schema) {
+  return Schema(schema).violations(document);
 }
 
 }  // namespace isoline

@@ -1,11 +1,10 @@
-// JSON to write and to read: places in a tree, and views of a text. The headers of the libraries,
-// which are large, stay in json_view.cpp.
+// JSON as it stands in files: views of a text, and schemas. The headers of the libraries, which are
+// large, stay in json_view.cpp.
 #pragma once
 
 #include <cstdint>
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
-#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -16,36 +15,6 @@
 namespace isoline {
 
 using Json = nlohmann::json;
-
-// Valid as long as its tree, and until its list grows.
-class JsonPlace {
- public:
-  explicit JsonPlace(Json& here) : here_(&here) {}
-
-  JsonPlace operator[](std::string_view member) const;  // made where it is missing
-  JsonPlace next() const;                               // a new element at the end of the list
-  void make_object() const;                             // an empty one
-  void make_list() const;                               // an empty one
-  void set_null() const;
-  void set(bool value) const;
-  void set(std::int64_t value) const;
-  void set(std::uint64_t value) const;
-  void set(std::string_view value) const;  // of what is no UTF-8 U+FFFD stays
-  void set(const char* value) const { set(std::string_view(value)); }
-  void set(Real value) const;                    // also infinite, or not a number
-  void set(std::span<const Real> values) const;  // a list of them
-  void set(Json value) const;
-
-  void parse(std::string_view text) const;  // JSON as text
-  void include(
-      std::string_view text) const;  // the members of an object as text, put beside its own
-  // A further constraint of a schema. A constraint that refers to a definition is complete in
-  // itself.
-  void restrict(std::string_view law) const;
-
- private:
-  Json* here_;
-};
 
 // JSON for a single pass: values in parsed text, some eight times as fast as a tree, for records by
 // the hundred thousand. With json_view.cpp the only adapter to simdjson. A value that is missing or
@@ -75,7 +44,6 @@ class JsonView {
   std::vector<JsonView> values() const;                         // of an array
   std::vector<std::pair<std::string, JsonView>> items() const;  // of an object
   std::string text() const;                                     // as JSON, without spaces
-  std::string tree_text() const;                                // as a tree of it writes itself
   nlohmann::json json() const;                                  // a copy that stays
 
   void get_to(bool& out) const;
@@ -121,5 +89,28 @@ class JsonReader {
   struct Parser;
   std::unique_ptr<Parser> parser_;
 };
+
+// JSON Schema, read once, for documents by the hundred thousand.
+class Schema {
+ public:
+  explicit Schema(const Json& schema);
+  ~Schema();
+
+  // The errors in the document, one sentence each, beginning with the place; empty if it conforms.
+  std::vector<std::string> violations(const Json& document) const;
+
+ private:
+  struct Parsed;
+  std::unique_ptr<const Parsed> parsed_;
+};
+
+std::vector<std::string> schema_violations(const Json& document, const Json& schema);
+
+// A JSON text in the form in which single values are checked: a tree with shortened columns. A long
+// list of numbers and texts is reduced to its least and greatest integer, its least and greatest
+// other number, and each of its texts once. Constraints on the type, the range or the choices of an
+// element hold for these if and only if they hold for all. UsageError names the origin if it is not
+// JSON.
+Json outline_of(const std::string& text, const std::string& origin);
 
 }  // namespace isoline

@@ -9,15 +9,20 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <limits>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <sstream>
 #include <string_view>
 
 #include "core/errors.h"
 #include "core/files.h"
+#include "core/text.h"
 
 namespace isoline {
 namespace {
+
+using Json = nlohmann::json;
 
 constexpr std::string_view kMagic = "\x93NUMPY";
 constexpr std::size_t kPreamble = 8;  // magic, major and minor version
@@ -32,104 +37,46 @@ struct Header {
   std::size_t data_begin = 0;
 };
 
-// Reads {'descr': '<f8', 'fortran_order': False, 'shape': (3, 4), } from left to right.
-class HeaderReader {
- public:
-  HeaderReader(std::string_view text, Header& out) : text_(text), out_(out) {}
-
-  void read() {
-    require(takes('{'), "its header is not a dictionary");
-    while (!takes('}')) {
-      read_entry(quoted("its header has a key that is not a text"));
-      if (takes(',')) continue;
-      require(takes('}'), "its header is not a dictionary");
-      break;
+// From Python's notation, {'descr': '<f8', 'fortran_order': False, 'shape': (3, 4), }, by JSON's: a
+// tuple as a list, and without the comma that may follow a last element.
+Header header_from(const std::string& text) {
+  std::string notation;
+  for (const char letter : text) {
+    if (letter == ' ' || letter == '\t' || letter == '\r' || letter == '\n') {
+      notation += ' ';
+      continue;
     }
-    skip_spaces();
-    require(text_.empty(), "its header continues after its end");
-    require(has_type_, "its header names no supported type of numbers");
-    require(has_order_, "its header names no order of indices");
-    require(has_shape_, "its header names no shape");
+    const std::size_t last = notation.find_last_not_of(' ');
+    const bool closes = letter == ')' || letter == '}';
+    const bool is_empty = std::string_view(notation).substr(0, last + 1).ends_with("[,");
+    if (closes && last != notation.npos && notation[last] == ',' && !is_empty) notation.erase(last);
+    notation += letter == '\'' ? '"' : letter == '(' ? '[' : letter == ')' ? ']' : letter;
   }
-
- private:
-  void read_entry(const std::string& key) {
-    require(takes(':'), "its header has a key without a value");
-    if (key == "descr") {
-      once(has_type_);
-      out_.type = quoted("its header names no supported type of numbers");
-    } else if (key == "fortran_order") {
-      once(has_order_);
-      out_.is_column_major = takes("True");
-      require(out_.is_column_major || takes("False"), "its header names no order of indices");
-    } else {
-      require(key == "shape",
-              [&] { return fmt::format("its header has an unknown key '{}'", key); });
-      once(has_shape_);
-      read_shape();
-    }
+  for (const auto& [python, json] : {std::pair("True", "true"), {"False", "false"}})
+    if (const auto at = notation.find(python); at != notation.npos)
+      notation.replace(at, std::strlen(python), json);
+  const auto is_size = [](const Json& size) {
+    return size.is_number_unsigned() &&
+           size.get<std::uint64_t>() <= std::uint64_t{std::numeric_limits<Index>::max()};
+  };
+  try {
+    const Json header = Json::parse(notation);
+    const Json& shape = header.at("shape");
+    require(shape.size() <= kMostDimensions,
+            [] { return fmt::format("its shape has more than {} indices", kMostDimensions); });
+    const bool has_three = header.size() == 3 && std::ranges::count(text, ':') == 3;
+    if (has_three && std::ranges::count(text, '[') == 0 && shape.is_array() &&
+        std::ranges::all_of(shape, is_size))
+      return {.type = header.at("descr").get<std::string>(),
+              .is_column_major = header.at("fortran_order").get<bool>(),
+              .shape = shape.get<std::vector<Index>>()};
+  } catch (const Json::exception&) {
   }
-
-  static void once(bool& is_known) {
-    require(!is_known, "its header has a key twice");
-    is_known = true;
-  }
-
-  void read_shape() {
-    require(takes('('), "its header names no shape");
-    while (!takes(')')) {
-      require(out_.shape.size() < kMostDimensions,
-              [] { return fmt::format("its shape has more than {} indices", kMostDimensions); });
-      out_.shape.push_back(size());
-      if (takes(',')) continue;
-      require(takes(')'), "its shape is no list of sizes");
-      break;
-    }
-  }
-
-  Index size() {
-    skip_spaces();
-    Index size = 0;
-    const char* const end = text_.data() + text_.size();
-    const auto [stop, error] = std::from_chars(text_.data(), end, size);
-    require(error == std::errc() && size >= 0, "its shape has a size that is no count of numbers");
-    text_.remove_prefix(static_cast<std::size_t>(stop - text_.data()));
-    return size;
-  }
-
-  std::string quoted(const char* law) {
-    skip_spaces();
-    require(!text_.empty() && (text_[0] == '\'' || text_[0] == '"'), law);
-    const std::size_t end = text_.find(text_[0], 1);
-    require(end != std::string_view::npos, law);
-    const std::string content(text_.substr(1, end - 1));
-    text_.remove_prefix(end + 1);
-    return content;
-  }
-
-  bool takes(std::string_view token) {
-    skip_spaces();
-    if (!text_.starts_with(token)) return false;
-    text_.remove_prefix(token.size());
-    return true;
-  }
-  bool takes(char token) { return takes(std::string_view(&token, 1)); }
-
-  void skip_spaces() {
-    const std::size_t first = text_.find_first_not_of(" \t\r\n");
-    text_.remove_prefix(std::min(first, text_.size()));
-  }
-
-  std::string_view text_;
-  Header& out_;
-  bool has_type_ = false, has_order_ = false, has_shape_ = false;
-};
-
-std::size_t length_field(const std::string& bytes, std::size_t size) {
-  std::size_t length = 0;
-  for (std::size_t i = 0; i < size; ++i)
-    length |= static_cast<std::size_t>(static_cast<unsigned char>(bytes[kPreamble + i])) << (8 * i);
-  return length;
+  constexpr std::size_t kShown = 200;
+  throw UsageError(
+      fmt::format("its header must be like {{'descr': '<f8', 'fortran_order': False, 'shape': (3, "
+                  "4), }}, got {}",
+                  printable(text.substr(0, kShown))));
 }
 
 Header header_of(const std::string& bytes) {
@@ -139,15 +86,16 @@ Header header_of(const std::string& bytes) {
     return fmt::format("its version of the format is {}; 1 to 3 can be read", version);
   });
   const std::size_t field = version == 1 ? 2 : 4;  // bytes of the header's length
-  const std::size_t length = length_field(bytes, field);
+  std::uint32_t length = 0;
+  std::memcpy(&length, bytes.data() + kPreamble, field);
   require(length <= kMostHeaderBytes, [&] {
     return fmt::format("its header has {} bytes, and at most {} are read", length,
                        kMostHeaderBytes);
   });
-  Header header;
-  header.data_begin = kPreamble + field + length;
-  require(header.data_begin <= bytes.size(), "its header is cut short");
-  HeaderReader(std::string_view(bytes).substr(kPreamble + field, length), header).read();
+  const std::size_t begin = kPreamble + field;
+  require(begin + length <= bytes.size(), "its header is cut short");
+  Header header = header_from(bytes.substr(begin, length));
+  header.data_begin = begin + length;
   return header;
 }
 
@@ -221,38 +169,6 @@ std::string bytes_of(const char* type, const std::vector<Index>& shape,
   return bytes;
 }
 
-}  // namespace
-
-NumberArray npy_from_bytes(const std::string& bytes) {
-  const Header header = header_of(bytes);
-  NumberArray array{header.shape, numbers_of(bytes, header)};
-  if (header.is_column_major) array.values = turned(array.values, array.shape);
-  for (const Real value : array.values)
-    require(std::isfinite(value), "it holds a number that is not finite");
-  return array;
-}
-
-NumberArray read_npy(const std::filesystem::path& path) {
-  const std::string bytes = read_text(path);
-  try {
-    return npy_from_bytes(bytes);
-  } catch (const UsageError& error) {
-    throw UsageError(fmt::format("{}: {}", path.string(), error.what()));
-  }
-}
-
-std::string npy_bytes(const std::vector<Index>& shape, const std::vector<float>& values) {
-  return bytes_of("<f4", shape, values);
-}
-
-void write_npy(const std::filesystem::path& path, const NumberArray& array) {
-  write_text(path, bytes_of("<f8", array.shape, array.values));
-}
-
-// Numbers as text, and the choice of the format by the file's ending.
-
-namespace {
-
 std::vector<std::string> cells_of(const std::string& line) {
   std::vector<std::string> cells;
   std::istringstream in(line);
@@ -321,6 +237,34 @@ void require_known(const std::filesystem::path& path) {
 }
 
 }  // namespace
+
+NumberArray npy_from_bytes(const std::string& bytes) {
+  const Header header = header_of(bytes);
+  NumberArray array{header.shape, numbers_of(bytes, header)};
+  if (header.is_column_major) array.values = turned(array.values, array.shape);
+  for (const Real value : array.values)
+    require(std::isfinite(value), "it holds a number that is not finite");
+  return array;
+}
+
+NumberArray read_npy(const std::filesystem::path& path) {
+  const std::string bytes = read_text(path);
+  try {
+    return npy_from_bytes(bytes);
+  } catch (const UsageError& error) {
+    throw UsageError(fmt::format("{}: {}", path.string(), error.what()));
+  }
+}
+
+std::string npy_bytes(const std::vector<Index>& shape, const std::vector<float>& values) {
+  return bytes_of("<f4", shape, values);
+}
+
+void write_npy(const std::filesystem::path& path, const NumberArray& array) {
+  write_text(path, bytes_of("<f8", array.shape, array.values));
+}
+
+// Numbers as text, and the choice of the format by the file's ending.
 
 NumberArray read_numbers(const std::filesystem::path& path) {
   require_known(path);

@@ -5,13 +5,11 @@
 #include <sys/utsname.h>
 
 #include <fstream>
-#include <nlohmann/json.hpp>
 #include <sstream>
 #include <thread>
-#include <unordered_map>
+#include <utility>
 
-#include "core/digest.h"
-#include "core/records/record_fields.h"
+#include "core/files.h"
 #include "core/threads.h"
 #include "isoline_build_flags.h"
 #include "isoline_build_info.h"
@@ -103,34 +101,6 @@ std::shared_ptr<const Build> read_build() {
 Provenance::Provenance() {
   static const auto unknown = std::make_shared<const Build>();
   build = unknown;
-}
-
-Json to_json(const Provenance& provenance) {
-  Json json;
-  Form<Provenance>::write(provenance, JsonPlace(json));
-  return json;
-}
-
-// One copy of each build's part for all records that a thread reads.
-Provenance provenance_from(const JsonView& json) {
-  constexpr std::size_t kMostBuilds = 1000;
-  static thread_local std::unordered_map<std::string, std::shared_ptr<const Build>> builds;
-  std::string text;
-  Provenance provenance;
-  for (const auto& [key, value] : json.items())
-    if (key == kRunKey)
-      Form<RunProvenance>::read(value, provenance.run);
-    else
-      text += fmt::format("{}:{},", key, value.text());
-  if (builds.size() > kMostBuilds) builds.clear();
-  std::shared_ptr<const Build>& build = builds[text];
-  if (build == nullptr) {
-    const auto read = std::make_shared<Build>();
-    Form<Build>::read(json, *read);
-    build = read;
-  }
-  provenance.build = build;
-  return provenance;
 }
 
 std::string version() { return ISOLINE_VERSION; }

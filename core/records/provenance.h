@@ -5,18 +5,13 @@
 #include <cstdint>
 #include <map>
 #include <memory>
-#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace isoline {
 
-using Json = nlohmann::json;
-class JsonView;
-
-// Empty, or 0, where a record does not say. `other` holds what an older or newer version says
-// besides, a JSON object as text: it is written again as it was read.
+// Empty, or 0, where a record does not say.
 struct Build {
   std::string version, commit;
   std::optional<bool> is_dirty;
@@ -29,7 +24,6 @@ struct Build {
   std::int64_t cores = 0;
   std::string system;
   std::map<std::string, std::string> libraries;
-  std::string other;
 };
 
 struct RunProvenance {
@@ -37,7 +31,6 @@ struct RunProvenance {
   std::int64_t concurrent_jobs = 0;
   std::optional<bool> is_exclusive;
   std::string command;
-  std::string other;
 
   bool operator==(const RunProvenance&) const = default;
   // Nothing else ran beside it, as far as it is known.
@@ -53,9 +46,6 @@ struct Provenance {
   std::shared_ptr<const Build> build;  // never null; one object for all that a thread reads
   RunProvenance run;
 };
-
-Json to_json(const Provenance& provenance);
-Provenance provenance_from(const JsonView& json);
 
 std::string version();  // "0.1.0"
 

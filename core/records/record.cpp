@@ -1,17 +1,21 @@
-// Records to JSON and back.
+// Records, requests and plans: the members that stand in their files, and what follows from them. A
+// new member of a record costs its line in record.h, its line here, the place that fills it, and
+// the schema renewed (tests/core/record_test.cpp).
 #include "core/records/record.h"
 
 #include <fmt/format.h>
 
+#include <functional>
 #include <nlohmann/json.hpp>
+#include <unordered_map>
 
 #include "core/errors.h"
 #include "core/files.h"
 #include "core/json.h"
-#include "core/ladder.h"
-#include "core/records/integrity.h"
-#include "core/records/plan.h"
-#include "core/records/record_fields.h"
+#include "core/options.h"
+#include "core/records/fields.h"
+#include "core/records/npy.h"
+#include "core/status.h"
 
 namespace isoline {
 namespace {
@@ -53,25 +57,256 @@ void require_equal_columns(const Record& record) {
 
 }  // namespace
 
-Json to_json(const Record& record) {
-  Json json;
-  Form<Record>::write(record, JsonPlace(json));
-  return json;
+void fields(Like<Component> auto& component, auto& field) {
+  field("name", component.name);
+  field("options", component.options);
+  field("spec", component.spec);
+  field.optional("asked", component.asked, R"({"description": "The spec as typed"})");
+  if constexpr (std::remove_cvref_t<decltype(field)>::kReads)
+    component.is_learned = asks_to_learn(component.options);
 }
 
+void fields(Like<Budget> auto& budget, auto& field) {
+  field("iterations", budget.iterations);
+  field("work", Unlimited{budget.work});
+  field("seconds", budget.seconds);
+  field("target", budget.target);
+}
+
+void fields(Like<Request> auto& request, auto& field) {
+  field("problem", request.problem);
+  field("optimizer", request.optimizer);
+  field("seed", request.seed);
+  field("budget", request.budget);
+  field("threads", request.threads, R"({"minimum": 1})");
+  field("rates", request.rates);
+}
+
+constexpr const char* kRunKey = "run";
+
+void fields(Like<Build> auto& build, auto& field) {
+  field.expected("version", build.version);
+  field.expected("commit", build.commit);
+  field.expected("dirty", build.is_dirty);
+  field.optional("isoline_commit", build.isoline_commit);
+  field.expected("compiler", build.compiler);
+  field.optional("build_type", build.build_type);
+  field.expected("flags", build.flags);
+  field.expected("instruction_set", build.instruction_set);
+  field.expected("processor", build.processor);
+  field.optional("processor_features", build.processor_features);
+  field.optional("kernel", build.kernel);
+  field.optional("kernel_chosen_by", build.kernel_chosen_by);
+  field.optional("cache_bytes", build.cache_bytes);
+  field.optional("cores", build.cores);
+  field.optional("system", build.system);
+  field.expected("libraries", build.libraries);
+  field.allow_others();
+}
+
+void fields(Like<RunProvenance> auto& run, auto& field) {
+  field.expected("started", run.started);
+  field.expected("concurrent_jobs", run.concurrent_jobs, R"({"minimum": 1})");
+  field.expected("exclusive", run.is_exclusive);
+  field.forgiven("command", run.command);
+}
+
+// One copy of each build's part for all records that a thread reads.
+void read_provenance(const JsonView& json, Provenance& provenance) {
+  constexpr std::size_t kMostBuilds = 1000;
+  static thread_local std::unordered_map<std::string, std::shared_ptr<const Build>> builds;
+  std::string text;
+  for (const auto& [key, value] : json.items())
+    if (key == kRunKey)
+      Form<RunProvenance>::read(value, provenance.run);
+    else
+      text += fmt::format("{}:{},", key, value.text());
+  if (builds.size() > kMostBuilds) builds.clear();
+  std::shared_ptr<const Build>& build = builds[text];
+  if (build == nullptr) {
+    const auto read = std::make_shared<Build>();
+    Form<Build>::read(json, *read);
+    build = read;
+  }
+  provenance.build = build;
+}
+
+// One object of both, the run under a key of its own.
+template <>
+struct Form<Provenance> {
+  static void write(const Provenance& provenance, Json& out) {
+    Form<Build>::write(*provenance.build, out);
+    if (provenance.run != RunProvenance()) Form<RunProvenance>::write(provenance.run, out[kRunKey]);
+  }
+  static void read(const JsonView& json, Provenance& provenance) {
+    read_provenance(json, provenance);
+  }
+  static void law(Json& out) {
+    Form<Build>::law(out);
+    Form<RunProvenance>::law(out["properties"][kRunKey]);
+    out["required"].push_back(kRunKey);
+  }
+};
+
+constexpr const char* kDigestLaw = R"({"pattern": "^[0-9a-f]{16}$"})";
+
+constexpr const char* kTolerancesLaw = R"({"required": ["1e-1", "1e-3", "1e-6"]})";
+
+void fields(Like<Curve> auto& curve, auto& field) {
+  field("iteration", curve.iteration);
+  field("work", curve.work);
+  field("counts", curve.counts);
+  field("wall_seconds", curve.wall_seconds);
+  field("processor_seconds", curve.processor_seconds);
+  field("loss", curve.loss);
+  field("x_error", curve.x_error);
+  field("gradient_norm", curve.gradient_norm);
+  field("step_norm", curve.step_norm);
+  field.optional("batch_loss", curve.batch_loss);
+  field.optional("batch_x_error", curve.batch_x_error);
+}
+
+void fields(Like<Hits> auto& hits, auto& field) {
+  field("target", hits.target);
+  field("iteration", hits.iteration);
+  field("work", hits.work);
+  field("forwards", hits.forwards);
+  field.optional("counts", hits.counts, R"({"description": "By oracle, -1 if not reached"})");
+  field("wall_seconds", hits.wall_seconds);
+}
+
+void fields(Like<Trajectory> auto& path, auto& field) {
+  field("x", path.x);
+  field("y", path.y);
+}
+
+void fields(Like<Summary> auto& summary, auto& field) {
+  field("iterations", summary.iterations);
+  field("work", summary.work);
+  field("rejected_steps", summary.rejected_steps);
+  field("start_loss", summary.start_loss);
+  field("loss", summary.loss);
+  field("best_loss", summary.best_loss);
+  field("start_x_error", summary.start_x_error);
+  field("x_error", summary.x_error);
+  field("gradient_norm", summary.gradient_norm);
+  field("wall_seconds", summary.wall_seconds);
+  field("processor_seconds", summary.processor_seconds);
+  field("peak_memory_bytes", summary.peak_memory_bytes);
+}
+
+void fields(Like<Exhibit> auto& exhibit, auto& field) {
+  field("target", exhibit.target);
+  field("x", exhibit.x);
+  field("truth", exhibit.truth);
+}
+
+void fields(Like<FieldFrames> auto& frames, auto& field) {
+  field("iterations", frames.iterations);
+  field("shape", frames.shape);
+  field("digest", frames.digest, kDigestLaw);
+}
+
+void fields(Like<Spectrum> auto& spectrum, auto& field) {
+  field("iterations", spectrum.iterations);
+  field("sigma", spectrum.sigma);
+}
+
+void fields(Like<Foreign> auto& foreign, auto& field) {
+  field("door", foreign.door, R"({"enum": ["process", "umbridge", "plugin"]})");
+  field("command", foreign.command);
+  field("digest", foreign.digest, kDigestLaw);
+  field.optional("label", foreign.label, R"({"description": "Name in tables"})");
+  field.optional("interpreter", foreign.interpreter);
+  field.optional("packages", foreign.packages, R"({"description": "Versions by name"})");
+  field.optional("note", foreign.note);
+  field.optional("source", foreign.source);
+}
+
+void fields(Like<ForeignParts> auto& parts, auto& field) {
+  field.optional("problem", parts.problem);
+  field.optional("optimizer", parts.optimizer);
+}
+
+void fields(Like<Imported> auto& imported, auto& field) {
+  field("source", imported.source, R"({"minLength": 1})");
+  field("program", imported.program);
+  field("curve", imported.curve);
+  field("sha256", imported.sha256, R"({"pattern": "^[0-9a-f]{64}$"})");
+}
+
+void fields(Like<Record> auto& record, auto& field) {
+  field.constant("schema", kRunSchema);
+  field("cell", record.cell, kDigestLaw);
+  field("build", record.build, kDigestLaw);
+  field.optional("build_parts", record.build_parts,
+                 R"({"description": "By part: platform, harness, problem, optimizer, network"})");
+  field("request", record.request);
+  field("status", record.status);
+  field("message", record.message);
+  field.optional("output", record.output,
+                 R"({"description": "Its standard output and standard error"})");
+  field("claimed", record.claimed);
+  field.forgiven("aim", record.aim);
+  field("minimum", record.minimum);
+  field.optional("best_known", record.is_best_known,
+                 R"({"description": "The minimum is the best loss known, and none is declared"})");
+  field.forgiven("scale", record.scale, R"({"description": "Older records lack it: f₀ − f_L"})");
+  field("verified", record.verified, kTolerancesLaw);
+  field.forgiven("x_scale", record.x_scale);
+  field.forgiven("x_floor", record.x_floor);
+  field.forgiven("found", record.found, kTolerancesLaw);
+  field.optional("criterion", record.criterion,
+                 R"({"pattern": "^[0-9a-f]{16}$",
+                     "description": "Digest of f_L, scale, x_scale, x_floor, aim and prices"})");
+  field("counts", record.counts);
+  field("prices", record.prices);
+  field("summary", record.summary);
+  field("curve", record.curve);
+  field.optional("hits", record.hits);
+  field.optional("trajectory", record.trajectory);
+  field.optional("series", record.series);
+  field.optional("exhibit", record.exhibit);
+  field.optional("fields", record.fields,
+                 R"({"description": "x at some iterations, in the .npy file beside the record"})");
+  field.optional("spectrum", record.spectrum,
+                 R"({"description": "Singular values of J, if --spectrum was set"})");
+  field("privileges", record.privileges);
+  field.optional("foreign", record.foreign,
+                 R"({"description": "Components that other programs computed"})");
+  field("nondeterministic", record.is_nondeterministic);
+  field("repeat_wall_seconds", record.repeat_wall_seconds);
+  field("provenance", record.provenance);
+  field.optional(
+      "imported", record.imported,
+      R"({"description": "The origin of an imported run, whose values are not verified"})");
+  if constexpr (std::remove_cvref_t<decltype(field)>::kReads) {
+    record.request.cell = record.cell;
+    require_equal_columns(record);
+  }
+}
+
+void fields(Like<PlannedCell> auto& cell, auto& field) {
+  field("cell", cell.cell, kDigestLaw);
+  field("problem", cell.problem);
+  field("optimizer", cell.optimizer);
+  field("seed", cell.seed);
+}
+
+void fields(Like<Plan> auto& plan, auto& field) {
+  field.constant("schema", "isoline.plan/1");
+  field("suites", plan.suites);
+  field("cells", plan.cells);
+}
+
+// Records.
+
+Json to_json(const Record& record) { return json_of(record); }
 std::string file_text(const Record& record) { return json_text(to_json(record)) + "\n"; }
+Json run_schema() { return schema_of<Record>("isoline.run/1: the record of one run"); }
 
 Record record_from_text(const std::string& text, const std::string& origin) {
-  static thread_local JsonReader reader;
-  const JsonView json = reader.parse(text, origin);
-  try {
-    Record record;
-    Form<Record>::read(json, record);
-    require_equal_columns(record);
-    return record;
-  } catch (const UsageError& error) {
-    throw UsageError(fmt::format("no {} record: {}", kRunSchema, error.what()));
-  }
+  return from_text<Record>(text, origin, "no isoline.run/1 record");
 }
 
 Record read_unchecked_record(const std::string& path) {
@@ -85,19 +320,11 @@ Record read_record(const std::string& path) {
   return record;
 }
 
-Json run_schema() {
-  Json schema;
-  Form<Record>::law(JsonPlace(schema));
-  complete_schema(JsonPlace(schema), "isoline.run/1: the record of one run");
-  return schema;
-}
-
 Json result_of(const Json& record) {
   Json result = without_timings(record);
   result.erase("provenance");
   Json& request = result.at("request");
-  request.erase(
-      "rates");  // which file chose the options, and how they were typed: the cell has them
+  request.erase("rates");  // which file chose the options, and how they were typed
   for (const char* component : {"problem", "optimizer"}) request.at(component).erase("asked");
   return result;
 }
@@ -112,10 +339,103 @@ Json without_timings(Json record) {
     record.at("summary").erase(name);
     record.at("curve").erase(name);
   }
-  // Counts at hits are the work again by kind; records of older versions are without.
-  if (record.contains("hits"))
+  if (record.contains("hits"))  // counts at hits are the work again by kind
     for (const char* name : {"wall_seconds", "counts"}) record["hits"].erase(name);
   return record;
+}
+
+// Requests and plans.
+
+bool asks_to_learn(const OptionValues& options) { return options.text(kModeOption) == kLearnMode; }
+
+bool is_instance_of(OptionValues direct, OptionValues learned) {
+  if (asks_to_learn(direct) || !asks_to_learn(learned)) return false;
+  for (const char* of_learning : kLearningOptions) {
+    direct.erase(of_learning);
+    learned.erase(of_learning);
+  }
+  return direct == learned;
+}
+
+// A JSON object with its keys in order.
+CellNames::CellNames(const Request& request) {
+  const Json shared{{"budget", json_of(request.budget)},
+                    {"optimizer", request.optimizer.name},
+                    {"optimizer_options", to_json(without_empty(request.optimizer.options))},
+                    {"problem", request.problem.name},
+                    {"problem_options", to_json(without_empty(request.problem.options))}};
+  before_ = json_text(shared);
+  before_.pop_back();  // its brace
+  before_ += ",\"seed\":";
+  after_ = ",\"threads\":" + std::to_string(request.threads) + "}";
+}
+
+std::string CellNames::of(std::uint64_t seed) const {
+  return digest(before_ + std::to_string(seed) + after_);
+}
+
+RatesKind kind_of_rates(const std::string& file) {
+  if (file.empty()) return RatesKind::none;
+  return file.ends_with("-tuned.json") ? RatesKind::tuned : RatesKind::published;
+}
+
+std::string cell_digest(const Request& request) { return CellNames(request).of(request.seed); }
+
+Request named(Request request) {
+  request.cell = cell_digest(request);
+  return request;
+}
+
+Json to_json(const Request& request) { return json_of(request); }
+
+Request request_from_json(const Json& json) {
+  return named(from_text<Request>(json_text(json), "a request", "no request"));
+}
+
+Budget budget_from(const JsonView& json) {
+  Budget budget;
+  Form<Budget>::read(json, budget);
+  return budget;
+}
+
+Json to_json(const Plan& plan) { return json_of(plan); }
+std::string file_text(const Plan& plan) { return json_text(to_json(plan)) + "\n"; }
+Plan plan_from_text(const std::string& text, const std::string& origin) {
+  return from_text<Plan>(text, origin, "no isoline.plan/1 plan");
+}
+Json plan_schema() {
+  return schema_of<Plan>("isoline.plan/1: every cell ever planned in a result folder");
+}
+
+// Fields in the file beside a record.
+
+void require_sound(const FieldFrames& frames) {
+  const auto count = static_cast<Index>(frames.iterations.size());
+  const bool is_rising = std::ranges::adjacent_find(frames.iterations, std::greater_equal<>()) ==
+                         frames.iterations.end();
+  require(count > 0 && frames.iterations[0] >= 0 && is_rising,
+          "the iterations of its fields must increase");
+  require(
+      frames.shape.size() == 3 && (frames.shape[0] == count + 1 || frames.shape[0] == count + 2),
+      "the shape of its fields does not match their iterations");
+  require(frames.shape[1] > 0 && frames.shape[2] > 0, "the shape of its fields has no cells");
+}
+
+std::string field_file(const FieldFrames& frames) {
+  return npy_bytes(frames.shape, frames.numbers);
+}
+
+void read_field_numbers(FieldFrames& frames, const std::filesystem::path& path) {
+  const std::string bytes = read_text(path);
+  require(digest(bytes) == frames.digest,
+          [&] { return fmt::format("{} is not the file that its record names", path.string()); });
+  try {
+    const NumberArray array = npy_from_bytes(bytes);
+    require(array.shape == frames.shape, "its shape differs from the one in its record");
+    frames.numbers = {array.values.begin(), array.values.end()};
+  } catch (const UsageError& error) {
+    throw UsageError(fmt::format("{}: {}", path.string(), error.what()));
+  }
 }
 
 }  // namespace isoline

@@ -1,22 +1,25 @@
-// Where a record comes from that this program did not run: a curve of others, by their own claims.
+// The record of one run, schema isoline.run/1: the request, the build, and the results. One JSON
+// file each. Reports read nothing else about a run.
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "core/foreign/foreign.h"
 #include "core/oracle.h"
 #include "core/real.h"
-#include "core/records/field_frames.h"
 #include "core/records/provenance.h"
 #include "core/records/request.h"
 #include "core/status.h"
 
 namespace isoline {
 
+// Where a record comes from that this program did not run: a curve of others, by their own claims.
 struct Imported {
   std::string source;   // the origin: a paper and its figure, a repository, a person
   std::string program;  // what computed it, with its version
@@ -24,14 +27,10 @@ struct Imported {
   std::string sha256;   // of that file
 };
 
-// The record of one run, schema isoline.run/1: the request, the build, and the results. One JSON
-// file each. Reports read nothing else about a run.
-
 // The curve as columns of equal length.
 struct Curve {
   std::vector<std::int64_t> iteration, work;
-  std::map<std::string, std::vector<std::int64_t>>
-      counts;  // by oracle; without oracles that were not called
+  std::map<std::string, std::vector<std::int64_t>> counts;  // by oracle, of those that were called
   std::vector<Real> wall_seconds, processor_seconds, loss, x_error, gradient_norm, step_norm;
   // For learning problems, by window: the means over the training batches of the last steps.
   std::map<std::int64_t, std::vector<Real>> batch_loss, batch_x_error;
@@ -41,7 +40,7 @@ struct Curve {
 struct Hits {
   std::vector<Real> target;
   std::vector<std::int64_t> iteration, work, forwards;
-  std::map<std::string, std::vector<std::int64_t>> counts;  // as the curve's; old records: none
+  std::map<std::string, std::vector<std::int64_t>> counts;  // as the curve's
   std::vector<Real> wall_seconds;                           // nan: never
 };
 
@@ -49,6 +48,43 @@ struct Hits {
 struct Trajectory {
   std::vector<std::vector<Real>> x, y;
 };
+
+// The results of a learning run on some validation samples, one per column.
+struct Exhibit {
+  Grid target, x, truth;
+};
+
+// x of a run at some of its kept iterations, where x and y are numbers on one grid of cells. The
+// numbers stand beside the record, in CELL-BUILD.npy: float32 of the shape (planes, rows, columns),
+// which are y*, x* where it is known, and x by iteration.
+struct FieldFrames {
+  std::vector<std::int64_t> iterations = {};
+  std::vector<Index> shape = {};
+  std::string digest;               // of the file
+  std::vector<float> numbers = {};  // as the file has them; empty where they are still there
+
+  bool has_truth() const { return shape[0] == static_cast<Index>(iterations.size()) + 2; }
+  std::span<const float> target() const { return plane(0); }  // row by row
+  std::span<const float> truth() const { return plane(1); }
+  std::span<const float> x(std::size_t i) const { return plane(i + (has_truth() ? 2 : 1)); }
+  bool operator==(const FieldFrames& other) const {  // the digest stands for the numbers
+    return iterations == other.iterations && shape == other.shape && digest == other.digest;
+  }
+
+ private:
+  std::span<const float> plane(std::size_t i) const {
+    const auto cells = static_cast<std::size_t>(shape[1] * shape[2]);
+    return std::span(numbers).subspan(i * cells, cells);
+  }
+};
+void require_sound(const FieldFrames& frames);  // UsageError where iterations and shape disagree
+std::string field_file(const FieldFrames& frames);  // the file's bytes
+inline std::filesystem::path field_path(std::filesystem::path record) {
+  return record.replace_extension(".npy");
+}
+// The numbers out of the file; UsageError, naming it, where it is missing, is damaged or is another
+// run's.
+void read_field_numbers(FieldFrames& frames, const std::filesystem::path& path);
 
 // Singular values of J = ∂y/∂θ over the batch of a step, descending, if --spectrum was set. Without
 // iterations: J is not formed, or too large.
@@ -95,7 +131,7 @@ struct Record {
   std::optional<Real> x_scale;
   Real x_floor = 0;
   std::map<std::string, std::optional<bool>> found;  // by τ: error in x ≤ max(τ‖x*‖, 1.1 x_floor)
-  std::string criterion;  // digest of what success is measured by (integrity.h); older: none
+  std::string criterion;  // digest of what success is measured by; older: none
   OracleCounts counts{};
   OracleCounts prices{};
   Summary summary;
@@ -117,10 +153,11 @@ struct Record {
 };
 
 Json to_json(const Record& record);
+std::string file_text(const Record& record);
 // UsageError where it is no such record, or its columns differ in length; the origin is named where
 // it is no JSON.
 Record record_from_text(const std::string& text, const std::string& origin);
-// UsageError, which names it, also where the record breaks an invariant (integrity.h).
+// UsageError, which names it, also where the record breaks an invariant.
 Record read_record(const std::string& path);
 // The invariants are not checked: for comparisons and repetitions, which name what is broken.
 Record read_unchecked_record(const std::string& path);
@@ -140,5 +177,24 @@ inline constexpr const char* kRunSchema = "isoline.run/1";
 // τ of `verified` and `found`, by its name in the record.
 inline const std::map<std::string, Real> kVerified = {
     {"1e-1", 1e-1}, {"1e-3", 1e-3}, {"1e-6", 1e-6}};
+
+// Whether a record agrees with itself: its success criterion, and the figures that follow from
+// other figures of the same record. A change by hand, or a fault of the program, breaks them.
+
+// The criterion by which a run succeeded, and the costs in which its work is counted.
+struct Criterion {
+  std::optional<Real> minimum, scale, x_scale;  // f_L, s and ‖x*‖, where they are known
+  Real x_floor = 0;
+  Aim aim = Aim::loss;
+  OracleCounts prices{};  // nominal costs
+
+  bool operator==(const Criterion&) const = default;
+};
+Criterion criterion_of(const Record& record);
+std::string digest_of(const Criterion& criterion);  // what `Record::criterion` holds
+
+// A sentence for each invariant that the record breaks; none of a sound one. Of a run that broke
+// off, or that others made, fewer hold.
+std::vector<std::string> broken_invariants(const Record& record);
 
 }  // namespace isoline

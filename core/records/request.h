@@ -1,4 +1,4 @@
-// The request of a run: a problem, an optimizer, a seed and a budget.
+// The request of a run: a problem, an optimizer, a seed and a budget; and the plan of many.
 #pragma once
 
 #include <cstdint>
@@ -6,6 +6,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/foreign/foreign.h"
 #include "core/options.h"
@@ -14,6 +15,7 @@
 namespace isoline {
 
 using Json = nlohmann::json;
+class JsonView;
 
 // A component as requested, created once, where a command line, a suite or a record is read: its
 // name and all its options, with defaults filled in.
@@ -22,7 +24,6 @@ struct Component {
   OptionValues options;
   std::string spec;         // "sine[xi=32]": the name and what differs from the defaults
   std::string asked;        // the spec as typed, defaults and rates unfilled; old records: empty
-  int revision = 0;         // of older records, which were kept apart by it
   bool is_learned = false;  // a problem over a distribution of y*, solved by a network
   // Digests of what computes it, not in the record's request; the second where it learns: of a
   // problem its network's, of an optimizer its own and those of what steps inside it.
@@ -70,5 +71,23 @@ Request named(Request request);  // with its cell
 
 Json to_json(const Request& request);
 Request request_from_json(const Json& json);
+Budget budget_from(const JsonView& json);
+
+// Schema isoline.plan/1: every cell ever planned in a result folder, in order.
+struct PlannedCell {
+  std::string cell, problem, optimizer;  // digest and specs
+  std::uint64_t seed = 0;
+};
+struct Plan {
+  std::vector<std::string> suites;
+  std::vector<PlannedCell> cells;
+};
+std::string file_text(const Plan& plan);
+Json to_json(const Plan& plan);
+Plan plan_from_text(const std::string& text, const std::string& origin);
+Json plan_schema();  // what benchmarks/schemas/plan.json holds
+
+// The largest size of a record or of its snapshots; ours have some ten thousand bytes.
+inline constexpr std::size_t kMostRecordBytes = std::size_t{64} << 20;
 
 }  // namespace isoline

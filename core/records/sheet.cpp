@@ -1,14 +1,15 @@
-// Conversion of component metadata to and from JSON.
+// Members of component metadata and of audits, as they stand in their files.
 #include "core/records/sheet.h"
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "core/digest.h"
+#include "core/files.h"
 #include "core/json.h"
 #include "core/records/fields.h"
-#include "core/records/plan.h"
 
 namespace isoline {
 
@@ -73,7 +74,7 @@ void fields(Like<MeasuredPrices> auto& prices, auto& field) {
 }
 
 void fields(Like<Sheet> auto& sheet, auto& field) {
-  field.constant("schema", kSheetSchema);
+  field.constant("schema", "isoline.component/1");
   field("kind", sheet.kind, R"({"enum": ["problem", "optimizer"]})");
   field("name", sheet.name);
   field("spec", sheet.spec);
@@ -108,33 +109,97 @@ std::string Sheet::file_name() const {
   return fmt::format("{}-{}-{}.json", kind, name, digest(spec));
 }
 
-Json to_json(const Sheet& sheet) {
-  Json json;
-  Form<Sheet>::write(sheet, JsonPlace(json));
-  return json;
-}
-
+Json to_json(const Sheet& sheet) { return json_of(sheet); }
 std::string file_text(const Sheet& sheet) { return json_text(to_json(sheet)) + "\n"; }
-
 Sheet sheet_from_text(const std::string& text, const std::string& origin) {
-  JsonReader reader;
-  const JsonView json = reader.parse(text, origin);
-  try {
-    Sheet sheet;
-    Form<Sheet>::read(json, sheet);
-    return sheet;
-  } catch (const UsageError& error) {
-    throw UsageError(fmt::format("not a valid {} file: {}", kSheetSchema, error.what()));
-  }
+  return from_text<Sheet>(text, origin, "not a valid isoline.component/1 file");
+}
+Sheet sheet_from_json(const Json& json) { return sheet_from_text(json_text(json), "it"); }
+Json sheet_schema() {
+  return schema_of<Sheet>("isoline.component/1: metadata of a problem or an optimizer");
 }
 
-Sheet sheet_from_json(const Json& json) { return sheet_from_text(json_text(json), "it"); }
+// Audits.
 
-Json sheet_schema() {
-  Json schema;
-  Form<Sheet>::law(JsonPlace(schema));
-  complete_schema(JsonPlace(schema), "isoline.component/1: metadata of a problem or an optimizer");
-  return schema;
+void fields(Like<PowerLaw> auto& law, auto& field) {
+  bool holds = law.holds();
+  field("values", law.values);
+  field("exponent", law.exponent);
+  field("residual", law.residual);
+  field("holds", holds);
+}
+
+void fields(Like<ScalingLaw> auto& law, auto& field) {
+  field("scales", law.scales);
+  field("step", law.step);
+  field("loss_change", law.loss_change);
+}
+
+void fields(Like<Approach> auto& approach, auto& field) {
+  field("order", approach.order);
+  field("residual", approach.residual);
+  field("remaining", approach.remaining);
+  field("steps", approach.steps);
+  field("is_exact", approach.is_exact);
+}
+
+void fields(Like<AuditedOptimizer> auto& audited, auto& field) {
+  field("name", audited.name);
+  field("spec", audited.spec);
+  field("reason", audited.reason);
+  if (!audited.reason.empty()) return;
+  field.optional("network", audited.network);
+  field.group("scalings", [&](auto& law) {
+    for (std::size_t i = 0; i < kScalingNames.size(); ++i)
+      law(kScalingNames[i].data(), audited.scalings[i]);
+  });
+  field.group("invariance", [&](auto& deviation) {
+    for (std::size_t i = 0; i < kChangeNames.size(); ++i)
+      deviation(kChangeNames[i].data(), audited.deviations[i]);
+  });
+  field.group("convergence", [&](auto& approach) {
+    approach("regular", audited.regular);
+    approach("singular", audited.singular);
+  });
+  field.group("composition", [&](auto& angle) {
+    angle("linear", audited.linear_angle);
+    angle("curved", audited.curved_angle);
+  });
+  field.group("oracles", [&](auto& oracles) {
+    oracles("declared", audited.declared);
+    oracles("counted", audited.counted);
+    oracles("iterations", audited.iterations);
+  });
+  field("flags", audited.flags);
+}
+
+namespace {
+
+struct Audit {
+  std::vector<AuditedOptimizer> optimizers;
+};
+
+void fields(Like<Audit> auto& audit, auto& field) {
+  field.constant("schema", "isoline.audit/1");
+  field("optimizers", audit.optimizers);
+}
+
+}  // namespace
+
+bool PowerLaw::has_values() const {
+  return std::ranges::any_of(values, [](Real value) { return std::isfinite(value); });
+}
+
+Json to_json(const AuditedOptimizer& audited) { return json_of(audited); }
+
+AuditedOptimizer audited_from_text(const std::string& text, const std::string& origin) {
+  return from_text<AuditedOptimizer>(text, origin, "no audit");
+}
+
+Json audit_to_json(const std::vector<AuditedOptimizer>& all) { return json_of(Audit{all}); }
+
+std::vector<AuditedOptimizer> audit_from_text(const std::string& text, const std::string& origin) {
+  return from_text<Audit>(text, origin, "no audit").optimizers;
 }
 
 }  // namespace isoline

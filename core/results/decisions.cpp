@@ -2,17 +2,14 @@
 // chance and choice.
 #include "core/results/decisions.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
 #include <numeric>
 #include <set>
 
 #include "core/draws.h"
-#include "core/results/tests.h"
+#include "core/results/statistics.h"
 
 namespace isoline::results {
 namespace {
@@ -153,28 +150,18 @@ Leaving leaving_order(const Flips& flips) {
 
 // --- the bootstrap
 
-// The results of each method on one setting, resampled: instances, and within each as many of its
-// starts. An empty resample gets the median of all runs.
+// The results of each method on one setting over resampled seeds. An empty resample gets the median
+// of all runs.
 std::vector<std::optional<Real>> drawn_costs(const std::vector<std::optional<Real>>& costs,
                                              const std::vector<Repetition>& repetitions,
                                              Draws& random) {
   if (repetitions.size() < 2) return costs;
-  std::map<std::size_t, std::vector<const Repetition*>> instances;
-  for (const Repetition& repetition : repetitions)
-    instances[repetition.instance].push_back(&repetition);
-  std::vector<const std::vector<const Repetition*>*> all;
-  for (const auto& instance : instances) all.push_back(&instance.second);
-  const auto any_of = [&](const auto& from) -> const auto& {
-    return from[static_cast<std::size_t>(random.uniform() * Real(from.size()))];
-  };
   std::vector<Row> values(costs.size());
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    const auto& starts = *any_of(all);
-    for (std::size_t j = 0; j < starts.size(); ++j) {
-      const Repetition& drawn = *any_of(starts);
-      for (std::size_t s = 0; s < costs.size(); ++s)
-        if (drawn.costs[s]) values[s].push_back(*drawn.costs[s]);
-    }
+  for (std::size_t i = 0; i < repetitions.size(); ++i) {
+    const Repetition& drawn = repetitions[drawn_place(random, repetitions.size())];
+    random.uniform();  // of the start, of which a seed has one
+    for (std::size_t s = 0; s < costs.size(); ++s)
+      if (drawn.costs[s]) values[s].push_back(*drawn.costs[s]);
   }
   std::vector<std::optional<Real>> medians = costs;
   for (std::size_t s = 0; s < costs.size(); ++s)
@@ -211,93 +198,70 @@ class Decider {
     out.is_range = families_.size() < kFewestForInterval;
     out.tied = firsts(means_).size();
     fill_places(out);
-    fill_tests(out);
     fill_shares(out);
     fill_choices(out);
     return out;
   }
 
  private:
-  std::vector<FamilyScore> family_scores(std::size_t s) const {
-    std::vector<FamilyScore> all;
-    for (const auto& settings : families_) {
-      all.push_back({.settings = Real(settings.size())});
-      for (const std::size_t p : settings) all.back().sum += scores_[p][s];
-    }
-    return all;
-  }
-
   void fill_places(Decision& out) const {
     std::vector<std::size_t> order(methods_.size());
     std::iota(order.begin(), order.end(), 0);
     std::ranges::stable_sort(order, [&](std::size_t a, std::size_t b) {
       return means_[a] > means_[b] && !are_tied(means_[a], means_[b]);
     });
+    std::vector<Row> sums(families_.size(), Row(methods_.size(), 0));
+    for (std::size_t g = 0; g < families_.size(); ++g)
+      for (const std::size_t p : families_[g])
+        for (std::size_t s = 0; s < methods_.size(); ++s) sums[g][s] += scores_[p][s];
+    const FlipLevels levels = flip_levels(sums);
+    out.is_lead = levels.is_lead;
     for (const std::size_t s : order) {
-      Place place{.method = methods_[s], .score = means_[s], .ratio = {}};
-      place.interval = score_interval(family_scores(s));
+      std::vector<FamilyScore> families;
+      for (std::size_t g = 0; g < families_.size(); ++g)
+        families.push_back({sums[g][s], Real(families_[g].size())});
+      Place place{.method = methods_[s],
+                  .score = means_[s],
+                  .interval = score_interval(families),
+                  .p = levels.pairs[order[0]][s],
+                  .adjusted = levels.leaves[s],
+                  .is_in_group = levels.is_in_group(s),
+                  .ratio = work_ratio(evidence_.costs, evidence_.families, methods_[s],
+                                      methods_[order[0]])};
       for (const auto& row : evidence_.costs) {
         Real least = kNever;
         for (const std::size_t t : methods_) least = std::min(least, *row[t]);
         place.solved += *row[place.method] < kNever;
         place.wins += *row[place.method] < kNever && *row[place.method] == least;
       }
-      place.ratio =
-          work_ratio(evidence_.costs, evidence_.families, place.method, methods_[order[0]]);
       out.places.push_back(place);
     }
-  }
-
-  void fill_tests(Decision& out) const {
-    std::vector<Row> sums(families_.size(), Row(methods_.size(), 0));
-    for (std::size_t g = 0; g < families_.size(); ++g)
-      for (const std::size_t p : families_[g])
-        for (std::size_t s = 0; s < methods_.size(); ++s) sums[g][s] += scores_[p][s];
-    const FlipLevels levels = flip_levels(sums);
-    const std::size_t all = evidence_.costs[0].size(), first = index_of(out.places[0].method);
-    out.pair_p.assign(all, Row(all, 1));
-    for (std::size_t s = 0; s < methods_.size(); ++s)
-      for (std::size_t t = 0; t < methods_.size(); ++t)
-        out.pair_p[methods_[s]][methods_[t]] = levels.pairs[s][t];
-    out.is_lead = levels.is_lead;
-    for (Place& place : out.places) {
-      const std::size_t s = index_of(place.method);
-      place.p = levels.pairs[first][s];
-      place.adjusted = levels.leaves[s];
-      place.is_in_group = levels.is_in_group(s);
-    }
-    std::vector<Row> negative = sums;  // ranks: the greatest score first, by mean over the family
     Row differences;
-    for (std::size_t g = 0; g < sums.size(); ++g) {
-      for (Real& value : negative[g]) value = -value;
-      if (out.places.size() > 1)
-        differences.push_back((sums[g][first] - sums[g][index_of(out.places[1].method)]) *
-                              Real(sums.size()) / Real(out.settings));
-    }
-    out.friedman = friedman_p(negative);
+    for (std::size_t g = 0; g < sums.size() && order.size() > 1; ++g)
+      differences.push_back((sums[g][order[0]] - sums[g][order[1]]) * Real(sums.size()) /
+                            Real(out.settings));
     out.detectable = detectable_mean(deviation_of(differences), differences.size());
+    out.friedman = friedman_p(sums);
   }
 
-  // Families, within them instances, within these starts.
+  // Families, within them seeds.
   void fill_shares(Decision& out) const {
     Row first(methods_.size(), 0);
     Draws random(0, "report", "hierarchy");
     for (std::size_t draw = 0; draw < kDraws; ++draw) {
       random.restart(draw);
       Costs costs;
-      for (std::size_t g = 0; g < families_.size(); ++g) {
-        const auto& settings =
-            families_[static_cast<std::size_t>(random.uniform() * Real(families_.size()))];
-        for (const std::size_t p : settings)
+      for (std::size_t g = 0; g < families_.size(); ++g)
+        for (const std::size_t p : families_[drawn_place(random, families_.size())])
           costs.push_back(evidence_.repetitions.empty()
                               ? evidence_.costs[p]
                               : drawn_costs(evidence_.costs[p], evidence_.repetitions[p], random));
-      }
       const auto best = firsts(mean_scores(scores_of(costs, methods_, kProfileEnd)));
       for (const std::size_t s : best) first[s] += 1 / Real(best.size());
     }
-    for (Place& place : out.places)
-      place.share_first = first[index_of(place.method)] / Real(kDraws);
+    for (std::size_t s = 0; s < methods_.size(); ++s)
+      std::ranges::find(out.places, methods_[s], &Place::method)->share_first =
+          first[s] / Real(kDraws);
   }
 
   void add_choice(Decision& out, Varied varied, std::string value, const Costs& costs,
@@ -322,29 +286,21 @@ class Decider {
           if (&family != &left_out) costs.push_back(evidence_.costs[p]);
       add_choice(out, Varied::family, evidence_.families[left_out[0]], costs);
     }
-    std::set<std::array<std::size_t, 2>> seeds;
+    std::set<std::uint64_t> seeds;
     for (const auto& repetitions : evidence_.repetitions)
-      for (const Repetition& each : repetitions) seeds.insert({each.instance, each.start});
-    for (const auto& [instance, start] : seeds)
+      for (const Repetition& each : repetitions) seeds.insert(each.seed);
+    for (const std::uint64_t seed : seeds)
       if (seeds.size() > 1)
-        add_choice(
-            out, Varied::seed,
-            instance == start ? fmt::format("{}", instance) : fmt::format("{}.{}", instance, start),
-            costs_of_seed(instance, start));
+        add_choice(out, Varied::seed, std::to_string(seed), costs_of_seed(seed));
   }
 
-  Costs costs_of_seed(std::size_t instance, std::size_t start) const {
+  Costs costs_of_seed(std::uint64_t seed) const {
     Costs costs = evidence_.costs;
     for (std::size_t p = 0; p < costs.size(); ++p)
       for (const Repetition& each : evidence_.repetitions[p])
         for (std::size_t s = 0; s < costs[p].size(); ++s)
-          if (each.instance == instance && each.start == start && costs[p][s] && each.costs[s])
-            costs[p][s] = each.costs[s];
+          if (each.seed == seed && costs[p][s] && each.costs[s]) costs[p][s] = each.costs[s];
     return costs;
-  }
-
-  std::size_t index_of(std::size_t method) const {
-    return static_cast<std::size_t>(std::ranges::find(methods_, method) - methods_.begin());
   }
 
   const Evidence& evidence_;

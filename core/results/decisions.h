@@ -2,11 +2,10 @@
 // decision, from which every sentence, mark and band of a report is derived.
 //
 //   score of a method on a setting:  a = max(0, log2 e − log2 r) / log2 e, r its cost over the
-//   least
-//                                    of those compared, e the profile's end; 0 where unsolved
+//                                    least of those compared, e the profile's end; 0 where unsolved
 //   score of a method:               A = mean of a over settings, the area of its profile
-//   difference of two methods:       D = Σ over families of d_g, d_g the sum of a_s − a_t in family
-//   g its size:                        u = D / √(Σ d_g²), which Student's t grows with
+//   difference of two methods:       D = Σ over families of d_g, d_g the sum of a_s − a_t in g
+//   its size:                        u = D / √(Σ d_g²), which Student's t grows with
 //
 // Settings of one family (sizes and variants of a problem) are no independent witnesses: their
 // differences change sign together. Under the null the signs of all d_g are arbitrary, the same for
@@ -14,6 +13,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -25,11 +25,12 @@ namespace isoline::results {
 
 inline constexpr Real kProfileEnd = 64;  // the factor up to which a profile's area ranks
 inline constexpr Real kSignificant = 0.05;
-inline constexpr std::size_t kExactFlips = 20;  // families; of more, kDrawnFlips fixed flips
+// Up to so many families all flips are counted; of more, so many fixed ones.
+inline constexpr std::size_t kExactFlips = 20, kDrawnFlips = 1U << 16U;
 
-// The results of all methods on one setting from one instance and start.
+// The results of all methods on one setting from one seed.
 struct Repetition {
-  std::size_t instance = 0, start = 0;
+  std::uint64_t seed = 0;
   std::vector<std::optional<Real>> costs;  // [method]; nothing where no such run exists
 };
 
@@ -90,12 +91,10 @@ Interval score_interval(const std::vector<FamilyScore>& families);
 struct Place {
   std::size_t method = 0;
   Real score = 0;
-  Interval
-      interval;  // of the score, 95 % over families; their range where is_range of the decision
-  std::size_t solved = 0,
-              wins = 0;  // settings; wins: least cost of all ranked, ties count for each
+  Interval interval;  // of the score, 95 % over families; the range where is_range of the decision
+  std::size_t solved = 0, wins = 0;  // settings; wins: least cost of all ranked, ties for each
   Real share_first =
-      0;              // of the bootstrap's samples, in which it has the greatest score; ties share
+      0;              // of the bootstrap's samples in which it has the greatest score; ties share
   Real p = 1;         // of its difference from the first alone, two-sided
   Real adjusted = 1;  // at which level it leaves the confidence set of the best
   bool is_in_group = false;  // not significantly worse than the best
@@ -121,7 +120,6 @@ struct Decision {
   Real friedman = 1;         // p, over ranks by family
   Real detectable = kNever;  // the difference of scores, as variable as that of the first two, that
                              // is found in 80 % of all samples
-  std::vector<std::vector<Real>> pair_p;  // [method][method], two-sided; 1 of those not ranked
   std::vector<Choice> choices;
 
   const Place* place_of(std::size_t method) const;  // none if not ranked

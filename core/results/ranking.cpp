@@ -48,13 +48,11 @@ Order common_order(const Comparison& c) {
 }
 
 void count_problems(OptimizerAxis& axis, const Cell& cell) {
-  if (cell.planned == 0) return;
-  ++axis.planned;
-  axis.applicable += cell.inapplicable.empty();
+  axis.planned += cell.planned > 0;
+  axis.applicable += cell.planned > 0 && cell.inapplicable.empty();
   add_missing(axis.privileges, cell.privileges);
-  if (!cell.is_measured()) return;
-  axis.runs += cell.runs.size();
-  axis.failed += cell.failed;
+  axis.runs += cell.is_measured() ? cell.runs.size() : 0;
+  axis.failed += cell.is_measured() ? cell.failed : 0;
 }
 
 void mark_best(Comparison& c, std::size_t p, std::size_t tolerance) {
@@ -113,7 +111,7 @@ Costs decision_costs(const Comparison& c, Measure by, std::size_t tolerance, boo
   return costs;
 }
 
-// The result of each seed: an instance and a start of its own.
+// The result of each seed.
 std::vector<Repetition> repetitions_of(const Comparison& c, std::size_t problem,
                                        const std::vector<std::optional<Real>>& costs) {
   std::map<std::uint64_t, Repetition> seeds;
@@ -121,7 +119,7 @@ std::vector<Repetition> repetitions_of(const Comparison& c, std::size_t problem,
     for (const std::size_t row : c.cell(problem, s).runs) {
       const Run& run = c.runs[row];
       Repetition& repetition = seeds[run.seed];
-      repetition.instance = repetition.start = run.seed;
+      repetition.seed = run.seed;
       repetition.costs.resize(costs.size());
       if (costs[s])
         repetition.costs[s] = c.taken(run, c.yardstick.by, kTightest) / least_unit(c.yardstick.by);
@@ -151,6 +149,29 @@ std::optional<Decision> decision_of(const Comparison& c, bool is_open) {
           {Varied::measure, std::string(name_of(by)), decision_costs(c, by, kTightest, is_open)});
   return decide(evidence);
 }
+
+// The work that a run was allowed: its budget of work, or the work of all its iterations.
+Real allowed_work(const Run& run) {
+  const Budget& budget = run.record->request.budget;
+  const Summary& summary = run.record->summary;
+  Real allowed = budget.work < Budget{}.work ? Real(budget.work) : kNever;
+  if (summary.iterations > 0)
+    allowed = std::min(allowed, Real(summary.work) / Real(summary.iterations) *
+                                    Real(std::max(budget.iterations, summary.iterations)));
+  return allowed;
+}
+
+Real value_at(const Record& record, const std::vector<Real>& column, Real work) {
+  const auto& spent = record.curve.work;
+  auto passed = static_cast<std::size_t>(
+      std::ranges::upper_bound(spent, static_cast<std::int64_t>(work)) - spent.begin());
+  if (passed == spent.size() && is_failure(record.status)) return kNever;
+  passed = std::min(passed, column.size());
+  while (passed > 0 && !std::isfinite(column[passed - 1])) --passed;
+  return passed == 0 ? kNever : column[passed - 1];
+}
+
+bool has_diverged(const Run& run) { return run.record->status == Status::diverged; }
 
 }  // namespace
 
@@ -201,9 +222,10 @@ Costs costs_to(const Comparison& c, const Order& order, Measure by, std::size_t 
 }
 
 Costs median_costs(const Comparison& c, std::size_t tolerance, std::optional<Measure> by) {
-  Order all;
-  for (std::size_t p = 0; p < c.problems.size(); ++p) all.settings.push_back(p);
-  for (std::size_t s = 0; s < c.optimizers.size(); ++s) all.methods.push_back(s);
+  Order all{.settings = std::vector<std::size_t>(c.problems.size()),
+            .methods = std::vector<std::size_t>(c.optimizers.size())};
+  std::iota(all.settings.begin(), all.settings.end(), 0);
+  std::iota(all.methods.begin(), all.methods.end(), 0);
   return costs_to(c, all, by.value_or(c.yardstick.by), c.yardstick.tolerances[tolerance].rung);
 }
 
@@ -265,33 +287,6 @@ std::vector<Ranked> standings_to(const Comparison& c, Measure by, std::size_t ta
 }
 
 // Reads learned runs where all have spent the same.
-
-namespace {
-
-// The work that a run was allowed: its budget of work, or the work of all its iterations.
-Real allowed_work(const Run& run) {
-  const Budget& budget = run.record->request.budget;
-  const Summary& summary = run.record->summary;
-  Real allowed = budget.work < Budget{}.work ? Real(budget.work) : kNever;
-  if (summary.iterations > 0)
-    allowed = std::min(allowed, Real(summary.work) / Real(summary.iterations) *
-                                    Real(std::max(budget.iterations, summary.iterations)));
-  return allowed;
-}
-
-Real value_at(const Record& record, const std::vector<Real>& column, Real work) {
-  const auto& spent = record.curve.work;
-  auto passed = static_cast<std::size_t>(
-      std::ranges::upper_bound(spent, static_cast<std::int64_t>(work)) - spent.begin());
-  if (passed == spent.size() && is_failure(record.status)) return kNever;
-  passed = std::min(passed, column.size());
-  while (passed > 0 && !std::isfinite(column[passed - 1])) --passed;
-  return passed == 0 ? kNever : column[passed - 1];
-}
-
-bool has_diverged(const Run& run) { return run.record->status == Status::diverged; }
-
-}  // namespace
 
 std::vector<std::size_t> EqualWork::nearest_first() const {
   std::vector<std::size_t> order;

@@ -1,5 +1,5 @@
 // Statistics of comparison: medians that keep failures in the denominator, performance profiles,
-// the bootstrap.
+// the bootstrap, tests by ranks.
 #pragma once
 
 #include <cstddef>
@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "core/draws.h"
 #include "core/real.h"
 
 namespace isoline::results {
@@ -34,14 +35,12 @@ Real median_of(std::vector<Real> values);
 // of it says nothing about it, while one it failed on, or to which it does not apply, does.
 struct ProfileLine {
   std::vector<Real> ratios;  // r_{p,s} of the problems solved, ascending
-  std::size_t problems =
-      0;  // n_p: all problems of this solver, including those that no solver solves
+  std::size_t problems = 0;  // n_p: all of this solver, also those that no solver solves
 };
 struct Profile {
   std::vector<ProfileLine> solvers;
 
   Real share(std::size_t solver, Real factor) const;  // ρ_s(factor)
-  Real area(std::size_t solver, Real most) const;  // ∫ ρ_s over log2 factor in [0, log2 most], mean
 };
 
 // costs[p][s]; infinite or not-a-number: unsolved; nothing: never asked. A cost below one unit
@@ -80,6 +79,9 @@ std::vector<Real> simulated_restarts(const std::vector<Attempt>& attempts, const
 
 inline constexpr std::size_t kDraws = 1000;
 
+// One of so many places.
+std::size_t drawn_place(Draws& random, std::size_t count);
+
 // Where draws come from: a random stream each, or one for all of them.
 struct DrawStream {
   std::uint64_t seed = 0;
@@ -113,5 +115,91 @@ struct Band {
   std::vector<Real> value, low, high;
 };
 Band bootstrap_ratio(const std::vector<GroupSum>& groups, const std::string& key);
+
+// Tests of differences between methods by ranks, what tests by flips of signs can find, and
+// verdicts on times.
+
+// The two-sided p of Mann and Whitney (1947), 2 min(P(U ≤ u), P(U ≥ u)), given the ties there are:
+// exact up to kExact values in all, by the normal approximation with continuity and ties beyond.
+Real mann_whitney_p(const std::vector<Real>& a, const std::vector<Real>& b);
+
+// The ratio of b to a: the median of all b_j / a_i, in logarithms, and the
+// interval that inverts the test of Mann and Whitney. Hodges, Lehmann (1963). Values above 0.
+struct RatioEstimate {
+  Real ratio = 1, low = 0, high = kNever;  // 0 and infinite: too few values for an interval
+};
+RatioEstimate ratio_estimate(const std::vector<Real>& a, const std::vector<Real>& b);
+inline constexpr Real kConfidence = 0.95;
+
+// 95 % of the median, the test of signs inverted: order statistics that leave out at most 2.5 % of
+// Binomial(n, ½) on either side, whatever the distribution. Of fewer than six values their range;
+// of none 0. The page's scripts have the same function, of a pair that a reader chooses.
+struct MedianInterval {
+  Real median = 0, low = 0, high = 0;
+};
+MedianInterval median_interval(std::vector<Real> values);
+
+// p adjusted for their number, in the order given: at most q of the discoveries below q are false.
+// Benjamini, Hochberg (1995).
+std::vector<Real> benjamini_hochberg(const std::vector<Real>& p);
+
+inline constexpr std::size_t kExact = 100;  // values up to which distributions are counted out
+
+// The power of a paired test by sign flips.
+
+// The standard deviation of a sample; 0 of fewer than two.
+Real deviation_of(const std::vector<Real>& values);
+
+// The share of Student's t with so many degrees of freedom that lies below the quantile; share > ½.
+Real student_quantile(Real share, std::size_t freedom);
+
+// The mean difference over n pairs that the flips find at 0.05 in 80 % of all samples, if
+// differences are as variable as a sample with this deviation: (t(0.975) + t(0.8)) deviation / √n,
+// and 1 + 2 / (n − 3) times that for the flips' steps and the deviation's own error, without which
+// it is 60 to 76 % of samples. Infinite of fewer than six pairs, whose p cannot be 0.05.
+Real detectable_mean(Real deviation, std::size_t n);
+
+// Where a single further value lies in 95 % of all cases, by values of the same kind (on the scale
+// on which they are normal), of variance v: mean ± t √(v (1 + 1/n)). Everywhere, of fewer than two
+// values.
+Interval prediction_interval(const std::vector<Real>& values);
+
+// Did the time of a cell change by more than it varies by itself?
+
+inline constexpr std::size_t kLeastRepetitions = 9;  // of each side
+inline constexpr std::size_t kMostTimed = 20;        // cells, of which each costs the others power
+inline constexpr Real kFalseDiscoveries = 0.05;
+// Repetitions within one job do not show how one job differs from the next, by frequency,
+// neighbours and layout of memory: some percent on shared machines.
+inline constexpr Real kLeastNoise = 0.1;
+
+struct TimedCell {
+  std::string key, title;
+  std::vector<Real> before, after;  // seconds of each repetition
+};
+
+struct TimeVerdict {
+  std::string key, title;
+  std::size_t n_before = 0, n_after = 0;
+  RatioEstimate ratio;       // after over before
+  Real p = 1, adjusted = 1;  // Mann-Whitney; after Benjamini and Hochberg
+  Real noise = kLeastNoise;  // [1 / (1 + noise), 1 + noise] is no change
+  int change = 0;            // 1 slower, −1 faster, 0 neither
+};
+
+// Worst first. Slower or faster: the adjusted p is at most kFalseDiscoveries, and the whole
+// interval of the ratio lies outside the band of noise.
+std::vector<TimeVerdict> judge_times(const std::vector<TimedCell>& cells, Real least_noise);
+
+// How far the estimate of a ratio strays where nothing has changed: the repetitions of each side of
+// each cell are split into random halves, and 95 of 100 estimates between halves stay within
+// 1 + noise. Halves have fewer repetitions than the sides, so their logarithm is scaled by the
+// standard errors of both. One figure for all cells: nine repetitions tell little of their own
+// noise, and the interval of a cell's ratio already widens with it.
+Real split_noise(const std::vector<TimedCell>& cells);
+
+// Do several methods differ at all over the same blocks? Friedman's test by ranks (1937), with
+// permutations within the blocks: all of them in a small design, else random ones.
+Real friedman_p(const std::vector<std::vector<Real>>& values);  // [block][method]
 
 }  // namespace isoline::results

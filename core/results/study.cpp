@@ -1,54 +1,45 @@
-// Reads rows of tables of rates.
+// Reads result folders, and what targets took.
 #include "core/results/study.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
-#include <nlohmann/json.hpp>
-#include <set>
+#include <cmath>
 #include <tuple>
 #include <unordered_map>
 
 #include "core/errors.h"
 #include "core/files.h"
-#include "core/json.h"
-#include "core/records/json_view.h"
+#include "core/records/fields.h"
 #include "core/results/statistics.h"
 
 namespace isoline::results {
-namespace {
 
-std::string text_at(const JsonView& row, const char* key) {
-  return row.contains(key) ? row.at(key).get<std::string>() : "";
-}
-
-void read_grid(const JsonView& source, TunedRate& rate) {
-  const auto options = source.at("grid").items();
-  if (options.empty()) return;
-  rate.option = options.front().first;
-  rate.values = reals_of(options.front().second);
-  if (source.contains("score"))
-    for (const JsonView& score : source.at("score").values())
-      rate.work.push_back(real_of(score.values().at(0)));
+void fields(Like<TunedRate> auto& rate, auto& field) {
+  field("problem", rate.problem);
+  field("optimizer", rate.optimizer);
+  field.optional("file", rate.file);
+  std::map<std::string, std::vector<Real>> grid;
+  std::vector<std::vector<Real>> scores;
+  field.group("source", [&](auto& source) {
+    source.optional("paper", rate.paper);
+    source.optional("grid", grid);
+    source.optional("score", scores);
+    source.optional("edge", rate.is_at_edge);
+  });
+  if (grid.empty()) return;
+  std::tie(rate.option, rate.values) = *grid.begin();
+  for (const std::vector<Real>& score : scores) rate.work.push_back(score.at(0));
   require(rate.work.empty() || rate.work.size() == rate.values.size(),
           "a grid of rates lacks the score of a value");
 }
 
-TunedRate rate_from(const JsonView& row) {
-  TunedRate rate{.problem = row.at("problem"),
-                 .optimizer = row.at("optimizer"),
-                 .file = text_at(row, "file"),
-                 .paper = {},
-                 .option = {},
-                 .values = {},
-                 .work = {}};
-  const JsonView source = row.at("source");
-  rate.paper = text_at(source, "paper");
-  if (source.contains("grid")) read_grid(source, rate);
-  if (source.contains("edge")) source.at("edge").get_to(rate.is_at_edge);
-  return rate;
-}
+namespace {
+
+struct RatesFile {
+  std::vector<TunedRate> rows;
+};
+void fields(Like<RatesFile> auto& file, auto& field) { field("rows", file.rows); }
 
 }  // namespace
 
@@ -57,17 +48,7 @@ bool TunedRate::is_ever_solved() const {
 }
 
 std::vector<TunedRate> rates_from_text(const std::string& text, const std::string& origin) {
-  JsonReader reader;
-  std::vector<TunedRate> rates;
-  for (const JsonView& row : reader.parse(text, origin).at("rows").values())
-    rates.push_back(rate_from(row));
-  return rates;
-}
-
-std::vector<TunedRate> read_rates(const std::string& folder) {
-  const std::filesystem::path file = std::filesystem::path(folder) / "rates.json";
-  if (!is_there(file)) return {};
-  return rates_from_text(read_text(file), file.string());
+  return from_text<RatesFile>(text, origin, "no table of rates").rows;
 }
 
 // Reads result folders. Records come by the ten thousand, and parsing them is nearly all the time a
@@ -77,22 +58,18 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The record, or the reason why it is invalid.
-std::string read_into(Record& record, const std::string& file) {
-  try {
-    record = read_record(file);
-    return "";
-  } catch (const std::exception& error) {
-    return error.what();
-  }
-}
-
 void read_runs(Study& study, const std::vector<std::string>& folders, const Listener& listener) {
   const std::vector<std::string> files = record_files(folders, study.unreadable);
   std::vector<std::string> reasons(files.size());
   std::vector<Record> runs(files.size());
-  share(
-      files.size(), [&](std::size_t i) { reasons[i] = read_into(runs[i], files[i]); }, listener);
+  const auto read = [&](std::size_t i) {
+    try {
+      runs[i] = read_record(files[i]);
+    } catch (const std::exception& error) {
+      reasons[i] = error.what();
+    }
+  };
+  share(files.size(), read, listener);
   std::vector<RunMark> marks(files.size());
   for (std::size_t i = 0; i < files.size(); ++i)
     if (reasons[i].empty())
@@ -106,59 +83,123 @@ void read_runs(Study& study, const std::vector<std::string>& folders, const List
   study.disputed = std::move(newest.disputed);
 }
 
-void read_sheets(Study& study, const fs::path& folder, std::set<std::string>& known) {
-  for (const std::string& file : json_files(folder / "components", study.unreadable)) try {
-      Sheet sheet = sheet_from_text(read_text(file), file);
-      if (known.insert(sheet.file_name()).second) study.sheets.push_back(std::move(sheet));
-    } catch (const std::exception& error) {
-      study.unreadable.push_back({file, error.what()});
-    }
-}
-
-void read_plan(Study& study, const fs::path& folder, std::set<std::string>& known) {
-  const fs::path file = folder / "plan.json";
+// use(text, name) of a file that may be missing; where it is damaged it is listed.
+template <class Use>
+void read_file(Study& study, const fs::path& file, Use use) {
   if (is_there(file)) try {
-      Plan plan = plan_from_text(read_text(file), file.string());
-      for (std::string& suite : plan.suites)
-        if (std::ranges::find(study.plan.suites, suite) == study.plan.suites.end())
-          study.plan.suites.push_back(std::move(suite));
-      for (PlannedCell& cell : plan.cells)
-        if (known.insert(cell.cell).second) study.plan.cells.push_back(std::move(cell));
+      use(read_text(file), file.string());
     } catch (const std::exception& error) {
       study.unreadable.push_back({file, error.what()});
     }
 }
 
-void read_audit(Study& study, const fs::path& folder) {
-  const fs::path file = folder / "audit.json";
-  if (is_there(file)) try {
-      for (AuditedOptimizer& audited : audit_from_json(read_json(file)))
-        if (std::ranges::find(study.audits, audited.name, &AuditedOptimizer::name) ==
-            study.audits.end())
-          study.audits.push_back(std::move(audited));
-    } catch (const std::exception& error) {
-      study.unreadable.push_back({file, error.what()});
-    }
-}
-
-void read_rates_of(Study& study, const fs::path& folder) {
+std::vector<std::string> json_files(const fs::path& folder, std::vector<Unreadable>& unreadable) {
+  std::vector<std::string> files;
   try {
-    for (TunedRate& rate : read_rates(folder)) study.rates.push_back(std::move(rate));
-  } catch (const std::exception& error) {
-    study.unreadable.push_back({folder / "rates.json", error.what()});
+    for (const std::string& name : names_in(folder))
+      if (name.ends_with(".json")) files.push_back((folder / name).string());
+  } catch (const UsageError& error) {
+    unreadable.push_back({folder.string(), error.what()});
   }
+  return files;
+}
+
+// Plan, sheets, audit and rates of a folder; `known` has the cells and the sheets of those before.
+void read_rest(Study& study, const fs::path& folder, std::set<std::string>& known) {
+  read_file(study, folder / "plan.json", [&](const auto& text, const auto& name) {
+    Plan plan = plan_from_text(text, name);
+    for (std::string& suite : plan.suites)
+      if (std::ranges::find(study.plan.suites, suite) == study.plan.suites.end())
+        study.plan.suites.push_back(std::move(suite));
+    for (PlannedCell& cell : plan.cells)
+      if (known.insert(cell.cell).second) study.plan.cells.push_back(std::move(cell));
+  });
+  for (const std::string& file : json_files(folder / "components", study.unreadable))
+    read_file(study, file, [&](const auto& text, const auto& name) {
+      Sheet sheet = sheet_from_text(text, name);
+      if (known.insert(sheet.file_name()).second) study.sheets.push_back(std::move(sheet));
+    });
+  read_file(study, folder / "audit.json", [&](const auto& text, const auto& name) {
+    for (AuditedOptimizer& audited : audit_from_text(text, name))
+      if (std::ranges::find(study.audits, audited.name, &AuditedOptimizer::name) ==
+          study.audits.end())
+        study.audits.push_back(std::move(audited));
+  });
+  read_file(study, folder / "rates.json", [&](const auto& text, const auto& name) {
+    for (TunedRate& rate : rates_from_text(text, name)) study.rates.push_back(std::move(rate));
+  });
+}
+
+// ISO times sort as text; the file name decides where they are absent or equal.
+bool is_newer(const RunMark& a, const RunMark& b) {
+  return std::pair(a.started, record_file_name(a.cell, a.build)) >
+         std::pair(b.started, record_file_name(b.cell, b.build));
+}
+
+// Everything that no clock decides is equal in all records of one build.
+bool should_agree(const RunMark& a, const RunMark& b) {
+  return a.build == b.build && !a.is_nondeterministic && !b.is_nondeterministic;
+}
+
+// "1e-4", "1.6e-4": two digits tell a rung from its neighbours.
+std::string rung_name(std::size_t j) {
+  if (j == 0) return "1";
+  std::string text = fmt::format("{:.1e}", rung(j));
+  if (const std::size_t zero = text.find(".0"); zero != std::string::npos) text.erase(zero, 2);
+  if (const std::size_t zero = text.find("e-0"); zero != std::string::npos) text.erase(zero + 2, 1);
+  return text;
+}
+
+Tolerance tolerance_of_rung(std::size_t j) {
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> all;
+    for (std::size_t each = 0; each < kRungs; ++each) all.push_back(rung_name(each));
+    return all;
+  }();
+  return {names[j], rung(j), j};
+}
+
+const std::vector<std::int64_t>* column_of(const Columns& columns, std::size_t kind) {
+  const auto at = columns.find(std::string(kOracleNames[kind]));
+  return at == columns.end() ? nullptr : &at->second;
+}
+
+std::vector<Reached> from_hits(const Record& record, const Prices& prices) {
+  const Hits& hits = *record.hits;
+  const std::vector<Real> costs = prices.hit_costs(record);
+  std::vector<Reached> met;
+  for (std::size_t j = 0; j < hits.iteration.size() && hits.iteration[j] >= 0; ++j)
+    met.push_back({Real(hits.work[j]), costs[j], hits.wall_seconds[j],
+                   static_cast<std::int32_t>(hits.iteration[j])});
+  return met;
+}
+
+// At the first kept points where left[i] ≤ goal(j).
+template <class Goal>
+std::vector<Reached> from_curve(const Record& record, const Prices& prices,
+                                const std::vector<Real>& left, Goal goal) {
+  const Curve& curve = record.curve;
+  const std::vector<Real> costs = prices.curve_costs(record);
+  std::vector<Reached> met;
+  std::size_t i = 0;
+  for (std::size_t j = 0; j < kTargets; ++j) {
+    while (i < left.size() && !(left[i] <= goal(j))) ++i;
+    if (i == left.size()) break;
+    met.push_back({Real(curve.work[i]), costs[i], curve.wall_seconds[i],
+                   static_cast<std::int32_t>(curve.iteration[i]),
+                   i > 0 && curve.iteration[i] > curve.iteration[i - 1] + 1});
+  }
+  return met;
 }
 
 }  // namespace
 
 std::optional<FieldFrames> Study::fields_of(const Record& record) const {
-  const bool is_older = record.exhibit && record.exhibit->is_picture();
-  if (!record.fields && !is_older) return std::nullopt;
+  if (!record.fields) return std::nullopt;
+  FieldFrames frames = *record.fields;
   for (const fs::path folder : folders) {
     const fs::path file = field_path(folder / "runs" / record.file_name());
     if (is_there(file)) try {
-        if (!record.fields) return frames_of(*record.exhibit, record.summary.iterations, file);
-        FieldFrames frames = *record.fields;
         read_field_numbers(frames, file);
         return frames;
       } catch (const std::exception&) {
@@ -180,34 +221,14 @@ Study read_study(const std::vector<std::string>& folders, const Listener& listen
   }
   Study study;
   study.folders = folders;
-  std::set<std::string> cells, sheets;
-  for (const fs::path folder : folders) {
-    read_plan(study, folder, cells);
-    read_sheets(study, folder, sheets);
-    read_audit(study, folder);
-    read_rates_of(study, folder);
-  }
+  std::set<std::string> known;
+  for (const fs::path folder : folders) read_rest(study, folder, known);
   std::ranges::sort(study.audits, {}, &AuditedOptimizer::name);
   read_runs(study, folders, listener);
   return study;
 }
 
 // Chooses among the records of each cell.
-
-namespace {
-
-// ISO times sort as text; the file name decides where they are absent or equal.
-bool is_newer(const RunMark& a, const RunMark& b) {
-  return std::pair(a.started, record_file_name(a.cell, a.build)) >
-         std::pair(b.started, record_file_name(b.cell, b.build));
-}
-
-// Everything that no clock decides is equal in all records of one build.
-bool should_agree(const RunMark& a, const RunMark& b) {
-  return a.build == b.build && !a.is_nondeterministic && !b.is_nondeterministic;
-}
-
-}  // namespace
 
 RunMark mark_of(const Record& record) {
   return {.cell = record.cell,
@@ -243,20 +264,6 @@ bool are_at_odds(const Record& a, const Record& b) {
   return result_of(to_json(a)) != result_of(to_json(b));
 }
 
-// Lists result folders.
-
-std::vector<std::string> json_files(const std::filesystem::path& folder,
-                                    std::vector<Unreadable>& unreadable) {
-  std::vector<std::string> files;
-  try {
-    for (const std::string& name : names_in(folder))
-      if (name.ends_with(".json")) files.push_back((folder / name).string());
-  } catch (const UsageError& error) {
-    unreadable.push_back({folder.string(), error.what()});
-  }
-  return files;
-}
-
 std::vector<std::string> record_files(const std::vector<std::string>& folders,
                                       std::vector<Unreadable>& unreadable) {
   std::vector<std::string> all;
@@ -264,6 +271,130 @@ std::vector<std::string> record_files(const std::vector<std::string>& folders,
     for (std::string& file : json_files(folder / "runs", unreadable))
       all.push_back(std::move(file));
   return all;
+}
+
+// The effort to each target: read off the hits of a record, or else off its curve, at its prices.
+
+std::optional<Measure> measure_of(std::string_view name) {
+  return choice_named<Measure>(name, kMeasureNames);
+}
+
+Tolerance tolerance_at(Real tau) { return tolerance_of_rung(rung_of(tau)); }
+
+// The usual looser ones stay where they are looser; else a third and two thirds of the way down.
+Yardstick yardstick_at(Measure by, Real tau) {
+  Yardstick yardstick{.by = by};
+  const Tolerance last = tolerance_at(tau);
+  const bool is_usual = kTolerances[kTightest - 1].rung < last.rung;
+  for (std::size_t t = 0; t < kTightest && !is_usual; ++t)
+    yardstick.tolerances[t] = tolerance_of_rung((t + 1) * last.rung / kTolerances.size());
+  yardstick.tolerances[kTightest] = last;
+  return yardstick;
+}
+
+// Raw counts times prices.
+
+bool is_told(const MeasuredPrices& prices, const MeasuredPrice& price) {
+  const Real unit = prices.forward_seconds;
+  return price.resolved && unit >= kShortestCall && price.price * unit >= kShortestCall;
+}
+
+Prices::Prices(const Sheet* sheet) {
+  if (sheet == nullptr || !sheet->prices) return;
+  for (const MeasuredPrice& each : sheet->prices->oracles)
+    if (each.oracle != kInference && is_told(*sheet->prices, each))
+      measured_[each.oracle] = each.price;
+}
+
+Real Prices::price(const Record& record, std::size_t kind) const {
+  const auto at = measured_.find(kOracleNames[kind]);
+  return at == measured_.end() ? Real(record.prices[kind]) : at->second;
+}
+
+Real Prices::cost(const Record& record) const {
+  if (!are_measured()) return Real(record.summary.work);
+  Real sum = 0;
+  for (std::size_t kind = 0; kind < kOracles; ++kind)
+    sum += price(record, kind) * Real(record.counts[kind]);
+  return sum;
+}
+
+std::vector<Real> Prices::costs_of(const Record& record, const Columns& counts,
+                                   const std::vector<std::int64_t>& work) const {
+  if (!are_measured() || counts.empty()) return {work.begin(), work.end()};
+  std::vector<Real> costs(work.size(), 0);
+  for (std::size_t kind = 0; kind < kOracles; ++kind) {
+    const auto* column = column_of(counts, kind);
+    const Real each = price(record, kind);
+    for (std::size_t i = 0; column != nullptr && i < std::min(costs.size(), column->size()); ++i)
+      costs[i] += each * Real((*column)[i]);
+  }
+  return costs;
+}
+
+std::vector<Real> Prices::curve_costs(const Record& record) const {
+  return costs_of(record, record.curve.counts, record.curve.work);
+}
+
+std::vector<Real> Prices::hit_costs(const Record& record) const {
+  const Hits& hits = *record.hits;
+  std::vector<Real> costs = costs_of(record, hits.counts, hits.work);
+  for (std::size_t j = 0; j < costs.size(); ++j)
+    if (hits.iteration[j] < 0) costs[j] = kNever;
+  return costs;
+}
+
+OracleCounts counts_at(const Record& record, Real work) {
+  OracleCounts counts{};
+  const auto read = [&](const Columns& columns, const std::vector<std::int64_t>& works) {
+    const auto at =
+        std::ranges::find_if(works, [&](std::int64_t each) { return Real(each) >= work; });
+    const auto i = static_cast<std::size_t>(at - works.begin());
+    for (std::size_t kind = 0; kind < kOracles; ++kind)
+      if (const auto* column = column_of(columns, kind); column && i < column->size())
+        counts[kind] = (*column)[i];
+  };
+  if (record.hits && !record.hits->counts.empty())
+    read(record.hits->counts, record.hits->work);
+  else
+    read(record.curve.counts, record.curve.work);
+  return counts;
+}
+
+BestKnown::BestKnown(const Study& study) {
+  for (const Record& record : study.runs) {
+    if (record.imported) continue;  // imported values change no other run's targets
+    const auto key = std::pair(record.request.problem.spec, record.request.seed);
+    Real& least = least_.emplace(key, kNever).first->second;
+    const Real best = record.summary.best_loss;
+    if (record.status != Status::inapplicable && best < least) least = best;
+  }
+}
+
+Real BestKnown::minimum(const Record& record) const {
+  if (record.minimum) return *record.minimum;
+  const auto found = least_.find({record.request.problem.spec, record.request.seed});
+  if (found != least_.end()) return found->second;
+  return record.imported ? record.summary.best_loss : std::nan("");
+}
+
+Real Reached::by(Measure measure) const {
+  return std::array{work, cost, Real(iteration), seconds}[static_cast<std::size_t>(measure)];
+}
+
+std::vector<Reached> targets_met(const Record& record, const Prices& prices, Aim aim,
+                                 const BestKnown& best) {
+  if (record.status == Status::inapplicable) return {};
+  if (aim == Aim::x) {
+    if (!record.x_scale) return {};
+    return from_curve(record, prices, record.curve.x_error, [&](std::size_t j) {
+      return x_goal(rung(j), *record.x_scale, record.x_floor);
+    });
+  }
+  if (record.hits) return from_hits(record, prices);
+  const Real minimum = best.minimum(record), scale = best.scale(record);
+  return from_curve(record, prices, record.curve.loss,
+                    [&](std::size_t j) { return minimum + rung(j) * scale; });
 }
 
 }  // namespace isoline::results

@@ -1,18 +1,25 @@
-// The input of a report: the plan, the records and the component metadata of result folders.
+// The input of a report: the plan, the records and the component metadata of result folders; and
+// what each target took a run.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <map>
+#include <optional>
 #include <set>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "core/real.h"
-#include "core/records/audited.h"
-#include "core/records/plan.h"
 #include "core/records/record.h"
+#include "core/records/request.h"
 #include "core/records/sheet.h"
+#include "core/results/statistics.h"
+#include "core/status.h"
 #include "core/threads.h"
 
 namespace isoline::results {
@@ -32,11 +39,7 @@ struct TunedRate {
   bool is_ever_solved() const;
 };
 
-// None where the folder has no such file.
-std::vector<TunedRate> read_rates(const std::string& folder);
 std::vector<TunedRate> rates_from_text(const std::string& text, const std::string& origin);
-
-// The input of a report: the plan, the records and the component metadata of result folders.
 
 // A file that is no record, sheet or plan. It is listed, so that nothing vanishes in silence.
 struct Unreadable {
@@ -64,9 +67,8 @@ struct Study {
 // told of the records.
 Study read_study(const std::vector<std::string>& folders, const Listener& listener = {});
 
-// Among all records of a cell the newest counts, independent of its build.
-
-// The criterion between records of a cell, and the order of several.
+// Among all records of a cell the newest counts, independent of its build: what decides between
+// them, and the order of several.
 struct RunMark {
   std::string cell, build, started, problem, optimizer;  // its digests; when; its specs
   std::uint64_t seed = 0;
@@ -88,14 +90,119 @@ Newest newest_of(const std::vector<RunMark>& marks,
 // Whether they hold other results, times aside.
 bool are_at_odds(const Record& a, const Record& b);
 
-// The files of result folders, by name: as text, for each path that knows its parts is a kilobyte.
-
-// The JSON files of a folder, of any kind; if the folder cannot be listed, the reason.
-std::vector<std::string> json_files(const std::filesystem::path& folder,
-                                    std::vector<Unreadable>& unreadable);
-
-// Those of the records of all folders.
+// The files of the records of all folders, as text: each path that knows its parts is a kilobyte.
+// If a folder cannot be listed, the reason.
 std::vector<std::string> record_files(const std::vector<std::string>& folders,
                                       std::vector<Unreadable>& unreadable);
+
+// The effort of a run until it met each of 51 targets: by four measures, in loss or in x.
+
+enum class Measure {
+  work,        // oracle calls at nominal cost, in forward solves, equal on every machine
+  cost,        // the same calls at the prices measured on each problem
+  iterations,  // steps
+  time,        // wall seconds
+};
+inline constexpr std::array<std::string_view, 4> kMeasureNames = {"work", "cost", "iterations",
+                                                                  "time"};
+inline constexpr std::array kMeasures = {Measure::work, Measure::cost, Measure::iterations,
+                                         Measure::time};
+inline std::string_view name_of(Measure measure) {
+  return kMeasureNames[static_cast<std::size_t>(measure)];
+}
+std::optional<Measure> measure_of(std::string_view name);
+// The unit of costs: costs below one unit count as one. A time is in microseconds.
+inline Real least_unit(Measure measure) { return measure == Measure::time ? 1e-6 : 1; }
+
+// τ of a success: f ≤ f_L + τ s, or an error in x of τ times the solution's norm. Always a rung of
+// the ladder, since that is where records tell what was reached.
+struct Tolerance {
+  std::string_view name;  // "1e-6", for good
+  Real tau = 0;
+  std::size_t rung = 0;
+};
+// The rung at τ, or the next stricter one.
+Tolerance tolerance_at(Real tau);
+
+inline constexpr std::array<Tolerance, 3> kTolerances = {
+    {{"1e-1", 1e-1, 5}, {"1e-3", 1e-3, 15}, {"1e-6", 1e-6, 30}}};
+inline constexpr std::size_t kTightest = kTolerances.size() - 1;
+inline constexpr std::size_t kTargets = kRungs;
+
+struct Yardstick {
+  Measure by = Measure::work;
+  std::array<Tolerance, kTolerances.size()> tolerances = kTolerances;  // the headline's last
+
+  const Tolerance& tightest() const { return tolerances[kTightest]; }
+};
+// The usual one with another tolerance for its headline, and two looser ones below it.
+Yardstick yardstick_at(Measure by, Real tau);
+
+// The cost of runs in equivalent forward solves: their raw counts at the measured costs of their
+// problem, or at the nominal costs if nothing was measured or a call was too short.
+
+// A shorter call takes mostly what a call takes, whatever is called: its price is not its own.
+inline constexpr Real kShortestCall = 1e-6;  // seconds
+bool is_told(const MeasuredPrices& prices, const MeasuredPrice& price);
+
+using Columns = std::map<std::string, std::vector<std::int64_t>>;  // by oracle
+
+class Prices {
+ public:
+  Prices() = default;
+  explicit Prices(const Sheet* sheet);  // of this very problem; may be null
+
+  bool are_measured() const { return !measured_.empty(); }  // at least one is known
+  bool is_measured(std::string_view oracle) const { return measured_.contains(oracle); }
+
+  Real cost(const Record& record) const;  // of all that the run asked
+  // At each point of the curve.
+  std::vector<Real> curve_costs(const Record& record) const;
+  // At each hit, infinite where never reached.
+  std::vector<Real> hit_costs(const Record& record) const;
+
+ private:
+  Real price(const Record& record, std::size_t kind) const;
+  // From counts by oracle in columns as long as `work`, which it is where nothing is measured.
+  std::vector<Real> costs_of(const Record& record, const Columns& counts,
+                             const std::vector<std::int64_t>& work) const;
+
+  std::map<std::string, Real, std::less<>> measured_;  // by oracle
+};
+
+// The raw counts when the declared work of the run was `work`: of its hit, or, in older records, of
+// the first kept point from there on.
+OracleCounts counts_at(const Record& record, Real work);
+
+// The least loss any run of a problem and seed has reached: f_L where none is declared.
+class BestKnown {
+ public:
+  using Minima = std::map<std::pair<std::string, std::uint64_t>, Real>;  // by problem and seed
+
+  explicit BestKnown(const Study& study);
+  explicit BestKnown(Minima least) : least_(std::move(least)) {}
+  // Declared, else the best known; not-a-number where no run of its problem and seed is.
+  Real minimum(const Record& record) const;
+  // s of f ≤ f_L + τ s; f₀ − f_L where older records lack it.
+  Real scale(const Record& record) const {
+    return record.scale.value_or(record.summary.start_loss - minimum(record));
+  }
+
+ private:
+  Minima least_;
+};
+
+// The counts of a run when it first met a target.
+struct Reached {
+  Real work = 0, cost = 0, seconds = 0;
+  std::int32_t iteration = 0;
+  bool is_bound = false;  // kept points were skipped before: at most that
+
+  Real by(Measure measure) const;
+};
+// The targets τ = 10^(−j/5), j = 0, 1, … until one that it never met. Of losses exact where the
+// record has hits; all else is read at the kept points of its curve.
+std::vector<Reached> targets_met(const Record& record, const Prices& prices, Aim aim,
+                                 const BestKnown& best);
 
 }  // namespace isoline::results

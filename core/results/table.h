@@ -13,7 +13,6 @@
 
 #include "core/results/statistics.h"
 #include "core/results/study.h"
-#include "core/results/targets.h"
 
 namespace isoline::results {
 
@@ -43,8 +42,7 @@ struct Run {
   Real taken(Measure by, std::size_t target) const {
     return target < targets.size() ? targets[target].by(by) : kNever;
   }
-  Real spent_by(Measure by) const;                             // in all
-  Real goal(Real tau) const { return minimum + tau * scale; }  // the loss that is reached at τ
+  Real spent_by(Measure by) const;  // in all
 };
 
 // The remaining loss at each kept point, (f − f_L) / s; infinite if s is not a valid scale.
@@ -154,6 +152,12 @@ struct Table {
 };
 
 Table table_of(const Study& study);
+
+// Long labels keep only the options that distinguish them within their method. Options with equal
+// values in all are omitted: in "sip[inverse=newton,network-optimizer=adam[rate=1e-3]]" beside
+// "sip[inverse=analytic,network-optimizer=adam[rate=1e-3]]", the network's optimizer. No two labels
+// become equal.
+std::vector<std::string> brief_labels(const std::vector<std::string>& labels);
 
 // A value for each measure and tolerance.
 template <class Value>

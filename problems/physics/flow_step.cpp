@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "core/errors.h"
-#include "problems/physics/lattice.h"
 
 namespace isoline::problems {
 namespace {
@@ -231,10 +230,7 @@ void FlowStep::add_displaced(Index which, VectorRef dx, VectorRef dy, VectorOut 
   VectorOut u = velocity.head(cells_), v = velocity.tail(cells_);
   const Index N = options_.N;
   const Real unit = options_.dt / options_.dx(), half = unit / 2;
-  if (options_.arrangement == Arrangement::collocated) {
-    u += unit * dx;
-    v += unit * dy;
-  } else if (which == kU) {
+  if (which == kU) {
     u += unit * dx;
     add_square(N, unit / 4, Side::right, Side::below, dy, v);
   } else if (which == kV) {
@@ -317,6 +313,78 @@ void FlowStep::pullback(VectorRef state, VectorRef next, VectorRef projected, Ve
   for (const Index which : {kU, kV})
     add_pulled(which, state.head(2 * cells_), before_.head(2 * cells_));
   cotangent = before_;
+}
+
+// Steps in order, their tangents in the same order, their cotangents from the last to the first.
+
+Simulation::Simulation(const FlowOptions& options, Index steps)
+    : options_(options),
+      cells_(options.cells()),
+      steps_(steps),
+      step_(options),
+      moved_(3 * cells_) {
+  require(steps > 0, "a simulation needs at least one step");
+}
+
+void Simulation::size(FlowRun& run) const {
+  run.states.resize(3 * cells_, steps_ + 1);
+  run.projected.resize(2 * cells_, steps_);
+}
+
+void Simulation::begin(VectorRef centred, VectorRef marker, FlowRun& run) {
+  size(run);
+  begin_pushforward(centred, run.states.col(0).head(2 * cells_));  // it is linear
+  run.states.col(0).tail(cells_) = marker;
+}
+
+void Simulation::begin_pushforward(VectorRef centred, VectorOut velocity) {
+  if (options_.arrangement == Arrangement::collocated) {
+    velocity = centred;
+    return;
+  }
+  weigh(options_.N, 0.5, 0.5, Side::left, centred.head(cells_), velocity.head(cells_));
+  weigh(options_.N, 0.5, 0.5, Side::below, centred.tail(cells_), velocity.tail(cells_));
+  step_.projection().apply(velocity.head(cells_), velocity.tail(cells_));
+}
+
+void Simulation::begin_pullback(VectorOut velocity, VectorOut centred) {
+  step_.projection().apply(velocity.head(cells_), velocity.tail(cells_));
+  centre(velocity, centred);
+}
+
+void Simulation::centre(VectorRef velocity, VectorOut centred) const {
+  weigh(options_.N, 0.5, 0.5, Side::right, velocity.head(cells_), centred.head(cells_));
+  weigh(options_.N, 0.5, 0.5, Side::above, velocity.tail(cells_), centred.tail(cells_));
+}
+
+void Simulation::forward(FlowRun& run) {
+  for (Index n = 0; n < steps_; ++n)
+    step_.forward(run.states.col(n), run.states.col(n + 1), run.projected.col(n));
+}
+
+void Simulation::pushforward(const FlowRun& run, VectorOut tangent) {
+  for (Index n = 0; n < steps_; ++n) {
+    step_.pushforward(run.states.col(n), run.states.col(n + 1), run.projected.col(n), tangent,
+                      moved_);
+    tangent = moved_;
+  }
+}
+
+void Simulation::pullback(const FlowRun& run, VectorOut cotangent) {
+  for (Index n = steps_; n-- > 0;)
+    step_.pullback(run.states.col(n), run.states.col(n + 1), run.projected.col(n), cotangent);
+}
+
+void Simulation::add_choices(const FlowRun& run, PieceDigest& digest) {
+  for (Index n = 0; n < steps_; ++n)
+    step_.add_choices(run.states.col(n), run.states.col(n + 1), digest);
+}
+
+void Simulation::reverse(const FlowRun& run, VectorRef marker, FlowRun& back) {
+  size(back);
+  back.states.col(0).head(2 * cells_) = -run.velocity(steps_);
+  back.states.col(0).tail(cells_) = marker;
+  forward(back);
 }
 
 }  // namespace isoline::problems

@@ -1,23 +1,119 @@
-// Differences between the figures of two cells.
-#include "reports/compare/differences.h"
-
+// Which cell of NEW answers which of BASE, and in which status, figures, options and build parts
+// the two differ.
 #include <fmt/format.h>
+#include <fnmatch.h>
 
 #include <algorithm>
-#include <cmath>
-#include <map>
-#include <set>
+#include <nlohmann/json.hpp>
 
+#include "core/errors.h"
+#include "core/json.h"
+#include "core/spec.h"
+#include "reports/compare/gate.h"
 #include "reports/sections/words.h"
 
 namespace isoline::reports {
+
+// The star is the only wildcard: brackets belong to specifications.
+bool matches(const std::string& pattern, const std::string& text) {
+  std::string escaped;
+  for (const char letter : pattern) {
+    if (letter != '*') escaped += '\\';
+    escaped += letter;
+  }
+  return ::fnmatch(escaped.c_str(), text.c_str(), 0) == 0;
+}
+
+bool is_of(const AllowedCells& entry, const ComparedCell& cell) {
+  const auto names = [](const std::string& pattern, const Component& component) {
+    return matches(pattern, component.name) || matches(pattern, component.asked) ||
+           matches(pattern, component.spec);
+  };
+  return names(entry.problem, *cell.problem) && names(entry.optimizer, *cell.optimizer);
+}
+
+AllowedList allowed_from_json(const Json& json) {
+  try {
+    require(json.at("schema") == kAllowedSchema,
+            [&] { return fmt::format("the schema is not {}", kAllowedSchema); });
+    AllowedList list;
+    for (const Json& cells : json.at("cells")) {
+      require(cells.contains("problem") || cells.contains("optimizer"),
+              "an entry of the allowed cells must name a problem or an optimizer");
+      list.push_back({.problem = cells.value("problem", std::string("*")),
+                      .optimizer = cells.value("optimizer", std::string("*")),
+                      .reason = cells.at("reason").get<std::string>(),
+                      .is_of_criterion = cells.value("allows", std::string()) == "criterion"});
+      require(!list.back().reason.empty(), "an entry of the allowed cells must give a reason");
+    }
+    return list;
+  } catch (const Json::exception& error) {
+    throw UsageError(fmt::format("not a valid {}: {}", kAllowedSchema, error.what()));
+  }
+}
+
+AllowedList read_allowed(const std::filesystem::path& file) {
+  return allowed_from_json(read_json(file));
+}
+
+Pairs paired(const std::vector<ComparedCell>& before, const std::vector<ComparedCell>& after) {
+  constexpr std::string (*kIdentities[])(const ComparedCell&) = {
+      [](const ComparedCell& cell) { return cell.key; },
+      [](const ComparedCell& cell) {
+        return fmt::format("{} × {}, seed {}{}", cell.problem->asked, cell.optimizer->asked,
+                           cell.seed, cell.terms);
+      },
+      [](const ComparedCell& cell) {
+        return fmt::format("{} × {}, seed {}{}", cell.problem->spec, cell.optimizer->spec,
+                           cell.seed, cell.terms);
+      }};
+  std::vector<const ComparedCell*> answer(before.size()), unpaired;
+  for (const ComparedCell& cell : after) unpaired.push_back(&cell);
+  for (const auto& identity : kIdentities) {
+    std::map<std::string, std::array<std::vector<std::size_t>, 2>> sides;
+    for (std::size_t i = 0; i < before.size(); ++i)
+      if (answer[i] == nullptr) sides[identity(before[i])][0].push_back(i);
+    for (std::size_t i = 0; i < after.size(); ++i)
+      if (unpaired[i] != nullptr) sides[identity(after[i])][1].push_back(i);
+    for (const auto& [name, side] : sides)
+      if (!name.empty() && side[0].size() == 1 && side[1].size() == 1)
+        std::swap(answer[side[0][0]], unpaired[side[1][0]]);
+  }
+  Pairs pairs{.only_after = unpaired};
+  std::erase(pairs.only_after, nullptr);
+  for (std::size_t i = 0; i < before.size(); ++i)
+    if (answer[i] != nullptr)
+      pairs.both.emplace_back(&before[i], answer[i]);
+    else
+      pairs.only_before.push_back(&before[i]);
+  return pairs;
+}
+
+// Two that are equally bad may still differ: that is a change, and no verdict.
+int badness_of(Status status) {
+  if (status == Status::target || status == Status::converged) return 0;
+  if (status == Status::budget || status == Status::stalled) return 1;
+  return status == Status::diverged ? 2 : 3;
+}
+
+Difference difference_in(const ComparedCell& cell, Change change, const std::string& what,
+                         const std::string& before, const std::string& after) {
+  return {.change = change,
+          .key = cell.key,
+          .title = cell.title,
+          .problem = cell.problem->name,
+          .optimizer = cell.optimizer->name,
+          .what = what,
+          .before = before,
+          .after = after,
+          .relative = change == Change::changed ? 0
+                      : change == Change::worse ? kNever
+                                                : -kNever};
+}
+
 namespace {
 
-constexpr Real kRounding = 1e-16;   // of double precision, as a share of the problem's scale
-constexpr Real kSummation = 1e-12;  // relative: sums of some thousand numbers in another order
-
-// Not-a-number is no better than infinite.
-Real finite_or_never(Real value) { return std::isnan(value) ? kNever : value; }
+constexpr Real kRounding = 1e-16;  // of double precision, as a share of the problem's scale
 
 // As a share of |before|, or of the smallest value that counts, above what rounding explains.
 Real least_tolerance(Real before, Real after, Real scale) {
@@ -31,14 +127,7 @@ Real least_tolerance(Real before, Real after, Real scale) {
 }
 
 bool agree(Real before, Real after, Real scale, const std::optional<Real>& tolerance) {
-  if (!tolerance) return before == after;
-  return least_tolerance(before, after, scale) <= *tolerance;
-}
-
-Real relative_change(Real before, Real after) {
-  if (!std::isfinite(before) || !std::isfinite(after) || before == 0)
-    return after > before ? kNever : -kNever;
-  return (after - before) / std::abs(before);
+  return tolerance ? least_tolerance(before, after, scale) <= *tolerance : before == after;
 }
 
 Change change_from(Real before, Real after) {
@@ -46,68 +135,43 @@ Change change_from(Real before, Real after) {
   return after > before ? Change::worse : Change::better;
 }
 
-Difference difference_of(const ComparedCell& cell, const ComparedFigure& each, Real before,
-                         Real after) {
+// Where rounding, and what is too small to tell, are measured from.
+Real scale_of(const ComparedCell& cell, std::size_t figure) {
+  if (figure == kPath) return cell.figures[kPath] / kSmallestShare;
+  return figure < kPath ? cell.scale : figure == kXError ? cell.x_scale : 0;
+}
+
+Difference difference_of(const ComparedCell& cell, std::size_t figure, Real before, Real after) {
   const bool looks_equal = reached_figure(before) == reached_figure(after);
   const auto text = looks_equal ? exact_figure : reached_figure;
-  Difference difference =
-      difference_in(cell, change_from(before, after), figure_name(each), text(before), text(after));
-  difference.relative = relative_change(before, after);
-  difference.is_rounding = least_tolerance(before, after, each.scale) <= kSummation;
+  Difference difference = difference_in(cell, change_from(before, after), figure_name(figure),
+                                        text(before), text(after));
+  if (std::isfinite(before) && std::isfinite(after) && before != 0)
+    difference.relative = (after - before) / std::abs(before);
   return difference;
 }
 
-// For each value that both have: its name; its values before and after.
-template <class Visit>
-void visit_common_figures(const ComparedCell& a, const ComparedCell& b, Visit visit) {
-  const auto place = [](const ComparedFigure& each) { return std::pair(each.quantity, each.rung); };
-  std::map<std::pair<Quantity, std::size_t>, const ComparedFigure*> before;
-  for (const ComparedFigure& each : a.figures) before[place(each)] = &each;
-  for (const ComparedFigure& each : b.figures)
-    if (const auto at = before.find(place(each)); at != before.end())
-      visit(*at->second, finite_or_never(at->second->value), finite_or_never(each.value));
-}
-
-bool has_quantity(const ComparedCell& cell, Quantity quantity) {
-  return std::ranges::find(cell.figures, quantity, &ComparedFigure::quantity) != cell.figures.end();
-}
-
-std::string privileges_text(const ComparedCell& cell) {
-  return cell.privileges.empty() ? "none" : joined(cell.privileges);
+bool has_both(const ComparedCell& a, const ComparedCell& b, std::size_t figure) {
+  return a.has(figure) && b.has(figure);
 }
 
 // Those that no size has. A status that broke off explains what is lacking.
-std::vector<Difference> differences_of_kind(const ComparedCell& a, const ComparedCell& b) {
-  std::vector<Difference> found;
-  for (const auto& [quantity, what] :
-       {std::pair(Quantity::x_error, "error in x"), {Quantity::work, "work to the targets"}})
-    if (has_quantity(a, quantity) && !has_quantity(b, quantity) && a.status == b.status)
+Differences differences_of_kind(const ComparedCell& a, const ComparedCell& b) {
+  Differences found;
+  for (const auto& [figure, what] :
+       {std::pair(kXError, "error in x"), {work_at(Aim::loss, 0), "work to the targets"}})
+    if (a.has(figure) && !b.has(figure) && a.status == b.status)
       found.push_back(difference_in(a, Change::worse, what, "known", "gone"));
-  if (!a.criterion || !b.criterion || a.privileges == b.privileges) return found;
+  if (a.privileges == b.privileges) return found;
+  const auto text = [](const ComparedCell& cell) {
+    return cell.privileges.empty() ? "none" : joined(cell.privileges);
+  };
   const Change change = a.privileges.size() < b.privileges.size() ? Change::worse : Change::better;
-  found.push_back(
-      difference_in(a, change, "extra information", privileges_text(a), privileges_text(b)));
+  found.push_back(difference_in(a, change, "extra information", text(a), text(b)));
   return found;
 }
 
 }  // namespace
-
-Difference difference_in(const ComparedCell& cell, Change change, const std::string& what,
-                         const std::string& before, const std::string& after) {
-  return {.change = change,
-          .key = cell.key,
-          .title = cell.title,
-          .problem = cell.problem.name,
-          .optimizer = cell.optimizer.name,
-          .what = what,
-          .before = before,
-          .after = after,
-          .relative = change == Change::changed ? 0
-                      : change == Change::worse ? kNever
-                                                : -kNever,
-          .note = "",
-          .cause = ""};
-}
 
 Difference status_difference(const ComparedCell& a, const ComparedCell& b) {
   return difference_in(a, change_from(badness_of(a.status), badness_of(b.status)), "status",
@@ -116,8 +180,7 @@ Difference status_difference(const ComparedCell& a, const ComparedCell& b) {
 
 std::string criterion_change_text(const ComparedCell& before, const ComparedCell& after,
                                   const std::optional<Real>& tolerance) {
-  if (!before.criterion || !after.criterion) return "";
-  const Criterion &a = *before.criterion, &b = *after.criterion;
+  const Criterion &a = before.criterion, &b = after.criterion;
   std::vector<std::string> changes;
   const auto add = [&](const char* name, const std::optional<Real>& old,
                        const std::optional<Real>& now, Real scale) {
@@ -125,11 +188,10 @@ std::string criterion_change_text(const ComparedCell& before, const ComparedCell
     const auto text = [](const auto& value) { return value ? exact_figure(*value) : "unknown"; };
     changes.push_back(fmt::format("{} {} → {}", name, text(old), text(now)));
   };
-  const Real x_scale = a.x_scale.value_or(0);
   add("f_L", a.minimum, b.minimum, a.scale.value_or(0));
   add("scale", a.scale, b.scale, 0);
   add("norm of x*", a.x_scale, b.x_scale, 0);
-  add("floor of the error in x", a.x_floor, b.x_floor, x_scale);
+  add("floor of the error in x", a.x_floor, b.x_floor, a.x_scale.value_or(0));
   if (a.aim != b.aim)
     changes.push_back(fmt::format("success criterion {} → {}", name_of(a.aim), name_of(b.aim)));
   for (std::size_t kind = 0; kind < kOracles; ++kind)
@@ -142,33 +204,33 @@ std::string criterion_change_text(const ComparedCell& before, const ComparedCell
 Real movement(const ComparedCell& a, const ComparedCell& b) {
   if (a.status != b.status) return kNever;
   Real most = 0;
-  visit_common_figures(a, b, [&](const ComparedFigure& each, Real before, Real after) {
-    most = std::max(most, least_tolerance(before, after, each.scale));
-  });
+  for (std::size_t i = 0; i < kFigures; ++i)
+    if (has_both(a, b, i))
+      most = std::max(most, least_tolerance(a.figures[i], b.figures[i], scale_of(a, i)));
   return most;
 }
 
-std::vector<Difference> figure_differences(const ComparedCell& a, const ComparedCell& b,
-                                           const std::optional<Real>& tolerance) {
-  using Kind = std::pair<Quantity, Change>;            // losses share a line
-  std::map<Kind, std::pair<Difference, int>> largest;  // with how many more there are
-  visit_common_figures(a, b, [&](const ComparedFigure& each, Real before, Real after) {
-    if (agree(before, after, each.scale, tolerance)) return;
-    Difference difference = difference_of(a, each, before, after);
-    const bool is_loss = each.quantity == Quantity::best_loss || each.quantity == Quantity::path;
-    const Kind kind(is_loss ? Quantity::loss : each.quantity, difference.change);
-    const auto [at, is_first] = largest.try_emplace(kind, difference, 0);
-    if (is_first) return;
-    auto& [kept, more] = at->second;
-    ++more;
-    if (std::abs(difference.relative) > std::abs(kept.relative)) kept = std::move(difference);
-  });
-  std::vector<Difference> out = differences_of_kind(a, b);
-  for (auto& [kind, kept] : largest) {
-    auto& [difference, more] = kept;
-    if (more > 0) difference.note = fmt::format("and {} more like it", more);
-    out.push_back(std::move(difference));
-  }
+Differences figure_differences(const ComparedCell& a, const ComparedCell& b,
+                               const std::optional<Real>& tolerance) {
+  Differences out = differences_of_kind(a, b);
+  std::map<std::pair<const char*, Change>, std::pair<std::size_t, int>> largest;  // and how many
+  for (const FigureKind& kind : kFigureKinds)
+    for (std::size_t i = kind.first; i < kind.first + kind.count; ++i) {
+      if (!has_both(a, b, i) || agree(a.figures[i], b.figures[i], scale_of(a, i), tolerance))
+        continue;
+      Difference difference = difference_of(a, i, a.figures[i], b.figures[i]);
+      const char* const key = i <= kPath ? kFigureKinds[kLoss].key : kind.key;  // losses share one
+      const auto [at, is_first] =
+          largest.try_emplace({key, difference.change}, std::pair(out.size(), 0));
+      if (is_first) {
+        out.push_back(std::move(difference));
+        continue;
+      }
+      auto& [place, more] = at->second;
+      if (std::abs(difference.relative) > std::abs(out[place].relative))
+        out[place] = std::move(difference);
+      out[place].note = fmt::format("and {} more like it", ++more);
+    }
   return out;
 }
 
@@ -179,28 +241,24 @@ namespace {
 constexpr Real kMargin = 0.1;
 
 // In the sense of the aim that BASE knows of.
-std::array<bool, kTolerances.size()> reached_by(const ComparedCell& cell, Aim aim) {
-  std::array<bool, kTolerances.size()> reached{};
-  for (std::size_t t = 0; t < reached.size(); ++t)
-    reached[t] = work_to(cell, aim, kTolerances[t].rung) < kNever;
-  return reached;
+bool has_reached(const ComparedCell& cell, Aim aim, std::size_t tolerance) {
+  const std::size_t figure = work_at(aim, tolerance);
+  return cell.has(figure) && cell.figures[figure] < kNever;
 }
 
-std::optional<Difference> coarse_status_difference(const ComparedCell& a, const ComparedCell& b) {
-  std::set<std::string> seen;
-  int least = badness_of(a.status), most = least;
+void add_coarse_status(const ComparedCell& a, const ComparedCell& b, Differences& all) {
   std::vector<Status> statuses = a.perturbed->statuses;
   statuses.push_back(a.status);
-  if (std::ranges::find(statuses, b.status) != statuses.end()) return std::nullopt;
-  for (const Status status : statuses) {
-    seen.emplace(name_of(status));
-    least = std::min(least, badness_of(status));
-    most = std::max(most, badness_of(status));
-  }
+  if (std::ranges::find(statuses, b.status) != statuses.end()) return;
+  std::set<std::string> seen;
+  for (const Status status : statuses) seen.emplace(name_of(status));
+  const auto [least, most] = std::ranges::minmax(statuses, {}, badness_of);
   const int now = badness_of(b.status);
-  const Change change = now > most ? Change::worse : now < least ? Change::better : Change::changed;
-  return difference_in(a, change, "status", joined({seen.begin(), seen.end()}, " or "),
-                       std::string(name_of(b.status)));
+  const Change change = now > badness_of(most)    ? Change::worse
+                        : now < badness_of(least) ? Change::better
+                                                  : Change::changed;
+  all.push_back(difference_in(a, change, "status", joined({seen.begin(), seen.end()}, " or "),
+                              std::string(name_of(b.status))));
 }
 
 }  // namespace
@@ -211,8 +269,8 @@ Perturbed perturbed_of(const ComparedCell& unperturbed,
   for (const ComparedCell& cell : perturbed) {
     found.moved = std::max(found.moved, movement(unperturbed, cell));
     found.statuses.push_back(cell.status);
-    const auto reached = reached_by(cell, unperturbed.aim);
-    for (std::size_t t = 0; t < reached.size(); ++t) found.reached[t] += reached[t];
+    for (std::size_t t = 0; t < kTolerances.size(); ++t)
+      found.reached[t] += has_reached(cell, unperturbed.criterion.aim, t);
   }
   return found;
 }
@@ -221,20 +279,82 @@ bool is_chaotic(const ComparedCell& cell, const std::optional<Real>& tolerance) 
   return tolerance && cell.perturbed && cell.perturbed->moved > kMargin * *tolerance;
 }
 
-std::vector<Difference> coarse_differences(const ComparedCell& a, const ComparedCell& b) {
-  std::vector<Difference> all;
-  if (auto difference = coarse_status_difference(a, b)) all.push_back(std::move(*difference));
-  const auto then = reached_by(a, a.aim), now = reached_by(b, a.aim);
-  for (std::size_t t = 0; t < now.size(); ++t) {
-    const std::size_t reached = a.perturbed->reached[t] + then[t];
-    const std::size_t runs = a.perturbed->statuses.size() + 1;
-    if (now[t] ? reached > 0 : reached < runs) continue;
-    const std::string what = fmt::format("target {}", kTolerances[t].name);
-    all.push_back(now[t] ? difference_in(a, Change::better, what, "missed", "reached")
-                         : difference_in(a, Change::worse, what, "reached", "missed"));
+Differences coarse_differences(const ComparedCell& a, const ComparedCell& b) {
+  Differences all;
+  add_coarse_status(a, b, all);
+  for (std::size_t t = 0; t < kTolerances.size(); ++t) {
+    const bool is_reached = has_reached(b, a.criterion.aim, t);
+    const std::size_t reached = a.perturbed->reached[t] + has_reached(a, a.criterion.aim, t);
+    if (is_reached ? reached > 0 : reached <= a.perturbed->statuses.size()) continue;
+    all.push_back(difference_in(a, is_reached ? Change::better : Change::worse,
+                                fmt::format("target {}", kTolerances[t].name),
+                                is_reached ? "missed" : "reached",
+                                is_reached ? "reached" : "missed"));
   }
   for (Difference& one : all) one.note = "chaotic: compared by status and coarse targets";
   return all;
+}
+
+namespace {
+
+std::string value_text(const OptionValue& value) {
+  const Real* const number = std::get_if<Real>(&value);
+  return number == nullptr ? option_text(value) : exact_figure(*number);
+}
+
+bool is_set_in(const std::string& spec, const std::string& option) {
+  const auto options = parse_spec(spec).options;
+  return std::ranges::find(options, option, [](const auto& set) { return set.first; }) !=
+         options.end();
+}
+
+// Paired by what was asked, two differ in an option only by a default or by a table of rates. An
+// empty option equals one that did not exist yet.
+void add_changes(const Component& a, const Component& b, std::set<std::string>& changes) {
+  std::set<std::string> options;
+  for (const Component* side : {&a, &b})
+    for (const NamedOption& each : side->options) options.insert(each.name);
+  for (const std::string& option : options) {
+    const OptionValue *const old = a.options.find(option), *const now = b.options.find(option);
+    if (old != nullptr && now != nullptr ? *old == *now : option_text(*(old ? old : now)).empty())
+      continue;
+    const std::string change =
+        old == nullptr ? fmt::format("new option {} {}", option, value_text(*now))
+        : now == nullptr
+            ? fmt::format("option {} was removed; it was {}", option, value_text(*old))
+            : fmt::format(
+                  "{} {} {} → {}",
+                  is_set_in(a.spec, option) && is_set_in(b.spec, option) ? "tabled" : "default of",
+                  option, value_text(*old), value_text(*now));
+    changes.insert(a.name + ": " + change);
+  }
+}
+
+}  // namespace
+
+std::set<std::string> changed_options(const ComparedCell& before, const ComparedCell& after) {
+  std::set<std::string> changes;
+  if (before.problem != after.problem) add_changes(*before.problem, *after.problem, changes);
+  if (before.optimizer != after.optimizer)
+    add_changes(*before.optimizer, *after.optimizer, changes);
+  return changes;
+}
+
+std::vector<std::string> changed_parts(const ComparedCell& before, const ComparedCell& after) {
+  if (before.build == after.build) return {};
+  std::vector<std::string> changes;
+  for (const auto& [part, text] :
+       {std::pair("platform", "another platform (compiler, flags, libraries or kernel)"),
+        {"harness", "another harness (core, meter or run loop)"},
+        {"problem", "another source of the problem"},
+        {"network", "another source of the network"},
+        {"optimizer", "another source of the optimizer"}}) {
+    const auto old = before.parts->find(part), now = after.parts->find(part);
+    if (old != before.parts->end() && now != after.parts->end() && old->second != now->second)
+      changes.emplace_back(text);
+  }
+  if (changes.empty()) changes.emplace_back("another build");
+  return changes;
 }
 
 }  // namespace isoline::reports

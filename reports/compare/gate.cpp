@@ -1,21 +1,197 @@
-// Pairs two sets of cells, compares their figures, judges their times, and concludes.
+// Pairs two sets of cells, compares their figures, judges their times, and concludes; and the
+// conclusion as sentences and tables, which the formats of reports lay out, and as JSON.
 #include "reports/compare/gate.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <nlohmann/json.hpp>
+#include <span>
 #include <tuple>
 
 #include "core/errors.h"
 #include "core/files.h"
 #include "core/json.h"
-#include "reports/compare/baseline.h"
+#include "reports/formats/formats.h"
 #include "reports/sections/words.h"
 
 namespace isoline::reports {
+namespace {
+
+std::string change_name(Change change) {
+  constexpr const char* kNames[] = {"worse", "better", "changed"};
+  return kNames[static_cast<std::size_t>(change)];
+}
+
+std::string time_change_name(int change) {
+  return change == 0 ? "same" : change > 0 ? "slower" : "faster";
+}
+
+// "+5 %, and 3 more of its kind"; "12×" for more than tenfold; no ratio where none says anything.
+std::string remainder_text(const Difference& difference) {
+  constexpr Real kTimes = 9;
+  const Real relative = difference.relative;
+  if (relative == 0 || std::abs(relative) == kNever) return difference.note;
+  const std::string ratio = relative > kTimes ? fmt::format("{:.3g}×", 1 + relative)
+                                              : fmt::format("{}{:.3g} %", relative > 0 ? "+" : "−",
+                                                            100 * std::abs(relative));
+  return ratio + (difference.note.empty() ? "" : ", " + difference.note);
+}
+
+// "adam, gd", or how many there are.
+std::string few_names(const std::set<std::string>& names, const char* noun) {
+  constexpr std::size_t kFew = 3;
+  if (names.size() > kFew) return counted(names.size(), noun);
+  return joined({names.begin(), names.end()});
+}
+
+// "3 worse, 2 better"; zero counts are omitted.
+std::string counts_text(std::initializer_list<std::pair<std::size_t, const char*>> counts) {
+  std::vector<std::string> words;
+  for (const auto& [number, word] : counts)
+    if (number > 0) words.push_back(fmt::format("{} {}", number, word));
+  return joined(words);
+}
+
+std::string step_text(const Difference& difference) {
+  return fmt::format("{} {} → {}", difference.what, difference.before, difference.after);
+}
+
+std::string ratio_text(const RatioEstimate& ratio) {
+  return fmt::format("{:.3g}× ({:.3g} to {:.3g})", ratio.ratio, ratio.low, ratio.high);
+}
+
+std::string cells_text(const CauseGroup& group) {
+  return fmt::format("{} of {} on {}", counted(group.cells.size(), "cell"),
+                     few_names(group.optimizers, "optimizer"),
+                     few_names(group.problems, "problem"));
+}
+
+// "3 cells in both: 3 equal; differences: 1 worse".
+std::string summary_text(const GateResult& result) {
+  const auto count = [&](Change change) {
+    return static_cast<std::size_t>(
+        std::ranges::count(result.differences, change, &Difference::change));
+  };
+  const std::string cells = counts_text({{result.equal, "equal"},
+                                         {result.chaotic, "chaotic"},
+                                         {result.incomparable.size(), "not comparable"}});
+  const std::string differences = counts_text({{count(Change::worse), "worse"},
+                                               {count(Change::better), "better"},
+                                               {count(Change::changed), "changed"}});
+  return fmt::format("{} in both{}{}{}{}", counted(result.joined, "cell"),
+                     cells.empty() ? "" : ": ", cells,
+                     differences.empty() ? "" : "; differences: ", differences);
+}
+
+using Row = std::vector<TableCell>;
+
+// A table without rows is left out.
+template <class Value, class ToRow>
+void add_table(Section& section, const std::string& title, const std::vector<std::string>& columns,
+               const std::string& align, const std::vector<Value>& all, ToRow row) {
+  if (all.empty()) return;
+  Table table{.title = fmt::format("{} ({})", title, all.size()),
+              .columns = columns,
+              .align = align,
+              .names = columns.size() > 1};
+  for (const Value& value : all) table.rows.push_back(row(value));
+  section.tables.push_back(std::move(table));
+}
+
+Row line(const std::string& text) { return {text}; }
+Row reasoned(const ReasonedCell& cell) { return {cell.title, cell.reason}; }
+
+// The verdict is its title; then the counts, the causes and what else must be known. Differences
+// have a table a cause, in the order of the causes.
+Section gate_section(const GateResult& result, bool lists_all) {
+  constexpr std::size_t kMostCauses = 8;
+  Section section{.id = "comparison", .title = "Comparison: " + result.verdict};
+  const auto say = [&](const char* title, const std::string& text) {
+    section.readings.push_back({title, text + "."});
+  };
+  say("", summary_text(result));
+  const std::size_t causes = result.causes.size();
+  const std::size_t told = lists_all ? causes : std::min(kMostCauses, causes);
+  for (const CauseGroup& cause : std::span(result.causes).first(told))
+    say("Cause", fmt::format("{}: {}", cause.cause, cause_group_text(cause)));
+  if (told < causes)
+    say("", fmt::format("{} more; --all lists them", counted(causes - told, "cause")));
+  for (const std::string& remark : result.remarks) say("", remark);
+  for (const CauseGroup& cause : result.causes) {
+    Differences its;
+    std::ranges::copy_if(result.differences, std::back_inserter(its),
+                         [&](const Difference& one) { return one.cause == cause.cause; });
+    add_table(section, "Differences: " + cause.cause, {"", "cell", "figure", "change"}, "llll", its,
+              [](const Difference& one) -> Row {
+                return {change_name(one.change),
+                        one.title,
+                        step_text(one),
+                        {remainder_text(one), {{"relative", one.relative}}}};
+              });
+  }
+  add_table(section, "Builds that differ", {"part"}, "", result.builds, line);
+  add_table(section, "Options that differ", {"option"}, "", result.settings, line);
+  add_table(
+      section, "Time, NEW over BASE",
+      {"", "cell", "ratio (95 % interval)", "noise", "p, adjusted", "runs"}, "llrrrr", result.times,
+      [](const TimeVerdict& time) -> Row {
+        return {time_change_name(time.change),
+                time.title,
+                {ratio_text(time.ratio),
+                 {{"ratio", time.ratio.ratio}, {"low", time.ratio.low}, {"high", time.ratio.high}}},
+                fmt::format("±{}", percent(time.noise)),
+                fmt::format("{:.2g}", time.adjusted),
+                fmt::format("{}, {}", time.n_before, time.n_after)};
+      });
+  add_table(section, "Only in BASE", {"cell"}, "", result.only_before, line);
+  add_table(section, "Allowed", {"cell", "reason"}, "ll", result.allowed, reasoned);
+  add_table(section, "Not comparable", {"cell", "reason"}, "ll", result.incomparable, reasoned);
+  add_table(section, "Only in NEW", {"cell"}, "", result.only_after, line);
+  return section;
+}
+
+}  // namespace
+
+std::string cause_group_text(const CauseGroup& group) {
+  return fmt::format("{}: {}", cells_text(group),
+                     counts_text({{group.count(Change::worse), "worse"},
+                                  {group.count(Change::better), "better"},
+                                  {group.count(Change::changed), "changed"},
+                                  {group.incomparable, "not comparable"}}));
+}
+
+std::string gate_terminal(const GateResult& result, bool lists_all) {
+  const Section section = gate_section(result, lists_all);
+  return terminal_text(section.title) + "\n\n" +
+         terminal_section(section, lists_all ? kAllRows : kFewRows);
+}
+
+// The rows of each table that a reader reads.
+std::string gate_markdown(const GateResult& result) {
+  constexpr std::size_t kMostRows = 40;
+  Section section = gate_section(result, false);
+  for (Table& table : section.tables) {
+    if (table.rows.size() <= kMostRows) continue;
+    table.caption =
+        fmt::format("{} more are left out here; --json lists them.", table.rows.size() - kMostRows);
+    table.rows.resize(kMostRows, {""});
+  }
+  return markdown_section(section);
+}
+
+std::string gate_json(const GateResult& result) {
+  Json json = section_json(gate_section(result, true));
+  json.update({{"schema", "isoline.comparison/2"},
+               {"verdict", result.verdict},
+               {"exit_code", static_cast<int>(result.exit_code)},
+               {"joined", result.joined},
+               {"equal", result.equal},
+               {"chaotic", result.chaotic}});
+  return json_text(json, 1) + "\n";
+}
+
+// --- the gate
 namespace {
 
 // Why figures of the two cannot be compared; empty where they can.
@@ -33,18 +209,17 @@ std::string why_incomparable(const ComparedCell& a, const ComparedCell& b,
 
 // "curve", "message, claimed": what of the records differs where all figures agree.
 Difference silent_difference(const ComparedCell& a, const ComparedCell& b) {
-  Difference difference = difference_in(a, Change::changed, "trace", a.trace, b.trace);
-  difference.note = "the path differs, all compared figures agree";
-  if (a.trace != b.trace) return difference;
-  std::map<std::string_view, std::array<std::uint64_t, 2>> members;  // of none 0
-  for (const auto& [name, digest] : a.members) members[name][0] = digest;
-  for (const auto& [name, digest] : b.members) members[name][1] = digest;
-  std::vector<std::string> names;
-  for (const auto& [name, digests] : members)
-    if (digests[0] != digests[1]) names.emplace_back(name);
-  difference = difference_in(a, Change::changed, "record", a.rest, b.rest);
-  if (!names.empty() && !a.members.empty()) difference.what = joined(names);
-  difference.note = "its path and all compared figures agree";
+  const bool is_path = a.trace != b.trace;
+  std::vector<std::pair<std::string_view, std::uint64_t>> members;
+  if (!is_path && !a.members.empty())  // a baseline holds one digest of them all
+    std::ranges::set_symmetric_difference(a.members, b.members, std::back_inserter(members));
+  std::set<std::string> names;
+  for (const auto& [name, digest] : members) names.emplace(name);
+  if (names.empty()) names.insert(is_path ? "trace" : "record");
+  Difference difference = difference_in(a, Change::changed, joined({names.begin(), names.end()}),
+                                        is_path ? a.trace : a.rest, is_path ? b.trace : b.rest);
+  difference.note = is_path ? "the path differs, all compared figures agree"
+                            : "its path and all compared figures agree";
   return difference;
 }
 
@@ -54,30 +229,12 @@ CauseGroup& group_of(std::vector<CauseGroup>& groups, const std::string& cause) 
   return groups.emplace_back(CauseGroup{.cause = cause});
 }
 
-void count(CauseGroup& group, const Difference& difference) {
-  if (difference.is_rounding) {
-    group.most_rounding = std::max(group.most_rounding, std::abs(difference.relative));
-    return;
-  }
-  auto& keys = difference.change == Change::worse    ? group.worse
-               : difference.change == Change::better ? group.better
-                                                     : group.changed;
-  keys.insert(difference.key);
-}
-
-// "all 4 of adam, 7 of 10 of gd".
-std::string lack_text(const std::vector<const ComparedCell*>& lacking,
-                      const std::vector<ComparedCell>& all) {
-  std::map<std::string, std::pair<std::size_t, std::size_t>> counts;  // lacking, of all
-  for (const ComparedCell* cell : lacking) ++counts[cell->optimizer.name].first;
-  for (const ComparedCell& cell : all)
-    if (const auto at = counts.find(cell.optimizer.name); at != counts.end()) ++at->second.second;
-  std::vector<std::string> names;
-  for (const auto& [name, count] : counts)
-    names.push_back(count.first == count.second
-                        ? fmt::format("all {} of {}", count.second, name)
-                        : fmt::format("{} of {} of {}", count.first, count.second, name));
-  return names_text(names);
+// Why the two of a pair may differ, or that nothing of them explains it.
+std::string cause_of(const ComparedCell& before, const ComparedCell& after) {
+  const std::set<std::string> options = changed_options(before, after);
+  std::vector<std::string> causes(options.begin(), options.end());
+  std::ranges::copy(changed_parts(before, after), std::back_inserter(causes));
+  return causes.empty() ? "the same build and options" : joined(causes);
 }
 
 class Gate {
@@ -86,16 +243,9 @@ class Gate {
 
   GateResult run(const std::vector<ComparedCell>& before, const std::vector<ComparedCell>& after) {
     const Pairs pairs = paired(before, after);
-    for (const auto& [a, b] : pairs.both)
-      if (a->key == b->key || a->terms == b->terms)
-        compare(*a, *b);
-      else
-        part(*a, *b);
-    for (const ComparedCell* cell : pairs.only_before)
-      if (!is_allowed(*cell, false)) lacking_.push_back(cell);
-    for (const ComparedCell* cell : lacking_) result_.only_before.push_back(cell->title);
+    for (const auto& [a, b] : pairs.both) compare(*a, *b);
     for (const ComparedCell* cell : pairs.only_after) result_.only_after.push_back(cell->title);
-    result_.lack = lack_text(lacking_, before);
+    add_lack(pairs.only_before);
     name_what_changed();
     choose_timed();
     result_.times = judge_times(timed_, options_.least_noise);
@@ -112,33 +262,36 @@ class Gate {
     offer_times(a, b);
     std::string reason = why_incomparable(a, b, options_);
     const std::string criterion = criterion_change_text(a, b, options_.tolerance);
-    if (!criterion.empty() && a.doubt.empty() && b.doubt.empty() && !is_allowed(a, true))
+    const bool is_doubtful = !a.doubt.empty() || !b.doubt.empty();
+    if (!criterion.empty() && !is_doubtful && !is_allowed(a, true))
       reason = "success is judged by another criterion: " + criterion;
     if (reason.empty()) return judge(a, b);
+    const auto is_lost = [](const ComparedCell& cell) {  // it went wrong, or does not apply
+      return is_failure(cell.status) || cell.status == Status::inapplicable;
+    };
     const bool tells_status = a.is_cut || b.is_cut ? badness_of(a.status) != badness_of(b.status)
                                                    : is_lost(a) != is_lost(b);
-    if (tells_status && a.doubt.empty() && b.doubt.empty())
-      return keep({status_difference(a, b)}, a, b);
+    if (tells_status && !is_doubtful) return keep({status_difference(a, b)}, a, b);
     result_.incomparable.push_back({a.title, reason});
     CauseGroup& group = group_of(result_.causes, reason);
     group.add(a);
     ++group.incomparable;
   }
 
-  void keep(std::vector<Difference> found, const ComparedCell& a, const ComparedCell& b) {
+  void keep(Differences found, const ComparedCell& a, const ComparedCell& b) {
     if (found.empty()) return;
     const std::string cause = cause_of(a, b);
     CauseGroup& group = group_of(result_.causes, cause);
     group.add(a);
     for (Difference& difference : found) {
-      count(group, difference);
+      group.changes[difference.change].insert(difference.key);
       difference.cause = cause;
       result_.differences.push_back(std::move(difference));
     }
   }
 
   void judge(const ComparedCell& a, const ComparedCell& b) {
-    std::vector<Difference> found = figure_differences(a, b, options_.tolerance);
+    Differences found = figure_differences(a, b, options_.tolerance);
     if (a.status != b.status) found.insert(found.begin(), status_difference(a, b));
     if (found.empty() && !options_.tolerance && (a.trace != b.trace || a.rest != b.rest))
       found.push_back(silent_difference(a, b));
@@ -149,27 +302,39 @@ class Gate {
     keep(std::move(found), a, b);
   }
 
+  // The first entry of its kind that names the cell.
   bool is_allowed(const ComparedCell& cell, bool is_of_criterion) {
-    const auto entry = entry_for(options_.allowed, cell, is_of_criterion);
-    if (entry == options_.allowed.end()) return false;
-    result_.allowed.push_back({cell.title, entry->reason});
-    is_used_[static_cast<std::size_t>(entry - options_.allowed.begin())] = true;
-    return true;
+    for (std::size_t i = 0; i < is_used_.size(); ++i) {
+      const AllowedCells& entry = options_.allowed[i];
+      if (entry.is_of_criterion != is_of_criterion || !is_of(entry, cell)) continue;
+      result_.allowed.push_back({cell.title, entry.reason});
+      return is_used_[i] = true;
+    }
+    return false;
   }
 
-  // Another budget is another question: NEW lacks the cell of BASE, and has one of its own.
-  void part(const ComparedCell& a, const ComparedCell& b) {
-    result_.only_after.push_back(b.title);
-    if (is_allowed(a, false)) return;
-    result_.only_before.push_back(a.title);
-    group_of(result_.other_terms, change_of_terms(a, b)).add(a);
+  // Another budget is another question: both sides have a cell of that title then.
+  void add_lack(const std::vector<const ComparedCell*>& only_before) {
+    const std::set<std::string> others(result_.only_after.begin(), result_.only_after.end());
+    CauseGroup lacking;
+    std::size_t elsewise = 0;
+    for (const ComparedCell* cell : only_before) {
+      if (is_allowed(*cell, false)) continue;
+      result_.only_before.push_back(cell->title);
+      lacking.add(*cell);
+      elsewise += others.contains(cell->title);
+    }
+    if (lacking.cells.empty()) return;
+    result_.lack = fmt::format("NEW lacks {} that BASE has", cells_text(lacking));
+    if (elsewise > 0)
+      result_.lack += fmt::format(" ({} with another budget or other threads in NEW)", elsewise);
   }
 
   void name_what_changed() {
     for (std::vector<CauseGroup>* groups : {&parts_, &settings_})
       std::ranges::sort(*groups, {}, &CauseGroup::cause);
     for (const CauseGroup& group : parts_)
-      result_.builds.push_back(fmt::format("{} ({})", group.cause, group.cells_text()));
+      result_.builds.push_back(fmt::format("{} ({})", group.cause, cells_text(group)));
     for (const CauseGroup& group : settings_)  // which name their component
       result_.settings.push_back(
           fmt::format("{} ({})", group.cause, counted(group.cells.size(), "cell")));
@@ -183,9 +348,6 @@ class Gate {
 
   void offer_times(const ComparedCell& a, const ComparedCell& b) {
     senseless_ += a.senseless_times + b.senseless_times;
-    const bool is_listed = std::ranges::any_of(
-        options_.timed, [&](const std::string& start) { return a.key.starts_with(start); });
-    if (!options_.timed.empty() && !is_listed) return;
     if (std::min(a.seconds.size(), b.seconds.size()) < kLeastRepetitions)
       too_few_ += !a.seconds.empty() && !b.seconds.empty();
     else if (a.processor != b.processor)
@@ -197,10 +359,6 @@ class Gate {
   // The slowest of BASE, which say most and whose choice knows nothing of what changed.
   void choose_timed() {
     if (timed_.size() <= kMostTimed) return;
-    require(options_.timed.empty(), [&] {
-      return fmt::format("time is judged on at most {} cells, {} are listed", kMostTimed,
-                         timed_.size());
-    });
     skipped_ = timed_.size() - kMostTimed;
     std::ranges::stable_sort(timed_, std::greater(),
                              [](const TimedCell& cell) { return median_of(cell.before); });
@@ -213,70 +371,50 @@ class Gate {
                         std::string_view(d.title));
     });
     std::ranges::stable_sort(result_.causes, std::greater(), [](const CauseGroup& group) {
-      return std::tuple(!group.worse.empty(), group.incomparable > 0, group.cells.size());
+      return std::tuple(group.count(Change::worse) > 0, group.incomparable > 0, group.cells.size());
     });
   }
 
-  void remark(std::size_t number, const char* noun, const std::string& text) {
-    if (number > 0) result_.remarks.push_back(fmt::format("{} {}", counted(number, noun), text));
-  }
-
   void add_remarks() {
-    remark(result_.chaotic, "chaotic cell",
-           "judged by status and by which of the targets 1e-1, 1e-3, 1e-6 it reaches: the figures "
-           "moved by more than a tenth of the tolerance when the start was perturbed in the last "
-           "bit");
-    remark(too_few_, "cell",
-           fmt::format("with too few repetitions for a verdict on time: {} a side are needed (run "
-                       "--repeat {} --exclusive)",
-                       kLeastRepetitions, kLeastRepetitions));
-    remark(senseless_, "timing", "left out: not positive and finite");
-    remark(other_processors_, "cell", "timed on another processor: times are not comparable");
-    remark(skipped_, "cell",
-           fmt::format("more with enough repetitions; time is judged on the {} slowest "
-                       "(--time-cells lists others)",
-                       kMostTimed));
+    const std::tuple<std::size_t, const char*, std::string> all[] = {
+        {result_.chaotic, "chaotic cell",
+         "judged by status and by which of the targets 1e-1, 1e-3, 1e-6 it reaches: the figures "
+         "moved by more than a tenth of the tolerance when the start was perturbed in the last "
+         "bit"},
+        {too_few_, "cell",
+         fmt::format("with too few repetitions for a verdict on time: {0} a side are needed (run "
+                     "--repeat {0} --exclusive)",
+                     kLeastRepetitions)},
+        {senseless_, "timing", "left out: not positive and finite"},
+        {other_processors_, "cell", "timed on another processor: times are not comparable"},
+        {skipped_, "cell",
+         fmt::format("more with enough repetitions; time is judged on the {} slowest",
+                     kMostTimed)}};
+    for (const auto& [number, noun, text] : all)
+      if (number > 0) result_.remarks.push_back(fmt::format("{} {}", counted(number, noun), text));
   }
 
   const GateOptions& options_;
   std::vector<bool> is_used_;                 // of the entries of the list of allowed cells
-  std::vector<const ComparedCell*> lacking_;  // in NEW, whatever its budget
   std::vector<CauseGroup> parts_, settings_;  // all that differs, with and without an effect
   std::vector<TimedCell> timed_;
   std::size_t too_few_ = 0, other_processors_ = 0, skipped_ = 0, senseless_ = 0;
   GateResult result_;
 };
 
-// "26 cells of adam, most in sine × adam, seed 0: loss 1e-3 → 2": of what rounding does not
-// explain, or else of what it does.
+// "26 cells of adam on sine, most in sine × adam, seed 0: loss 1e-3 → 2".
 std::string worst_text(const GateResult& result, Change change) {
-  const Difference *worst = nullptr, *rounded = nullptr;
+  const Difference* worst = nullptr;
   CauseGroup group;
   for (const Difference& difference : result.differences) {  // worst first
     if (difference.change != change) continue;
-    const Difference*& first = difference.is_rounding ? rounded : worst;
-    if (first == nullptr) first = &difference;
-    if (difference.is_rounding) continue;
+    if (worst == nullptr) worst = &difference;
     group.cells.insert(difference.key);
+    group.problems.insert(difference.problem);
     group.optimizers.insert(difference.optimizer);
   }
-  if (worst != nullptr)
-    return fmt::format("{} of {}, most in {}: {}", counted(group.cells.size(), "cell"),
-                       names_text({group.optimizers.begin(), group.optimizers.end()}), worst->title,
-                       step_text(*worst));
-  if (rounded == nullptr) return "";
-  return fmt::format("by rounding alone, most in {}: {}", rounded->title, step_text(*rounded));
-}
-
-std::string lack_cause(const GateResult& result) {
-  if (result.only_before.empty()) return "";
-  std::vector<std::string> names;
-  for (const CauseGroup& terms : result.other_terms)
-    names.push_back(
-        fmt::format("{} with another budget in NEW, {}", terms.cells.size(), terms.cause));
-  if (!result.lack.empty()) names.push_back(result.lack);
-  return fmt::format("NEW lacks {} of BASE ({})", counted(result.only_before.size(), "cell"),
-                     joined(names));
+  if (worst == nullptr) return "";
+  return fmt::format("{}, most in {}: {}", cells_text(group), worst->title, step_text(*worst));
 }
 
 std::string time_cause(const std::vector<TimeVerdict>& times, int change, const char* word) {
@@ -287,56 +425,37 @@ std::string time_cause(const std::vector<TimeVerdict>& times, int change, const 
                      first->title, ratio_text(first->ratio));
 }
 
-std::string incomparable_cause(const std::vector<ReasonedCell>& all) {
-  const std::string first = all[0].title + ": " + all[0].reason;
-  return all.size() == 1 ? first : fmt::format("{} cells, as {}", all.size(), first);
-}
-
-std::string settings_cause(const std::vector<std::string>& settings) {
-  if (settings.size() <= 1) return joined(settings);
-  return fmt::format("{}, and {} of options", settings[0],
-                     counted(settings.size() - 1, "other change"));
-}
-
 // The sentence and the exit code: worse before not comparable before better, each with its causes.
 void conclude(GateResult& result, const GateOptions& options) {
-  const auto has = [&](Change change) {
-    return std::ranges::find(result.differences, change, &Difference::change) !=
-           result.differences.end();
-  };
   const auto settle = [&](ExitCode code, const char* verdict, std::vector<std::string> causes) {
     std::erase(causes, "");
     result.exit_code = code;
     result.verdict = verdict + (causes.empty() ? "" : ": " + joined(causes, "; "));
   };
-  const std::string settings = settings_cause(result.settings);
-  const std::string lacks = options.is_common_only ? "" : lack_cause(result);
-  const std::string slower = time_cause(result.times, 1, "slower");
-  const std::string faster = time_cause(result.times, -1, "faster");
-  if (has(Change::worse) || !slower.empty() || !lacks.empty())
-    settle(kWorse, "worse", {settings, lacks, worst_text(result, Change::worse), slower});
-  else if (result.joined == 0)
+  const std::size_t others = result.settings.empty() ? 0 : result.settings.size() - 1;
+  const std::string settings = others == 0
+                                   ? joined(result.settings)
+                                   : fmt::format("{}, and {} of options", result.settings[0],
+                                                 counted(others, "other change"));
+  const std::string lack = options.is_common_only ? "" : result.lack;
+  const std::string worse = worst_text(result, Change::worse),
+                    better = worst_text(result, Change::better),
+                    slower = time_cause(result.times, 1, "slower"),
+                    faster = time_cause(result.times, -1, "faster");
+  if (!worse.empty() || !slower.empty() || !lack.empty()) {
+    settle(kWorse, "worse", {settings, lack, worse, slower});
+  } else if (result.joined == 0) {
     settle(kNotComparable, "not comparable", {"no cell is in both"});
-  else if (!result.incomparable.empty())
+  } else if (const auto& all = result.incomparable; !all.empty()) {
+    const std::string first = all[0].title + ": " + all[0].reason;
     settle(kNotComparable, "not comparable in part, nothing worse in the rest",
-           {incomparable_cause(result.incomparable)});
-  else if (has(Change::better) || !faster.empty())
-    settle(kBetterOnly, "better, nothing worse",
-           {settings, worst_text(result, Change::better), faster});
-  else if (has(Change::changed) || !result.settings.empty())
-    settle(kGood, "changed, neither better nor worse", {settings});
-  else
-    settle(kGood, "equal", {});
-}
-
-void remark_on(const FolderCells& found, const std::filesystem::path& path,
-               std::vector<std::string>& remarks) {
-  if (found.unreadable > 0)
-    remarks.push_back(fmt::format("{} of {} could not be read", counted(found.unreadable, "file"),
-                                  path.string()));
-  if (found.superseded > 0)
-    remarks.push_back(fmt::format("{} of {} left aside for newer builds of the same cells",
-                                  counted(found.superseded, "older record"), path.string()));
+           {all.size() == 1 ? first : fmt::format("{} cells, as {}", all.size(), first)});
+  } else if (!better.empty() || !faster.empty()) {
+    settle(kBetterOnly, "better, nothing worse", {settings, better, faster});
+  } else {
+    const bool is_equal = result.differences.empty() && settings.empty();
+    settle(kGood, is_equal ? "equal" : "changed, neither better nor worse", {settings});
+  }
 }
 
 // The file where it is a baseline; nothing of a folder.
@@ -356,14 +475,8 @@ std::optional<std::vector<ComparedCell>> read_baseline(const std::filesystem::pa
 
 void CauseGroup::add(const ComparedCell& cell) {
   cells.insert(cell.key);
-  problems.insert(cell.problem.name);
-  optimizers.insert(cell.optimizer.name);
-}
-
-std::size_t CauseGroup::rounded() const {
-  std::set<std::string> others = worse;
-  for (const auto* some : {&better, &changed}) others.insert(some->begin(), some->end());
-  return cells.size() - others.size() - incomparable;
+  problems.insert(cell.problem->name);
+  optimizers.insert(cell.optimizer->name);
 }
 
 GateResult compare_results(const std::filesystem::path& before, const std::filesystem::path& after,
@@ -379,8 +492,15 @@ GateResult compare_results(const std::filesystem::path& before, const std::files
   GateResult result = Gate(options).run(old.cells, now.cells);
   conclude(result, options);
   if (baseline) result.remarks.push_back("a baseline holds no times: none is judged");
-  remark_on(old, before, result.remarks);
-  remark_on(now, after, result.remarks);
+  for (const auto& [found, path] : {std::pair(&std::as_const(old), before), {&now, after}}) {
+    if (found->unreadable > 0)
+      result.remarks.push_back(fmt::format("{} of {} could not be read",
+                                           counted(found->unreadable, "file"), path.string()));
+    if (found->superseded > 0)
+      result.remarks.push_back(fmt::format("{} of {} left aside for newer builds of the same cells",
+                                           counted(found->superseded, "older record"),
+                                           path.string()));
+  }
   return result;
 }
 

@@ -1,11 +1,10 @@
-// The report as tidy CSV: one row a run, and one for each planned cell that has not run; and one
-// row a figure of the statistics.
+// The report as tidy CSV: one row a run or planned cell that has not run, one row a figure of the
+// statistics, and one row a point of a curve.
 #include <fmt/format.h>
 
 #include <functional>
 
 #include "core/oracle.h"
-#include "reports/formats/escape.h"
 #include "reports/formats/formats.h"
 #include "reports/sections/words.h"
 
@@ -16,68 +15,51 @@ struct CsvColumn {
   std::string name;
   std::function<std::string(const Run&)> text;
 };
-
-void add_reached(std::vector<CsvColumn>& columns, const Yardstick& yardstick, const char* what,
-                 Measure by) {
-  for (std::size_t t = 0; t < kTolerances.size(); ++t)
-    columns.push_back({fmt::format("{}_to_{}", what, yardstick.tolerances[t].name),
-                       [by, target = yardstick.tolerances[t].rung](const Run& run) {
-                         return exact_figure(run.taken(by, target));
-                       }});
-}
-
 using CsvColumns = std::vector<CsvColumn>;
-
-void add(CsvColumns& columns, const char* name, Real Summary::*value) {
-  columns.push_back(
-      {name, [value](const Run& run) { return exact_figure(run.record->summary.*value); }});
-}
-void add(CsvColumns& columns, const char* name, std::int64_t Summary::*value) {
-  columns.push_back(
-      {name, [value](const Run& run) { return std::to_string(run.record->summary.*value); }});
-}
-void add(CsvColumns& columns, const char* name, std::string (*text)(const Record&)) {
-  columns.push_back({name, [text](const Run& run) { return csv_field(text(*run.record)); }});
-}
-
-std::string count_of(const Run& run, std::size_t kind) {
-  return std::to_string(run.record->counts[kind]);
-}
-std::string is_timed_alone(const Run& run) { return run.is_timed_alone ? "true" : "false"; }
-
-void add_figures(CsvColumns& columns, const Yardstick& yardstick) {
-  add(columns, "iterations", &Summary::iterations);
-  add(columns, "work", &Summary::work);
-  add(columns, "start_loss", &Summary::start_loss);
-  add(columns, "loss", &Summary::loss);
-  add(columns, "best_loss", &Summary::best_loss);
-  add(columns, "x_error", &Summary::x_error);
-  add_reached(columns, yardstick, "work", Measure::work);
-  add_reached(columns, yardstick, "cost", Measure::cost);
-  add_reached(columns, yardstick, "seconds", Measure::time);
-  add_reached(columns, yardstick, "iterations", Measure::iterations);
-  columns.push_back({"cost", [](const Run& run) { return exact_figure(run.spent); }});
-  for (std::size_t kind = 0; kind < kOracles; ++kind)
-    columns.push_back(
-        {std::string(kOracleNames[kind]), [kind](const Run& run) { return count_of(run, kind); }});
-  add(columns, "wall_seconds", &Summary::wall_seconds);
-  columns.push_back({"timed_alone", is_timed_alone});
-  add(columns, "peak_memory_bytes", &Summary::peak_memory_bytes);
-}
 
 CsvColumns columns_of_runs(const Yardstick& yardstick) {
   CsvColumns columns;
-  add(columns, "problem", [](const Record& record) { return record.request.problem.spec; });
-  add(columns, "optimizer", [](const Record& record) { return record.request.optimizer.spec; });
-  add(columns, "seed", [](const Record& record) { return std::to_string(record.request.seed); });
-  add(columns, "status", [](const Record& record) { return std::string(name_of(record.status)); });
-  add_figures(columns, yardstick);
-  add(columns, "privileges", [](const Record& record) { return joined(record.privileges, "; "); });
-  add(columns, "message", [](const Record& record) { return record.message; });
-  add(columns, "claimed", [](const Record& record) { return record.claimed; });
-  add(columns, "cell", [](const Record& record) { return record.cell; });
-  add(columns, "build", [](const Record& record) { return record.build; });
-  add(columns, "command", [](const Record& record) { return rerun_command(record.request); });
+  const auto add = [&](const std::string& name, auto text) {
+    columns.push_back({name, [text](const Run& run) { return csv_field(text(*run.record)); }});
+  };
+  const auto add_figure = [&](const std::string& name, auto value) {
+    columns.push_back(
+        {name, [value](const Run& run) { return exact_figure(static_cast<Real>(value(run))); }});
+  };
+  const auto add_summary = [&](const char* name, auto member) {
+    add_figure(name, [member](const Run& run) { return run.record->summary.*member; });
+  };
+  add("problem", [](const Record& record) { return record.request.problem.spec; });
+  add("optimizer", [](const Record& record) { return record.request.optimizer.spec; });
+  add("seed", [](const Record& record) { return std::to_string(record.request.seed); });
+  add("status", [](const Record& record) { return name_of(record.status); });
+  add_summary("iterations", &Summary::iterations);
+  add_summary("work", &Summary::work);
+  add_summary("start_loss", &Summary::start_loss);
+  add_summary("loss", &Summary::loss);
+  add_summary("best_loss", &Summary::best_loss);
+  add_summary("x_error", &Summary::x_error);
+  for (const auto& [what, by] : {std::pair("work", Measure::work),
+                                 {"cost", Measure::cost},
+                                 {"seconds", Measure::time},
+                                 {"iterations", Measure::iterations}})
+    for (const Tolerance& tolerance : yardstick.tolerances)
+      add_figure(fmt::format("{}_to_{}", what, tolerance.name),
+                 [by, target = tolerance.rung](const Run& run) { return run.taken(by, target); });
+  add_figure("cost", [](const Run& run) { return run.spent; });
+  for (std::size_t kind = 0; kind < kOracles; ++kind)
+    add_figure(std::string(kOracleNames[kind]),
+               [kind](const Run& run) { return run.record->counts[kind]; });
+  add_summary("wall_seconds", &Summary::wall_seconds);
+  columns.push_back(
+      {"timed_alone", [](const Run& run) { return run.is_timed_alone ? "true" : "false"; }});
+  add_summary("peak_memory_bytes", &Summary::peak_memory_bytes);
+  add("privileges", [](const Record& record) { return joined(record.privileges, "; "); });
+  add("message", [](const Record& record) { return record.message; });
+  add("claimed", [](const Record& record) { return record.claimed; });
+  add("cell", [](const Record& record) { return record.cell; });
+  add("build", [](const Record& record) { return record.build; });
+  add("command", [](const Record& record) { return rerun_command(record.request); });
   return columns;
 }
 
@@ -91,11 +73,9 @@ std::string planned_text(const PlannedCell& cell, const std::string& column) {
 }
 
 template <class Text>
-void add_line(std::string& csv, const std::vector<CsvColumn>& columns, Text text) {
-  for (std::size_t i = 0; i < columns.size(); ++i) {
-    if (i > 0) csv += ',';
-    csv += text(columns[i]);
-  }
+void add_line(std::string& csv, const CsvColumns& columns, Text text) {
+  for (const CsvColumn& column : columns)
+    csv += (&column == columns.data() ? "" : ",") + text(column);
   csv += '\n';
 }
 
@@ -103,7 +83,7 @@ void add_line(std::string& csv, const std::vector<CsvColumn>& columns, Text text
 
 std::string csv_report(const Document& document) {
   const Comparison& c = document.comparison;
-  const std::vector<CsvColumn> columns = columns_of_runs(c.yardstick);
+  const CsvColumns columns = columns_of_runs(c.yardstick);
   std::string csv;
   add_line(csv, columns, [](const CsvColumn& column) { return column.name; });
   for (const Run& run : c.runs)
@@ -123,6 +103,61 @@ std::string statistics_csv(const Document& document) {
         text += fmt::format("{},{},{},{}\n", table.id, csv_field(row[0].text),
                             csv_field(table.columns[i]), csv_field(row[i].text));
   return text;
+}
+
+// The curves, for programs: each number and text to the byte.
+
+namespace {
+
+std::string optional_figure(const std::optional<Real>& value) {
+  return value ? exact_figure(*value) : "";
+}
+
+// The beginning of all rows of a run.
+std::string run_fields(const Record& record) {
+  const Request& request = record.request;
+  std::string text =
+      fmt::format("{},{},{},{},{},{},{}", exact_csv_field(request.problem.spec),
+                  exact_csv_field(request.optimizer.spec), request.seed, name_of(record.status),
+                  record.cell, record.build, record.imported ? "true" : "false");
+  for (const char* tau : {"1e-1", "1e-3", "1e-6"}) {  // nothing where it is not known
+    const auto at = record.verified.find(tau);
+    const bool is_known = at != record.verified.end() && at->second;
+    text += !is_known ? "," : *at->second ? ",true" : ",false";
+  }
+  return text + fmt::format(",{},{},{}", optional_figure(record.minimum),
+                            optional_figure(record.scale), optional_figure(record.x_scale));
+}
+
+void add_rows(std::string& csv, const Record& record) {
+  const Curve& curve = record.curve;
+  const std::string run = run_fields(record);
+  for (std::size_t i = 0; i < curve.iteration.size(); ++i) {
+    csv += fmt::format("{},{},{}", run, curve.iteration[i], curve.work[i]);
+    for (const std::string_view oracle : kOracleNames) {
+      const auto counts = curve.counts.find(std::string(oracle));
+      csv += fmt::format(",{}", counts == curve.counts.end() ? 0 : counts->second[i]);
+    }
+    for (const auto* column : {&curve.wall_seconds, &curve.processor_seconds, &curve.loss,
+                               &curve.x_error, &curve.gradient_norm, &curve.step_norm})
+      csv += "," + exact_figure((*column)[i]);
+    csv += "\r\n";
+  }
+  constexpr std::size_t kFigures = 8;  // of each point, its counts by oracle aside
+  if (curve.iteration.empty()) csv += run + std::string(kFigures + kOracles, ',') + "\r\n";
+}
+
+}  // namespace
+
+std::string curves_csv(const Comparison& comparison) {
+  std::string csv = fmt::format(
+      "problem,optimizer,seed,status,cell,build,imported,verified_1e-1,verified_1e-3,verified_1e-6,"
+      "minimum,scale,x_scale,iteration,work,{},wall_seconds,processor_seconds,loss,x_error,"
+      "gradient_norm,step_norm\r\n",
+      fmt::join(kOracleNames, ","));
+  for (const Run& run : comparison.runs)
+    if (!run.is_repeated) add_rows(csv, *run.record);
+  return csv;
 }
 
 }  // namespace isoline::reports

@@ -1,6 +1,4 @@
-// Escapes foreign text for each format.
-#include "reports/formats/escape.h"
-
+// Shared pieces of formats: foreign text escaped for each, and wide tables taken apart.
 #include <algorithm>
 #include <span>
 
@@ -75,14 +73,17 @@ std::string latex_text(std::string_view text) {
   return escaped(ascii, kLatex);
 }
 
-std::string csv_field(std::string_view text) {
-  std::string field = escaped(text, {});
-  const bool is_formula = !field.empty() && std::string_view("=+-@").find(field[0]) < 4;
-  if (is_formula) field.insert(0, 1, '\'');  // a spreadsheet would run it
-  if (field.find_first_of(",\"'") == std::string::npos) return field;
+std::string exact_csv_field(std::string_view text) {
+  if (text.find_first_of(",\"'\r\n") == std::string_view::npos) return std::string(text);
   std::string quoted = "\"";
-  for (const char letter : field) quoted += letter == '"' ? "\"\"" : std::string(1, letter);
+  for (const char letter : text) quoted += letter == '"' ? "\"\"" : std::string(1, letter);
   return quoted + '"';
+}
+
+std::string csv_field(std::string_view text) {
+  const std::string field = escaped(text, {});
+  const bool is_formula = !field.empty() && std::string_view("=+-@").find(field[0]) < 4;
+  return exact_csv_field(is_formula ? "'" + field : field);
 }
 
 std::string terminal_text(std::string_view text) {
@@ -92,21 +93,18 @@ std::string terminal_text(std::string_view text) {
   return safe;
 }
 
-// How wide tables are taken apart.
-
 std::vector<Part> table_parts(const Table& table, std::size_t most) {
   std::vector<Part> parts;
   std::size_t at = table.names;
-  for (const std::size_t count : table.parts) {
-    parts.push_back({at, at + count});
-    at += count;
-  }
-  const std::size_t rest = table.columns.size() - at;
+  const auto take = [&](std::size_t count) {
+    Part& part = parts.emplace_back();
+    for (std::size_t i = 0; i < table.names; ++i) part.push_back(i);
+    for (; count > 0 && at < table.columns.size(); --count) part.push_back(at++);
+  };
+  for (const std::size_t count : table.parts) take(count);
   // As many a part as divides them evenly: 20 columns are 7, 7 and 6.
-  const std::size_t pieces = (rest + most - 1) / most;
-  const std::size_t each = pieces == 0 ? 0 : (rest + pieces - 1) / pieces;
-  for (; at < table.columns.size(); at += each)
-    parts.push_back({at, std::min(at + each, table.columns.size())});
+  const std::size_t rest = table.columns.size() - at, pieces = (rest + most - 1) / most;
+  while (at < table.columns.size()) take((rest + pieces - 1) / pieces);
   return parts;
 }
 

@@ -1,8 +1,11 @@
-// The formats of a report that are plain text, one file each: functions of a document.
+// The formats of a report that are plain text, one file each: functions of a document. Foreign text
+// is made safe for the place it goes to.
 #pragma once
 
+#include <map>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "reports/sections/sections.h"
@@ -15,26 +18,64 @@ std::string csv_report(const Document& document);       // one row a run
 std::string statistics_csv(const Document& document);   // table,row,column,value
 std::string json_report(const Document& document);      // schema isoline.report/1
 
+std::string html_report(const Document& document);  // the page: reports/page
+
+struct Format {
+  const char* file;
+  std::string (*text)(const Document&);
+};
+inline constexpr Format kFormats[] = {  // all that `isoline report` writes
+    {"index.html", html_report},  {"report.csv", csv_report},
+    {"report.json", json_report}, {"report.md", markdown_report},
+    {"report.tex", latex_report}, {"statistics.csv", statistics_csv}};
+
+// Tidy CSV by RFC 4180, lines ended by CRLF: a row a kept point of each run, with what was asked
+// and how it ended in every row; a run that kept none has one row without figures. Numbers read
+// back as the same numbers; "inf", "-inf" and "nan" stand for themselves.
+std::string curves_csv(const Comparison& comparison);
+
+// Data folders of COCO, which its post-processing reads: for each method FOLDER/isoline_fN.info and
+// FOLDER/data_fN/isoline_fN_DIMn.dat and .tdat. Problems are its functions, numbered as
+// functions.csv says; seed s is its instance s + 1; an evaluation is one forward solve of declared
+// work, counted from 1, the start. Its values are f − f_L.
+struct Export {
+  std::map<std::string, std::string> files;  // text by name below a folder; a single file: no name
+  std::vector<std::string> left_out = {};    // a sentence each
+};
+Export coco_export(const Comparison& comparison);
+
+struct ExportFormat {
+  std::string_view name, help;
+  Export (*write)(const Comparison&);
+};
+inline constexpr ExportFormat kExportFormats[] = {
+    {"csv", "one row per stored point",
+     [](const Comparison& comparison) {
+       return Export{{{"", curves_csv(comparison)}}};
+     }},
+    {"coco", "data folders for its post-processing", coco_export}};
+
 std::string terminal_table(const Document& document);  // standings, or every cell of a small study
 // Within a hundred columns: what it says, then its tables, so many rows of all of them.
 inline constexpr std::size_t kAllRows = static_cast<std::size_t>(-1), kFewRows = 20;
 std::string terminal_section(const Section& section, std::size_t most_rows = kAllRows);
-std::string terminal_claim(const Section& claim);  // one whole: readings, plots, tables
-std::string text_plot(const Plot& plot);           // lines in letters, for a terminal
-std::string markdown_claim(const Section& claim);
-inline constexpr std::size_t kSummaryRows = 60;  // of a table, so that a summary stays a summary
+std::string terminal_claim(const Section& claim);  // one whole: readings, tables
+inline constexpr std::size_t kSummaryRows = 60;    // of a table, so that a summary stays a summary
 std::string markdown_section(const Section& section, std::size_t most_rows = kSummaryRows);
 
-// Parts of report.json.
-nlohmann::json statistics_json(const Document& document);
-nlohmann::json claims_json(const std::vector<Judgement>& judgements);
+nlohmann::json section_json(const Section& section);                   // its sentences and tables
+nlohmann::json claims_json(const std::vector<Judgement>& judgements);  // as in report.json
 
-inline constexpr const char* kReportSchema = "isoline.report/1";
-
-// Columns [first, last) beside the names that stand together where `most` have room.
-struct Part {
-  std::size_t first = 0, last = 0;
-};
+// Columns that stand together: those that name the rows, then as many others as have room, or as
+// the table asks for.
+using Part = std::vector<std::size_t>;
 std::vector<Part> table_parts(const Table& table, std::size_t most);
+
+std::string html_text(std::string_view text);
+std::string markdown_text(std::string_view text);
+std::string latex_text(std::string_view text);
+std::string csv_field(std::string_view text);        // no spreadsheet runs it
+std::string exact_csv_field(std::string_view text);  // to the byte, for programs
+std::string terminal_text(std::string_view text);    // no escape sequence passes
 
 }  // namespace isoline::reports

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <span>
 
-#include "reports/formats/escape.h"
 #include "reports/formats/formats.h"
+#include "reports/sections/words.h"
 
 namespace isoline::reports {
 namespace {
@@ -74,36 +74,37 @@ std::string caption_of(const Table& table, const Part& part) {
   if (!table.title.empty()) text += marked_text(table.title) + ". ";
   if (!table.reading.empty()) text += marked_text(table.reading) + " ";
   text += marked_text(table.caption);
-  for (std::size_t i = part.first; i < part.last && i < table.meanings.size(); ++i)
-    text += fmt::format("{}: {}. ", marked_text(table.columns[i]), marked_text(table.meanings[i]));
+  for (const std::size_t i : part)
+    if (i >= table.names && i < table.meanings.size())
+      text +=
+          fmt::format("{}: {}. ", marked_text(table.columns[i]), marked_text(table.meanings[i]));
   return text;
 }
 
 std::string row_text(const Table& table, const Part& part, const std::vector<TableCell>& row) {
-  std::string text = "    " + cell_text(row[0]);
-  for (std::size_t i = 1; i < table.names; ++i) text += " & " + cell_text(row[i]);
-  if (row.size() < table.columns.size())
-    return text + fmt::format(" & \\multicolumn{{{}}}{{l}}{{{}}}", part.last - part.first,
-                              cell_text(row.back()));
-  for (std::size_t i = part.first; i < part.last; ++i) text += " & " + cell_text(row[i]);
-  return text;
+  std::vector<std::string> cells;
+  const bool is_short = row.size() < table.columns.size();
+  for (const std::size_t i : part)
+    if (i < table.names || !is_short) cells.push_back(cell_text(row[i]));
+  if (is_short)
+    cells.push_back(fmt::format("\\multicolumn{{{}}}{{l}}{{{}}}", part.size() - table.names,
+                                cell_text(row.back())));
+  return "    " + joined(cells, " & ") + " \\\\\n";
 }
 
-using Rows = std::span<const std::vector<TableCell>>;
-
-std::string part_text(const Table& table, const Part& part, Rows rows, const std::string& caption) {
-  std::string align, heading;
-  const auto add = [&](std::size_t column) {
-    align += table.align_of(column);
-    heading += (column == 0 ? "    " : " & ") + heading_text(table, column);
-  };
-  for (std::size_t i = 0; i < table.names; ++i) add(i);
-  for (std::size_t i = part.first; i < part.last; ++i) add(i);
+std::string part_text(const Table& table, const Part& part,
+                      std::span<const std::vector<TableCell>> rows, const std::string& caption) {
+  std::string align;
+  std::vector<std::string> headings;
+  for (const std::size_t i : part) {
+    align += table.align_of(i);
+    headings.push_back(heading_text(table, i));
+  }
   std::string text = fmt::format(
       "\\begin{{table}}[p]\n  \\centering\n  \\scriptsize\n  \\setlength{{\\tabcolsep}}{{3pt}}\n"
-      "  \\caption{{{}}}\n  \\begin{{tabular}}{{{}}}\n    \\toprule\n{} \\\\\n    \\midrule\n",
-      caption, align, heading);
-  for (const auto& row : rows) text += row_text(table, part, row) + " \\\\\n";
+      "  \\caption{{{}}}\n  \\begin{{tabular}}{{{}}}\n    \\toprule\n    {} \\\\\n    \\midrule\n",
+      caption, align, joined(headings, " & "));
+  for (const auto& row : rows) text += row_text(table, part, row);
   return text + "    \\bottomrule\n  \\end{tabular}\n\\end{table}\n\n";
 }
 
@@ -121,7 +122,7 @@ std::string latex_report(const Document& document) {
         for (const Part& part : table_parts(table, kMostColumns)) {
           const std::string caption = latex_text(first) + caption_of(table, part) + last;
           const std::size_t rows = std::min(kMostRows, table.rows.size() - row);
-          text += part_text(table, part, Rows(table.rows).subspan(row, rows), caption);
+          text += part_text(table, part, std::span(table.rows).subspan(row, rows), caption);
           first.clear();
         }
   return text;

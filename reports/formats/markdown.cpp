@@ -1,11 +1,9 @@
 // The report as Markdown, short enough for the summary of a CI job.
 #include <fmt/format.h>
 
-#include <algorithm>
+#include <ranges>
 
-#include "reports/formats/escape.h"
 #include "reports/formats/formats.h"
-#include "reports/sections/sections.h"
 
 namespace isoline::reports {
 namespace {
@@ -17,22 +15,18 @@ std::string cell_text(const TableCell& cell) {
   return text;
 }
 
-// Columns [first, last) beside the names of the rows.
 std::string part_text(const Table& table, const Part& part, std::size_t most_rows) {
   const auto line = [&](const auto& of_column) {
     std::string text = "|";
-    for (std::size_t i = 0; i < table.names; ++i) text += of_column(i);
-    for (std::size_t i = part.first; i < part.last; ++i) text += of_column(i);
+    for (const std::size_t i : part) text += of_column(i);
     return text + "\n";
   };
   std::string text =
       line([&](std::size_t i) { return " " + markdown_text(table.columns[i]) + " |"; });
   text += line([&](std::size_t i) { return table.align_of(i) == 'r' ? "---:|" : "---|"; });
-  for (std::size_t row = 0; row < std::min(table.rows.size(), most_rows); ++row)
-    text += line([&](std::size_t i) {
-      const auto& cells = table.rows[row];
-      return i < cells.size() ? " " + cell_text(cells[i]) + " |" : "";
-    });
+  for (const auto& cells : table.rows | std::views::take(most_rows))
+    text += line(
+        [&](std::size_t i) { return i < cells.size() ? " " + cell_text(cells[i]) + " |" : ""; });
   return text + "\n";
 }
 
@@ -71,8 +65,10 @@ std::string markdown_section(const Section& section, std::size_t most_rows) {
   return text;
 }
 
+namespace {
+
 // Folded: a summary of a job holds a hundred of them.
-std::string markdown_claim(const Section& claim) {
+std::string claim_text(const Section& claim) {
   std::string text = fmt::format("<details><summary>{}: {}</summary>\n\n", markdown_text(claim.id),
                                  markdown_text(claim.title));
   for (const Reading& reading : claim.readings)
@@ -84,6 +80,8 @@ std::string markdown_claim(const Section& claim) {
   return text + "</details>\n\n";
 }
 
+}  // namespace
+
 std::string markdown_report(const Document& document) {
   std::string text =
       fmt::format("# Isoline report\n\n{}. Status: {}.\n\n", document.headline, document.statuses);
@@ -94,8 +92,7 @@ std::string markdown_report(const Document& document) {
   for (const Section& section : document.sections) {
     text += markdown_section(section);
     if (section.id != "claims") continue;
-    for (const Judgement& judgement : document.claims)
-      text += markdown_claim(claim_section(judgement));
+    for (const Judgement& judgement : document.claims) text += claim_text(claim_section(judgement));
   }
   return text;
 }

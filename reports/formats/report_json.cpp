@@ -5,16 +5,31 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "core/digest.h"
+#include "core/files.h"
 #include "core/json.h"
 #include "reports/formats/formats.h"
-#include "reports/sections/evidence.h"
-#include "reports/sections/ranking.h"
 #include "reports/sections/sections.h"
 #include "reports/sections/words.h"
 
 namespace isoline::reports {
 namespace {
+
+// A list of what `item` makes of each.
+template <class Range, class Item>
+Json list_of(const Range& range, Item item) {
+  Json list = Json::array();
+  for (const auto& one : range) list.push_back(item(one));
+  return list;
+}
+
+// An object with a value for each tolerance.
+template <class Value>
+Json by_tolerance(const Comparison& c, Value value) {
+  Json json = Json::object();
+  for (std::size_t t = 0; t < kTolerances.size(); ++t)
+    json[std::string(c.yardstick.tolerances[t].name)] = value(t);
+  return json;
+}
 
 Json to_json(const Spread& spread) {
   return {{"median", json_number(spread.median)},
@@ -30,130 +45,100 @@ Json to_json(const std::map<Status, std::size_t>& statuses) {
   return json;
 }
 
-Json by_tolerance(const Comparison& c, const Cell& cell, Measure by) {
-  Json json = Json::object();
-  for (std::size_t t = 0; t < kTolerances.size(); ++t)
-    json[std::string(c.yardstick.tolerances[t].name)] = to_json(cell.taken[by][t]);
-  return json;
-}
-
-// Which requests stand behind a pair, so that two reports compare like with like.
-std::string asked_digest(const Comparison& c, const Cell& cell) {
-  std::set<std::string> cells;
-  for (const std::size_t run : cell.runs) cells.insert(c.runs[run].record->cell);
-  return digest(joined({cells.begin(), cells.end()}, " "));
-}
-
-std::set<std::string> builds_of(const Comparison& c, const Cell& cell) {
-  std::set<std::string> builds;
-  for (const std::size_t run : cell.runs) builds.insert(c.runs[run].record->build);
-  return builds;
-}
-
 // Raw counts until the tightest tolerance was met, of each run that met it, by oracle and seed.
 Json calls_json(const Comparison& c, const Cell& cell) {
-  Json json = Json::object();
+  std::array<std::vector<std::int64_t>, kOracles> calls;
   for (const std::size_t index : cell.runs) {
     const Run& run = c.runs[index];
     const Real work = c.taken(run, Measure::work, kTightest);
     if (work == kNever) continue;
     const OracleCounts counts = counts_at(*run.record, work);
-    for (std::size_t kind = 0; kind < kOracles; ++kind)
-      json[std::string(kOracleNames[kind])].push_back(counts[kind]);
+    for (std::size_t kind = 0; kind < kOracles; ++kind) calls[kind].push_back(counts[kind]);
   }
-  for (auto it = json.begin(); it != json.end();)
-    if (std::ranges::all_of(*it, [](const Json& count) { return count == 0; }))
-      it = json.erase(it);
-    else
-      ++it;
+  Json json = Json::object();
+  for (std::size_t kind = 0; kind < kOracles; ++kind)
+    if (std::ranges::any_of(calls[kind], [](std::int64_t count) { return count != 0; }))
+      json[std::string(kOracleNames[kind])] = calls[kind];
   return json;
 }
 
 Json cell_json(const Comparison& c, std::size_t p, std::size_t s) {
   const Cell& cell = c.cell(p, s);
-  Json json{{"problem", c.problems[p].spec}, {"optimizer", c.optimizers[s].label},
-            {"planned", cell.planned},       {"runs", cell.runs.size()},
-            {"failed", cell.failed},         {"statuses", to_json(cell.statuses)},
-            {"privileges", cell.privileges}, {"asked", asked_digest(c, cell)},
-            {"builds", builds_of(c, cell)}};
+  std::set<std::string> asked, builds;  // requests, so that two reports compare like with like
+  for (const std::size_t run : cell.runs) {
+    asked.insert(c.runs[run].record->cell);
+    builds.insert(c.runs[run].record->build);
+  }
+  Json json{{"problem", c.problems[p].spec},
+            {"optimizer", c.optimizers[s].label},
+            {"planned", cell.planned},
+            {"runs", cell.runs.size()},
+            {"failed", cell.failed},
+            {"statuses", to_json(cell.statuses)},
+            {"privileges", cell.privileges},
+            {"asked", digest(joined({asked.begin(), asked.end()}, " "))},
+            {"builds", builds}};
   if (!cell.inapplicable.empty()) json["inapplicable"] = cell.inapplicable;
   if (!cell.is_measured()) return json;
-  json["figures"] = {{"work", by_tolerance(c, cell, Measure::work)}, {"loss", to_json(cell.loss)}};
+  const auto taken = [&](Measure by) {
+    return by_tolerance(c, [&](std::size_t t) { return to_json(cell.taken[by][t]); });
+  };
+  json["figures"] = {{"work", taken(Measure::work)}, {"loss", to_json(cell.loss)}};
   if (cell.x_error.n > 0) json["figures"]["x_error"] = to_json(cell.x_error);
-  json["costs"] = by_tolerance(c, cell, Measure::cost);
+  json["costs"] = taken(Measure::cost);
   json["calls"] = calls_json(c, cell);
-  json["times"] = {{"seconds", by_tolerance(c, cell, Measure::time)},
-                   {"timed_alone", cell.is_timed_alone}};
+  json["times"] = {{"seconds", taken(Measure::time)}, {"timed_alone", cell.is_timed_alone}};
   return json;
 }
 
 Json profiles_json(const Comparison& c) {
-  Json json = Json::object();
-  for (std::size_t t = 0; t < kTolerances.size(); ++t) {
+  return by_tolerance(c, [&](std::size_t t) -> Json {
     const Profile& profile = c.profiles[t];
     Json lines = Json::object();
     for (std::size_t s = 0; s < profile.solvers.size(); ++s)
       lines[c.optimizers[s].label] = {{"problems", profile.solvers[s].problems},
                                       {"ratios", profile.solvers[s].ratios}};
-    json[std::string(c.yardstick.tolerances[t].name)] = {{"optimizers", lines},
-                                                         {"reading", profile_reading(c, t)}};
-  }
-  return json;
+    return {{"optimizers", lines}, {"reading", profile_reading(c, t)}};
+  });
 }
 
-Json standing_json(const Standing& standing) {
-  return {{"settings", standing.settings},
-          {"solved", standing.solved},
-          {"wins", standing.wins},
-          {"reached", standing.reached},
-          {"typical", json_number(standing.typical)},
-          {"score", standing.score}};
-}
-
-// Best first.
-Json standings_json(const Comparison& c) {
-  Json list = Json::array();
-  for (const OptimizerAxis& optimizer : c.optimizers) {
-    Json json{{"optimizer", optimizer.label},       {"family", optimizer.family()},
-              {"privileges", optimizer.privileges}, {"planned", optimizer.planned},
-              {"applicable", optimizer.applicable}, {"runs", optimizer.runs},
-              {"failed", optimizer.failed}};
-    for (std::size_t t = 0; t < kTolerances.size(); ++t)
-      json["standings"][std::string(c.yardstick.tolerances[t].name)] =
-          standing_json(optimizer.standings[t]);
-    list.push_back(std::move(json));
-  }
-  return list;
-}
-
-Json labels_json(const Comparison& c, const std::vector<std::size_t>& methods) {
-  Json list = Json::array();
-  for (const std::size_t s : methods) list.push_back(c.optimizers[s].label);
-  return list;
-}
-
-Json place_json(const Comparison& c, const results::Place& place) {
-  return {{"optimizer", c.optimizers[place.method].label},
-          {"score", place.score},
-          {"low", json_number(place.interval.low)},
-          {"high", json_number(place.interval.high)},
-          {"solved", place.solved},
-          {"p", place.p},
-          {"adjusted_p", place.adjusted},
-          {"in_group", place.is_in_group},
-          {"share_first", place.share_first},
-          {"work_ratio", json_number(place.ratio.median)},
-          {"both_solve", place.ratio.both}};
+Json optimizer_json(const Comparison& c, const OptimizerAxis& optimizer) {
+  const auto standing_json = [&](std::size_t t) -> Json {
+    const Standing& standing = optimizer.standings[t];
+    return {{"settings", standing.settings},
+            {"solved", standing.solved},
+            {"wins", standing.wins},
+            {"reached", standing.reached},
+            {"typical", json_number(standing.typical)},
+            {"score", standing.score}};
+  };
+  return {{"optimizer", optimizer.label},       {"family", optimizer.family()},
+          {"privileges", optimizer.privileges}, {"planned", optimizer.planned},
+          {"applicable", optimizer.applicable}, {"runs", optimizer.runs},
+          {"failed", optimizer.failed},         {"standings", by_tolerance(c, standing_json)}};
 }
 
 Json decision_json(const Comparison& c, const std::optional<Decision>& decision) {
   if (!decision) return nullptr;
-  Json places = Json::array(), choices = places;
-  for (const results::Place& place : decision->places) places.push_back(place_json(c, place));
-  for (const Choice& choice : decision->choices)
-    choices.push_back({{"choice", choice_text(choice)},
-                       {"first", labels_json(c, choice.first)},
-                       {"kept", choice.is_kept}});
+  const auto place_json = [&](const results::Place& place) -> Json {
+    return {{"optimizer", c.optimizers[place.method].label},
+            {"score", place.score},
+            {"low", json_number(place.interval.low)},
+            {"high", json_number(place.interval.high)},
+            {"solved", place.solved},
+            {"p", place.p},
+            {"adjusted_p", place.adjusted},
+            {"in_group", place.is_in_group},
+            {"share_first", place.share_first},
+            {"work_ratio", json_number(place.ratio.median)},
+            {"both_solve", place.ratio.both}};
+  };
+  const auto choice_json = [&](const Choice& choice) -> Json {
+    const auto label = [&](std::size_t s) { return c.optimizers[s].label; };
+    return {{"choice", choice_text(choice)},
+            {"first", list_of(choice.first, label)},
+            {"kept", choice.is_kept}};
+  };
   return {{"optimizer", c.optimizers[decision->places[0].method].label},
           {"tied", decision->tied},
           {"significant", decision->is_lead},
@@ -161,137 +146,67 @@ Json decision_json(const Comparison& c, const std::optional<Decision>& decision)
           {"families", decision->families},
           {"friedman_p", decision->friedman},
           {"least_p", decision->least_p},
-          {"places", places},
-          {"choices", choices}};
+          {"places", list_of(decision->places, place_json)},
+          {"choices", list_of(decision->choices, choice_json)}};
 }
 
 // [a, b, wins, losses, ties, neither, typical, its interval]
-Json pairs_json(const Comparison& c) {
-  Json list = Json::array();
-  for (const MethodPair& pair : all_pairs(c)) {
-    const auto [low, high] = pair.pairing.interval();
-    list.push_back({c.optimizers[pair.a].label, c.optimizers[pair.b].label, pair.pairing.wins,
-                    pair.pairing.losses, pair.pairing.ties, pair.pairing.neither,
-                    pair.pairing.typical(), low, high});
-  }
-  return list;
+Json pair_json(const Comparison& c, const MethodPair& pair) {
+  const auto [low, high] = pair.pairing.interval();
+  return {c.optimizers[pair.a].label,
+          c.optimizers[pair.b].label,
+          pair.pairing.wins,
+          pair.pairing.losses,
+          pair.pairing.ties,
+          pair.pairing.neither,
+          pair.pairing.typical(),
+          low,
+          high};
 }
 
-Json missing_json(const Comparison& c) {
-  Json list = Json::array();
-  for (const PlannedCell& cell : c.missing)
-    list.push_back({{"cell", cell.cell},
-                    {"problem", cell.problem},
-                    {"optimizer", cell.optimizer},
-                    {"seed", cell.seed}});
-  return list;
-}
-
-Json failures_json(const Comparison& c) {
-  Json list = Json::array();
-  for (const std::size_t run : c.failures) {
-    const Record& record = *c.runs[run].record;
-    list.push_back({{"cell", record.cell},
-                    {"status", name_of(record.status)},
-                    {"message", record.message},
-                    {"command", rerun_command(record.request)}});
-  }
-  return list;
+Json failure_json(const Record& record) {
+  return {{"cell", record.cell},
+          {"status", name_of(record.status)},
+          {"message", record.message},
+          {"command", rerun_command(record.request)}};
 }
 
 Json audit_json(const Document& document) {
   Json json = audit_to_json(document.comparison.study->audits);
-  json["readings"] = Json::array();
-  for (const Reading& reading : document.section("audit").readings)
-    json["readings"].push_back({{"property", reading.title}, {"sentence", reading.text}});
+  json["readings"] =
+      list_of(document.section("audit").readings, [](const Reading& reading) -> Json {
+        return {{"property", reading.title}, {"sentence", reading.text}};
+      });
   return json;
 }
 
-Json yardstick_json(const Yardstick& yardstick) {
-  Json tolerances = Json::array();
-  for (const Tolerance& tolerance : yardstick.tolerances)
-    tolerances.push_back({{"name", tolerance.name}, {"tau", tolerance.tau}});
-  return {{"by", name_of(yardstick.by)}, {"tolerances", tolerances}};
-}
-
-Json verdict_json(const Document& document) {
-  Json sentences = Json::array();
-  for (const Reading& reading : document.section("standings").readings)
-    sentences.push_back(reading.text);
-  return sentences;
-}
-
-}  // namespace
-
-std::string json_report(const Document& document) {
-  const Comparison& c = document.comparison;
-  Json cells = Json::array(), unreadable = Json::array();
-  for (std::size_t p = 0; p < c.problems.size(); ++p)
-    for (std::size_t s = 0; s < c.optimizers.size(); ++s)
-      if (c.cell(p, s).planned > 0) cells.push_back(cell_json(c, p, s));
-  for (const Unreadable& file : c.study->unreadable)
-    unreadable.push_back(
-        {{"file", std::filesystem::path(file.file).filename().string()}, {"reason", file.reason}});
-  const Json json{{"schema", kReportSchema},
-                  {"suites", c.study->plan.suites},
-                  {"planned", c.planned},
-                  {"answered", c.answered},
-                  {"missing", missing_json(c)},
-                  {"statuses", to_json(c.statuses)},
-                  {"seeds", c.seeds},
-                  {"superseded", c.study->superseded},
-                  {"unreadable", unreadable},
-                  {"failures", failures_json(c)},
-                  {"yardstick", yardstick_json(c.yardstick)},
-                  {"verdict", verdict_json(document)},
-                  {"claims", claims_json(document.claims)},
-                  {"audit", audit_json(document)},
-                  {"leader", decision_json(c, c.decision)},
-                  {"open_leader", decision_json(c, c.open_decision)},
-                  {"optimizers", standings_json(c)},
-                  {"pairs", pairs_json(c)},
-                  {"profiles", profiles_json(c)},
-                  {"statistics", statistics_json(document)},
-                  {"cells", cells}};
-  return json_text(json, 1) + "\n";
-}
-
-// Sections as JSON: the tables and plots of the statistics, and the verdicts on claims.
-
-namespace {
-
 // Texts as every format prints them, and the numbers they are made of, by name.
 Json table_json(const Table& table) {
-  Json rows = Json::array(), values = rows;
-  for (const auto& row : table.rows) {
-    Json texts = Json::array();
-    Json numbers = Json::array();
-    for (const TableCell& cell : row) {
-      texts.push_back(cell.text);
-      Json named = Json::object();
-      for (const auto& [name, value] : cell.numbers) named[name] = json_number(value);
-      numbers.push_back(std::move(named));
-    }
-    rows.push_back(std::move(texts));
-    values.push_back(std::move(numbers));
-  }
-  return {{"id", table.id},           {"title", table.title},     {"reading", table.reading},
-          {"caption", table.caption}, {"columns", table.columns}, {"rows", rows},
-          {"values", values}};
+  const auto text = [](const TableCell& cell) { return cell.text; };
+  const auto numbers = [](const TableCell& cell) {
+    Json named = Json::object();
+    for (const auto& [name, value] : cell.numbers) named[name] = json_number(value);
+    return named;
+  };
+  return {{"id", table.id},
+          {"title", table.title},
+          {"reading", table.reading},
+          {"caption", table.caption},
+          {"columns", table.columns},
+          {"rows", list_of(table.rows, [&](const auto& row) { return list_of(row, text); })},
+          {"values", list_of(table.rows, [&](const auto& row) { return list_of(row, numbers); })}};
 }
 
 Json plot_json(const Plot& plot, const Comparison& c) {
   constexpr const char* kKinds[] = {"steps", "dots", "bars", "lines"};
-  const auto numbers = [](const std::vector<Real>& values) { return json_numbers(values); };
-  Json rows = Json::array(), series = Json::array();
-  for (const PlotRow& row : plot.rows) rows.push_back(row.name);
-  for (const PlotSeries& one : plot.series)
-    series.push_back({{"optimizer", c.optimizers[one.optimizer.value()].label},
-                      {"name", one.name},
-                      {"x", numbers(one.x)},
-                      {"y", numbers(one.y)},
-                      {"low", numbers(one.low)},
-                      {"high", numbers(one.high)}});
+  const auto series_json = [&](const PlotSeries& one) -> Json {
+    return {{"optimizer", c.optimizers[one.optimizer.value()].label},
+            {"name", one.name},
+            {"x", json_numbers(one.x)},
+            {"y", json_numbers(one.y)},
+            {"low", json_numbers(one.low)},
+            {"high", json_numbers(one.high)}};
+  };
   return {{"id", plot.id},
           {"kind", kKinds[static_cast<std::size_t>(plot.kind)]},
           {"title", plot.title},
@@ -300,8 +215,18 @@ Json plot_json(const Plot& plot, const Comparison& c) {
           {"x_label", plot.x_label},
           {"y_label", plot.y_label},
           {"log_x", plot.is_log_x},
-          {"rows", rows},
-          {"series", series}};
+          {"rows", list_of(plot.rows, [](const PlotRow& row) { return row.name; })},
+          {"series", list_of(plot.series, series_json)}};
+}
+
+Json statistics_json(const Document& document) {
+  const Section& section = document.section("statistics");
+  return {{"limits", list_of(section.readings, [](const Reading& limit) { return limit.text; })},
+          {"cost_unit", cost_unit(document.comparison)},
+          {"tables", list_of(section.tables, table_json)},
+          {"plots", list_of(section.plots, [&](const Plot& plot) {
+             return plot_json(plot, document.comparison);
+           })}};
 }
 
 Json measurement_json(const std::optional<Measurement>& measured) {
@@ -312,102 +237,136 @@ Json measurement_json(const std::optional<Measurement>& measured) {
           {"n", measured->n}};
 }
 
-Json band_json(const Agreement& band) { return {json_number(band.low), json_number(band.high)}; }
-
-Json runs_json(const EvidenceTerm& term) {
-  Json runs = Json::array();
-  for (const EvidenceRun& run : term.runs)
-    runs.push_back({{"cell", run.cell},
-                    {"record", run.file},
-                    {"seed", run.seed},
-                    {"figure", json_number(run.figure)},
-                    {"status", std::string(name_of(run.status))}});
-  return runs;
-}
-
 // The curves are in the records.
 Json evidence_json(const Evidence& evidence) {
   if (evidence.terms.empty()) return nullptr;
-  Json terms = Json::array(), printed = terms;
-  for (const EvidenceTerm& term : evidence.terms) {
-    Json json{{"problem", term.problem}, {"optimizer", term.optimizer},
-              {"at", term.at},           {"scale", term.scale},
-              {"iteration", nullptr},    {"median", json_number(term.level)},
-              {"runs", runs_json(term)}};
-    if (term.iteration) json["iteration"] = *term.iteration;
-    terms.push_back(std::move(json));
-  }
-  for (const PrintedRow& row : evidence.printed)
-    printed.push_back({{"iteration", row.iteration},
-                       {"printed", json_numbers(row.printed)},
-                       {"reached", json_numbers(row.reached)}});
+  const auto run_json = [](const EvidenceRun& run) -> Json {
+    return {{"cell", run.cell},
+            {"record", run.file},
+            {"seed", run.seed},
+            {"figure", json_number(run.figure)},
+            {"status", name_of(run.status)}};
+  };
+  const auto term_json = [&](const EvidenceTerm& term) -> Json {
+    return {{"problem", term.problem},
+            {"optimizer", term.optimizer},
+            {"at", term.at},
+            {"scale", term.scale},
+            {"iteration", term.iteration ? Json(*term.iteration) : Json()},
+            {"median", json_number(term.level)},
+            {"runs", list_of(term.runs, run_json)}};
+  };
+  const auto printed_json = [](const PrintedRow& row) -> Json {
+    return {{"iteration", row.iteration},
+            {"printed", json_numbers(row.printed)},
+            {"reached", json_numbers(row.reached)}};
+  };
   return {{"kind", evidence.kind},
           {"column", evidence.column},
           {"published", json_number(evidence.published)},
-          {"band", band_json(evidence.band)},
-          {"terms", terms},
-          {"printed", printed}};
+          {"band", {json_number(evidence.band.low), json_number(evidence.band.high)}},
+          {"terms", list_of(evidence.terms, term_json)},
+          {"printed", list_of(evidence.printed, printed_json)}};
 }
 
-Json sets_json(const std::vector<CellSet>& sets) {
-  Json list = Json::array();
-  for (const CellSet& set : sets)
-    list.push_back({{"iterations", set.iterations},
-                    {"cells", set.planned},
-                    {"here", set.here},
-                    {"long", set.is_long},
-                    {"decides", set.is_deciding}});
-  return list;
+Json claim_json(const Judgement& judgement) {
+  const auto set_json = [](const CellSet& set) -> Json {
+    return {{"iterations", set.iterations},
+            {"cells", set.planned},
+            {"here", set.here},
+            {"long", set.is_long},
+            {"decides", set.is_deciding}};
+  };
+  Json json{{"id", judgement.id},
+            {"sentence", judgement.sentence},
+            {"source", judgement.source},
+            {"quantity", judgement.quantity},
+            {"published", judgement.published},
+            {"fact", judgement.fact},
+            {"verdict", name_of(judgement.verdict)},
+            {"verification", judgement.is_verification},
+            {"survives", judgement.survives},
+            {"needs_iterations", judgement.needs},
+            {"why", judgement.why},
+            {"caveat", judgement.caveat},
+            {"measured", measurement_json(judgement.measured)},
+            {"evidence", evidence_json(judgement.evidence)},
+            {"sets", list_of(judgement.sets, set_json)},
+            {"command", repeat_command(judgement.id, judgement.sets)}};
+  for (const Contrast& contrast : judgement.contrasts)
+    json["contrasts"].push_back({{"quantity", contrast.quantity},
+                                 {"published", contrast.published},
+                                 {"measured", measurement_json(contrast.measured)},
+                                 {"evidence", evidence_json(contrast.evidence)}});
+  for (const OtherReading& other : judgement.others)
+    json["others"].push_back({{"how", other.how},
+                              {"verdict", name_of(other.verdict)},
+                              {"measured", measurement_json(other.measured)}});
+  if (judgement.is_of_one_run && judgement.measured && judgement.measured->predicted)
+    json["predicted"] = {json_number(judgement.measured->predicted->low),
+                         json_number(judgement.measured->predicted->high)};
+  return json;
 }
 
 }  // namespace
 
-Json statistics_json(const Document& document) {
-  const Section& section = document.section("statistics");
-  Json limits = Json::array(), tables = Json::array(), plots = Json::array();
-  for (const Reading& limit : section.readings) limits.push_back(limit.text);
-  for (const Table& one : section.tables) tables.push_back(table_json(one));
-  for (const Plot& plot : section.plots) plots.push_back(plot_json(plot, document.comparison));
-  return {{"limits", limits},
-          {"cost_unit", cost_unit(document.comparison)},
-          {"tables", tables},
-          {"plots", plots}};
+Json section_json(const Section& section) {
+  return {{"title", section.title},
+          {"readings", list_of(section.readings, [](const Reading& one) { return one.text; })},
+          {"tables", list_of(section.tables, table_json)}};
 }
 
 Json claims_json(const std::vector<Judgement>& judgements) {
-  Json list = Json::array();
-  for (const Judgement& judgement : judgements) {
-    Json json{{"id", judgement.id},
-              {"sentence", judgement.sentence},
-              {"source", judgement.source},
-              {"quantity", judgement.quantity},
-              {"published", judgement.published},
-              {"fact", judgement.fact},
-              {"verdict", std::string(name_of(judgement.verdict))},
-              {"verification", judgement.is_verification},
-              {"survives", judgement.survives},
-              {"needs_iterations", judgement.needs},
-              {"why", judgement.why},
-              {"caveat", judgement.caveat},
-              {"measured", measurement_json(judgement.measured)},
-              {"evidence", evidence_json(judgement.evidence)},
-              {"sets", sets_json(judgement.sets)},
-              {"command", repeat_command(judgement.id, judgement.sets)}};
-    for (const Contrast& contrast : judgement.contrasts)
-      json["contrasts"].push_back({{"quantity", contrast.quantity},
-                                   {"published", contrast.published},
-                                   {"measured", measurement_json(contrast.measured)},
-                                   {"evidence", evidence_json(contrast.evidence)}});
-    for (const OtherReading& other : judgement.others)
-      json["others"].push_back({{"how", other.how},
-                                {"verdict", std::string(name_of(other.verdict))},
-                                {"measured", measurement_json(other.measured)}});
-    if (judgement.is_of_one_run && judgement.measured && judgement.measured->predicted)
-      json["predicted"] = {json_number(judgement.measured->predicted->low),
-                           json_number(judgement.measured->predicted->high)};
-    list.push_back(std::move(json));
-  }
-  return list;
+  return list_of(judgements, claim_json);
+}
+
+std::string json_report(const Document& document) {
+  const Comparison& c = document.comparison;
+  Json cells = Json::array();
+  for (std::size_t p = 0; p < c.problems.size(); ++p)
+    for (std::size_t s = 0; s < c.optimizers.size(); ++s)
+      if (c.cell(p, s).planned > 0) cells.push_back(cell_json(c, p, s));
+  const auto missing_json = [](const PlannedCell& cell) -> Json {
+    return {{"cell", cell.cell},
+            {"problem", cell.problem},
+            {"optimizer", cell.optimizer},
+            {"seed", cell.seed}};
+  };
+  const auto unreadable_json = [](const Unreadable& file) -> Json {
+    return {{"file", std::filesystem::path(file.file).filename().string()},
+            {"reason", file.reason}};
+  };
+  const auto tolerance_json = [](const Tolerance& tolerance) -> Json {
+    return {{"name", tolerance.name}, {"tau", tolerance.tau}};
+  };
+  const Json json{
+      {"schema", "isoline.report/1"},
+      {"suites", c.study->plan.suites},
+      {"planned", c.planned},
+      {"answered", c.answered},
+      {"missing", list_of(c.missing, missing_json)},
+      {"statuses", to_json(c.statuses)},
+      {"seeds", c.seeds},
+      {"superseded", c.study->superseded},
+      {"unreadable", list_of(c.study->unreadable, unreadable_json)},
+      {"failures",
+       list_of(c.failures, [&](std::size_t run) { return failure_json(*c.runs[run].record); })},
+      {"yardstick",
+       {{"by", name_of(c.yardstick.by)},
+        {"tolerances", list_of(c.yardstick.tolerances, tolerance_json)}}},
+      {"verdict", list_of(document.section("standings").readings,
+                          [](const Reading& reading) { return reading.text; })},
+      {"claims", claims_json(document.claims)},
+      {"audit", audit_json(document)},
+      {"leader", decision_json(c, c.decision)},
+      {"open_leader", decision_json(c, c.open_decision)},
+      {"optimizers",
+       list_of(c.optimizers, [&](const OptimizerAxis& one) { return optimizer_json(c, one); })},
+      {"pairs", list_of(all_pairs(c), [&](const MethodPair& pair) { return pair_json(c, pair); })},
+      {"profiles", profiles_json(c)},
+      {"statistics", statistics_json(document)},
+      {"cells", cells}};
+  return json_text(json, 1) + "\n";
 }
 
 }  // namespace isoline::reports

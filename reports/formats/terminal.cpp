@@ -1,131 +1,16 @@
-// Draws lines in letters: a, b, c, …; what was published is shaded, and crossed at its value.
+// Plain text within a hundred columns: the standings and the best of each problem, of a small study
+// every cell; and any section.
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <span>
 #include <vector>
 
-#include "reports/formats/escape.h"
 #include "reports/formats/formats.h"
-#include "reports/sections/claim_terms.h"
 #include "reports/sections/figures.h"
 #include "reports/sections/words.h"
 
 namespace isoline::reports {
-namespace {
-
-constexpr int kColumns = 68, kRows = 15, kBar = 2;  // a bar stands right of its point
-constexpr const char *kBand = "░", *kValue = "━";
-
-int place_of(Real value, Real low, Real high, bool is_log, int places) {
-  if (std::isnan(value)) return 0;
-  if (is_log) {
-    value = std::log(std::max(value, low));
-    low = std::log(low);
-    high = std::log(high);
-  }
-  const Real share = std::clamp((value - low) / (high - low), 0.0, 1.0);
-  return static_cast<int>(std::lround(share * (places - 1)));
-}
-
-// Rows from the top; a cell is one letter.
-struct Canvas {
-  const Plot& plot;
-  Window window;
-  std::vector<std::vector<std::string>> rows;
-
-  explicit Canvas(const Plot& drawn)
-      : plot(drawn),
-        window(window_of(drawn)),
-        rows(kRows, std::vector<std::string>(kColumns + kBar, " ")) {}
-
-  int column(Real x) const {
-    return place_of(x, window.x_low, window.x_high, plot.is_log_x, kColumns);
-  }
-  int row(Real y) const {
-    return kRows - 1 - place_of(y, window.y_low, window.y_high, plot.is_log_y, kRows);
-  }
-  void put(int at_row, int at_column, const std::string& letter) {
-    rows[std::size_t(at_row)][std::size_t(at_column)] = letter;
-  }
-};
-
-// y at each column between two points, linear on the axes as drawn.
-void draw_piece(Canvas& canvas, const PlotSeries& line, std::size_t i, const std::string& letter) {
-  const int from = canvas.column(line.x[i]), to = canvas.column(line.x[i + 1]);
-  const int start = canvas.row(line.y[i]), end = canvas.row(line.y[i + 1]);
-  for (int column = from; column <= to; ++column) {
-    const Real share = to > from ? Real(column - from) / Real(to - from) : 0;
-    canvas.put(static_cast<int>(std::lround(start + share * (end - start))), column, letter);
-  }
-}
-
-void draw_line(Canvas& canvas, const PlotSeries& line, const std::string& letter) {
-  for (std::size_t i = 0; i + 1 < line.y.size(); ++i)
-    if (!std::isnan(line.y[i]) && !std::isnan(line.y[i + 1])) draw_piece(canvas, line, i, letter);
-}
-
-void shade(Canvas& canvas, int column, Real low, Real high) {
-  for (int row = canvas.row(high); row <= canvas.row(low); ++row) canvas.put(row, column, kBand);
-}
-
-void draw_band(Canvas& canvas, const PlotSeries& goal) {
-  for (std::size_t i = 0; i < goal.x.size(); ++i)
-    shade(canvas, canvas.column(goal.x[i]), goal.low[i], goal.high[i]);
-  draw_line(canvas, goal, kValue);
-}
-
-void draw_bar(Canvas& canvas, const PlotSeries& goal) {
-  for (int d = 1; d <= kBar; ++d) {
-    const int column = canvas.column(goal.x[0]) + d;
-    shade(canvas, column, goal.low[0], goal.high[0]);
-    canvas.put(canvas.row(goal.y[0]), column, kValue);
-  }
-}
-
-std::string legend(const Plot& plot) {
-  std::string text;
-  for (std::size_t i = 0; i < plot.series.size(); ++i)
-    text += fmt::format("  {} {}\n", static_cast<char>('a' + i % 26),
-                        terminal_text(plot.series[i].name));
-  if (!plot.published.empty())
-    text += fmt::format("  {} published, {} with its error\n", kValue, kBand);
-  return text;
-}
-
-}  // namespace
-
-std::string text_plot(const Plot& plot) {
-  Canvas canvas(plot);
-  const auto is_bar = [](const PlotSeries& goal) { return goal.x.size() == 1; };
-  for (const PlotSeries& goal : plot.published)
-    if (!is_bar(goal)) draw_band(canvas, goal);
-  for (std::size_t i = plot.series.size(); i-- > 0;)  // the first on top
-    draw_line(canvas, plot.series[i], std::string(1, static_cast<char>('a' + i % 26)));
-  for (const PlotSeries& goal : plot.published)
-    if (is_bar(goal)) draw_bar(canvas, goal);
-  const Window& window = canvas.window;
-  std::string text =
-      fmt::format("{:>10}  {}\n", figure(window.y_high), terminal_text(plot.y_label));
-  for (const auto& row : canvas.rows) {
-    std::string line = fmt::format("{:>10} │{}", "", joined(row, ""));
-    line.erase(line.find_last_not_of(' ') + 1);
-    text += line + "\n";
-  }
-  text += fmt::format("{:>10} └", figure(window.y_low));
-  for (int i = 0; i < kColumns; ++i) text += "─";
-  const Real first =
-      std::min(window.x_low, plot.series.at(0).x.at(0));  // iteration 0 of logarithms
-  const std::string end = fmt::format("{} {}", figure(window.x_high), plot.x_label);
-  text += fmt::format("\n{:>12}{:<{}}{}\n", "", figure(first),
-                      std::max(1, kColumns - static_cast<int>(end.size())), end);
-  return text + legend(plot);
-}
-
-// Plain text within a hundred columns: the standings and the best of each problem, of a small study
-// every cell; and any section.
-
 namespace {
 
 constexpr std::size_t kWidest = 100;    // columns
@@ -159,12 +44,6 @@ std::string label_of(const OptimizerAxis& optimizer) {
 std::string label_of(const ProblemAxis& problem) {
   return name_of_spec(problem.label.empty() ? problem.spec : problem.label) +
          (problem.is_foreign ? " ‡" : "");
-}
-
-std::size_t widest_label(const Comparison& c) {
-  std::size_t width = 10;
-  for (const OptimizerAxis& each : c.optimizers) width = std::max(width, width_of(label_of(each)));
-  return width;
 }
 
 // Breaks between words.
@@ -215,7 +94,7 @@ std::string line_of(const Comparison& c, std::size_t p, std::size_t s, std::size
   if (cell.runs.empty()) return line + "  missing\n";
   if (!cell.is_measured()) return line + "  n/a: " + terminal_text(cell.inapplicable) + "\n";
   const Spread& work = cell.headline[kTightest];
-  line += right(fmt::format("{}/{}", work.n - work.unsolved, work.n), 6);
+  line += right(fmt::format("{}/{}", work.n - work.unsolved, work.n), 6) + "  ";
   for (std::size_t t = 0; t < kTolerances.size(); ++t)
     line += right(matrix_text(c, cell, t) + (cell.is_best[t] ? "*" : " "), 8);
   const Spread& seconds = cell.taken[Measure::time][kTightest];
@@ -226,12 +105,13 @@ std::string line_of(const Comparison& c, std::size_t p, std::size_t s, std::size
 }
 
 std::string every_cell(const Comparison& c) {
-  const std::size_t width = widest_label(c);
+  std::size_t width = 10;
+  for (const OptimizerAxis& each : c.optimizers) width = std::max(width, width_of(label_of(each)));
   std::string text;
   for (std::size_t p = 0; p < c.problems.size(); ++p) {
     text +=
         fmt::format("\n{}\n{}", terminal_text(problem_name(c.problems[p])), left("", width + 2));
-    text += "  runs";
+    text += "  runs  ";
     for (std::size_t t = 0; t < kTolerances.size(); ++t)
       text += right(fmt::format("{}{} ", t == 0 ? "to " : "", c.yardstick.tolerances[t].name), 8);
     text += "      ms         loss  status\n";
@@ -241,8 +121,7 @@ std::string every_cell(const Comparison& c) {
   }
   std::string marks = fmt::format(
       "Median {} in {} to each tolerance; runs: those that reach {}; ms to {}; final loss. {} * "
-      "least of "
-      "its problem, ✗ not reached by half of the runs, n/a: not applicable",
+      "least on its problem, ✗ not reached by half of the runs, n/a: not applicable",
       counted_name(c), unit_name(c), tau_name(c), tau_name(c), success_text(c));
   if (c.is_any_timed_together) marks += ", ≈ timed while other runs used the machine";
   return text + "\n" + wrapped(marks + ".");
@@ -278,23 +157,20 @@ struct RowLimit {
   }
 };
 
-// Columns [first, last) of a table below each other, as wide as they must be.
+// Columns of a table below each other, as wide as they must be.
 std::string block(const Table& table, const Part& part, std::size_t rows) {
   std::vector<std::vector<std::string>> lines(1);
-  const auto add = [&](const std::string& text) { lines.back().push_back(terminal_text(text)); };
-  for (std::size_t i = 0; i < table.names; ++i) add(table.columns[i]);
-  for (std::size_t i = part.first; i < part.last; ++i) add(table.columns[i]);
-  const std::size_t whole = lines[0].size();
+  for (const std::size_t i : part) lines[0].push_back(terminal_text(table.columns[i]));
   for (const auto& row : std::span(table.rows).first(rows)) {
-    lines.emplace_back();
-    for (std::size_t i = 0; i < table.names; ++i) add(row[i].text);
-    if (row.size() < table.columns.size()) add(row.back().text);
-    for (std::size_t i = part.first; i < part.last && row.size() == table.columns.size(); ++i)
-      add(row[i].text);
+    auto& line = lines.emplace_back();
+    const bool is_short = row.size() < table.columns.size();
+    for (const std::size_t i : part)
+      if (i < table.names || !is_short) line.push_back(terminal_text(row[i].text));
+    if (is_short) line.push_back(terminal_text(row.back().text));
   }
-  std::vector<std::size_t> widths(whole, 0);
+  std::vector<std::size_t> widths(part.size(), 0);
   for (const auto& line : lines)
-    for (std::size_t i = 0; i < line.size() && (i == 0 || line.size() == whole); ++i)
+    for (std::size_t i = 0; i < line.size() && (i == 0 || line.size() == part.size()); ++i)
       widths[i] = std::max(widths[i], width_of(line[i]));
   std::string text;
   for (const auto& line : lines) {
@@ -319,17 +195,9 @@ std::string paragraph(const Table& table, std::size_t row) {
   return text;
 }
 
-// The meaning of its columns, for those that are shown.
-std::string meanings_text(const Table& table, std::size_t shown) {
-  std::string text;
-  for (std::size_t i = 1; i < std::min(shown, table.meanings.size()); ++i)
-    text += fmt::format("  {}: {}\n", table.columns[i], table.meanings[i]);
-  return text;
-}
-
 std::string table_text(const Table& table, RowLimit& limit) {
   std::string body;
-  std::size_t shown = 0;  // columns
+  std::size_t shown = 0;  // columns, whose meanings follow
   if (table.is_wordy()) {
     const std::size_t rows = limit.take(table.rows.size());
     for (std::size_t row = 0; row < rows; ++row) body += paragraph(table, row);
@@ -338,13 +206,15 @@ std::string table_text(const Table& table, RowLimit& limit) {
       const std::size_t rows = limit.take(table.rows.size());
       if (rows == 0 && !table.rows.empty()) continue;
       body += block(table, part, rows);
-      shown = part.last;
+      shown = part.back() + 1;
     }
   }
   if (body.empty()) return "";
   std::string text = table.title.empty() ? "" : terminal_text(table.title) + "\n";
   if (!table.reading.empty()) text += wrapped(terminal_text(table.reading));
-  text += body + meanings_text(table, shown);
+  text += body;
+  for (std::size_t i = 1; i < std::min(shown, table.meanings.size()); ++i)
+    text += fmt::format("  {}: {}\n", table.columns[i], table.meanings[i]);
   return text + (table.caption.empty() ? "" : wrapped(table.caption));
 }
 
@@ -352,9 +222,6 @@ std::string table_text(const Table& table) {
   RowLimit all;
   return table_text(table, all);
 }
-
-// The first of its tables; the sentences below name methods that are not ranked.
-std::string standings(const Section& section) { return "\n" + table_text(section.tables[0]); }
 
 }  // namespace
 
@@ -378,9 +245,6 @@ std::string terminal_claim(const Section& claim) {
   std::string text = wrapped(terminal_text(claim.title)) + "\n";
   for (const Reading& reading : claim.readings)
     text += wrapped(fmt::format("{}: {}", reading.title, terminal_text(reading.text)));
-  for (const Plot& plot : claim.plots)
-    text += fmt::format("\n{}\n{}{}", terminal_text(plot.title), text_plot(plot),
-                        wrapped(terminal_text(plot.caption)));
   text += "\n";
   constexpr std::size_t kFewRuns = 24;
   for (const Table& table : claim.tables)
@@ -403,7 +267,7 @@ std::string terminal_table(const Document& document) {
   if (cells <= kFewCells)
     text += every_cell(c);
   else
-    text += standings(document.section("standings")) + best_of_each(c) + "\n";
+    text += "\n" + table_text(document.section("standings").tables[0]) + best_of_each(c) + "\n";
   for (const Reading& sentence : document.section("standings").readings)
     text += wrapped(terminal_text(sentence.text));
   if (const std::string legend = marks_legend(c); !legend.empty()) text += wrapped(legend);

@@ -5,92 +5,79 @@
 #include <array>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "core/json.h"
 #include "core/oracle.h"
 #include "core/threads.h"
-#include "reports/formats/escape.h"
-#include "reports/page/kinds.h"
+#include "reports/formats/formats.h"
 #include "reports/page/page.h"
-#include "reports/sections/claim_terms.h"
-#include "reports/sections/ranking.h"
 #include "reports/sections/sections.h"
 #include "reports/sections/words.h"
 
 namespace isoline::reports {
 namespace {
 
-std::string list_html(const std::vector<std::string>& words) { return html_text(joined(words)); }
-
-std::string problem_link(const Comparison& c, std::size_t p, const std::string& remark) {
-  return fmt::format("<li data-p={0}><a href=\"#problem-{0}\">{1}</a>{2}</li>", p,
-                     html_text(problem_name(c.problems[p])),
-                     remark.empty() ? "" : " <small>" + html_text(remark) + "</small>");
+// A row of the list of facts, where there is any.
+std::string row(const char* term, const std::string& content) {
+  return content.empty() ? "" : fmt::format("<dt>{}</dt><dd>{}</dd>", term, content);
 }
 
 // Its problems by what became of them, each list in order of the problems.
-struct Deeds {
+std::string deeds_html(const Comparison& c, std::size_t s) {
   std::string won, unsolved, failed, inapplicable;
-};
-
-Deeds deeds_of(const Comparison& c, std::size_t s) {
-  Deeds deeds;
   for (std::size_t p = 0; p < c.problems.size(); ++p) {
     const Cell& cell = c.cell(p, s);
+    const auto add = [&](std::string& list, const std::string& remark) {
+      list += fmt::format("<li data-p={0}><a href=\"#problem-{0}\">{1}</a>{2}</li>", p,
+                          html_text(problem_name(c.problems[p])),
+                          remark.empty() ? "" : " <small>" + html_text(remark) + "</small>");
+    };
     if (cell.runs.empty()) continue;
     if (!cell.is_measured()) {
-      deeds.inapplicable += problem_link(c, p, cell.inapplicable);
+      add(inapplicable, cell.inapplicable);
       continue;
     }
     const Spread& work = cell.headline[kTightest];
     if (cell.is_best[kTightest])
-      deeds.won += problem_link(c, p, fmt::format("{} {}", amount(c, work.median), unit_name(c)));
+      add(won, fmt::format("{} {}", amount(c, work.median), unit_name(c)));
     if (cell.failed > 0) {
-      const Record* failed = nullptr;
+      std::string message;  // of the last
       for (const std::size_t run : cell.runs)
-        if (is_failure(c.runs[run].record->status)) failed = c.runs[run].record;
-      deeds.failed += problem_link(
-          c, p, fmt::format("{} of {} runs: {}", cell.failed, cell.runs.size(), failed->message));
+        if (is_failure(c.runs[run].record->status)) message = c.runs[run].record->message;
+      add(failed, fmt::format("{} of {} runs: {}", cell.failed, cell.runs.size(), message));
     } else if (!work.is_solved()) {
-      deeds.unsolved +=
-          problem_link(c, p,
-                       fmt::format("{}; final loss {} at best", status_text(cell.statuses),
-                                   figure(cell.loss.low)));
+      add(unsolved, fmt::format("{}; final loss {} at best", status_text(cell.statuses),
+                                figure(cell.loss.low)));
     }
   }
-  return deeds;
-}
-
-std::string row(const char* term, const std::string& content) {
-  return content.empty() ? "" : fmt::format("<dt>{}</dt><dd>{}</dd>", term, content);
-}
-std::string list_row(const char* term, const std::string& items) {
-  return items.empty() ? "" : row(term, "<ul>" + items + "</ul>");
+  std::string html;
+  for (const auto& [term, items] : {std::pair("wins", &won),
+                                    {"does not solve", &unsolved},
+                                    {"failed on", &failed},
+                                    {"not applicable to", &inapplicable}})
+    if (!items->empty()) html += row(term, "<ul>" + *items + "</ul>");
+  return html;
 }
 
 // "0.01", or "0.001 to 14.7, 9 values" where a table of rates or a sweep chose by problem.
 std::string values_of(const Comparison& c, std::size_t s, const std::string& option) {
-  std::vector<OptionValue> values;
+  std::set<OptionValue> values;
   for (const auto& problem : c.cells)
-    for (const std::size_t run : problem[s].runs) {
-      const OptionValues& options = c.runs[run].record->request.optimizer.options;
-      if (const OptionValue* at = options.find(option)) values.push_back(*at);
-    }
-  std::ranges::sort(values);
-  values.erase(std::unique(values.begin(), values.end()), values.end());
-  const auto text = [](const OptionValue& value) {
-    if (const Real* number = std::get_if<Real>(&value)) return figure(*number);
-    if (const Index* number = std::get_if<Index>(&value)) return figure(Real(*number));
-    return option_text(value);
-  };
-  if (values.empty()) return "";
-  if (values.size() == 1) return text(values[0]);
-  if (values.front().index() < 2)  // numbers
-    return fmt::format("{} to {}, {} values", text(values.front()), text(values.back()),
-                       values.size());
-  std::vector<std::string> words;
-  for (const OptionValue& value : values) words.push_back(text(value));
-  return joined(words);
+    for (const std::size_t run : problem[s].runs)
+      if (const auto* at = c.runs[run].record->request.optimizer.options.find(option))
+        values.insert(*at);
+  std::vector<std::string> texts;
+  for (const OptionValue& value : values) {
+    const Real* const number = std::get_if<Real>(&value);
+    const Index* const count = std::get_if<Index>(&value);
+    texts.push_back(number != nullptr  ? figure(*number)
+                    : count != nullptr ? figure(Real(*count))
+                                       : option_text(value));
+  }
+  const bool are_numbers = !values.empty() && values.begin()->index() < 2;
+  if (texts.size() < 2 || !are_numbers) return joined(texts);
+  return fmt::format("{} to {}, {} values", texts.front(), texts.back(), texts.size());
 }
 
 std::string options_html(const Comparison& c, std::size_t s, const Sheet& sheet) {
@@ -147,32 +134,28 @@ std::string reading(const Comparison& c, std::size_t s) {
                     axis.failed > 0 ? fmt::format("; of all its runs {} failed", axis.failed) : "");
 }
 
-std::string sheet_html(const OptimizerAxis& axis) {
-  if (axis.sheet == nullptr) return "";
-  const Sheet& sheet = *axis.sheet;
-  std::string html =
-      fmt::format("<p class=about>{} <cite>{}</cite></p><p class=formula>{}</p>",
-                  html_text(sheet.title), html_text(sheet.source), html_text(sheet.formula));
-  if (!sheet.note.empty()) html += fmt::format("<p class=note>{}</p>", html_text(sheet.note));
+std::string sheet_html(const Sheet* sheet, const std::string& facts = "") {
+  if (sheet == nullptr) return "";
+  std::string html = fmt::format("<p class=about>{} <cite>{}</cite>{}</p><p class=formula>{}</p>",
+                                 html_text(sheet->title), html_text(sheet->source),
+                                 html_text(facts), html_text(sheet->formula));
+  if (!sheet->note.empty()) html += fmt::format("<p class=note>{}</p>", html_text(sheet->note));
   return html;
 }
 
 std::string optimizer_html(const Comparison& c, std::size_t s) {
   const OptimizerAxis& axis = c.optimizers[s];
-  const Deeds deeds = deeds_of(c, s);
   std::string html = fmt::format(
       "<article class=\"optimizer one\" id=optimizer-{0} data-s={0}><noscript><h3>{1}{2}</h3>{3}"
       "<p class=reading>{4}</p><dl>",
-      s, html_text(shown_spec(axis.label)), marks_html(axis), sheet_html(axis),
+      s, html_text(shown_spec(axis.label)), marks_html(axis), sheet_html(axis.sheet),
       html_text(reading(c, s)));
   html += row("kind", kind_title(axis.mathematics()));
   html += row("asks for", html_text(counted_oracles(c, s)));
   if (!axis.privileges.empty())
-    html += row("sees", "<span class=privilege>" + list_html(axis.privileges) + "</span>");
-  html += list_row("wins", deeds.won) + list_row("does not solve", deeds.unsolved) +
-          list_row("failed on", deeds.failed) + list_row("not applicable to", deeds.inapplicable);
-  return html + "</dl>" + (axis.sheet == nullptr ? "" : options_html(c, s, *axis.sheet)) +
-         "</noscript></article>\n";
+    html += row("sees", "<span class=privilege>" + html_text(joined(axis.privileges)) + "</span>");
+  return html + deeds_html(c, s) + "</dl>" +
+         (axis.sheet == nullptr ? "" : options_html(c, s, *axis.sheet)) + "</noscript></article>\n";
 }
 
 }  // namespace
@@ -205,46 +188,31 @@ std::string optimizers_html(const Comparison& c) {
 
 namespace {
 
-// The condition of J at both ends, if known.
-std::string condition_text(const Sheet& sheet) {
-  std::string text;
-  if (sheet.start_condition) text += figure(*sheet.start_condition) + " at the start";
-  if (sheet.condition)
-    text += fmt::format("{}{} at the solution", text.empty() ? "" : ", ", figure(*sheet.condition));
-  return text.empty() ? "" : fmt::format("condition of J {}, ", text);
-}
-
-std::string about_html(const Sheet& sheet) {
-  std::string facts;
+std::string facts_text(const Sheet& sheet) {
+  std::string facts = " · ";
   if (sheet.unknowns > 0)
     facts += fmt::format("{} unknown{}, ", sheet.unknowns, sheet.unknowns == 1 ? "" : "s");
   if (sheet.residuals > 0)
     facts += fmt::format("{} residual{}, ", sheet.residuals, sheet.residuals == 1 ? "" : "s");
-  facts += condition_text(sheet);
-  facts +=
-      sheet.inverse.empty() || sheet.inverse == "none" ? "no inverse" : sheet.inverse + " inverse";
-  std::string html = fmt::format(
-      "<p class=about>{} <cite>{}</cite> · {}</p><p class=formula>{}</p>", html_text(sheet.title),
-      html_text(sheet.source), html_text(facts), html_text(sheet.formula));
-  if (!sheet.note.empty()) html += fmt::format("<p class=note>{}</p>", html_text(sheet.note));
-  return html;
+  std::vector<std::string> conditions;  // of J, where they are known
+  if (sheet.start_condition) conditions.push_back(figure(*sheet.start_condition) + " at the start");
+  if (sheet.condition) conditions.push_back(figure(*sheet.condition) + " at the solution");
+  if (!conditions.empty()) facts += fmt::format("condition of J {}, ", joined(conditions));
+  const bool has_inverse = !sheet.inverse.empty() && sheet.inverse != "none";
+  return facts + (has_inverse ? sheet.inverse : "no") + " inverse";
 }
 
 std::string problem_html(const Comparison& c, std::size_t p,
                          const std::optional<FoundFields>& fields) {
   const ProblemAxis& problem = c.problems[p];
-  const Sheet* sheet = problem.sheet;
-  std::string html =
-      fmt::format("<article class=\"problem one\" id=problem-{0} data-p={0}><noscript><h3>{1}</h3>",
-                  p, html_text(problem_name(problem)));
-  if (sheet != nullptr) html += about_html(*sheet);
-  html += fmt::format(
-      "<p class=reading>{}</p><div class=solve><div class=curves>{}</div><div "
-      "class=reached></div></div>",
-      html_text(curve_reading(c, p)), curves_html(c, p));
-  html += planes_html(c, p);
-  if (fields) html += fields_html(c, *fields);
-  return html + "</noscript></article>\n";
+  return fmt::format(
+             "<article class=\"problem one\" id=problem-{0} data-p={0}><noscript><h3>{1}</h3>{2}"
+             "<p class=reading>{3}</p><div class=solve><div class=curves>{4}</div><div "
+             "class=reached></div></div>",
+             p, html_text(problem_name(problem)),
+             sheet_html(problem.sheet, problem.sheet == nullptr ? "" : facts_text(*problem.sheet)),
+             html_text(curve_reading(c, p)), curves_html(c, p)) +
+         planes_html(c, p) + (fields ? fields_html(c, *fields) : "") + "</noscript></article>\n";
 }
 
 }  // namespace

@@ -1,39 +1,27 @@
-// What the page draws of problems and papers: curves by every measure, paths over the loss, the
-// papers' figures.
+// What the page draws of problems and papers: curves by every measure, and the papers' figures.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <set>
 
-#include "reports/formats/escape.h"
-#include "reports/page/contour.h"
+#include "reports/formats/formats.h"
 #include "reports/page/page.h"
-#include "reports/page/svg.h"
-#include "reports/read/curves.h"
+#include "reports/sections/figures.h"
 #include "reports/sections/words.h"
 
 namespace isoline::reports {
-namespace {
 
-constexpr std::size_t kMostLines = 8;  // at first: more can not be told apart
-
-// The best two of a ranking and the best of each kind, at most eight.
 std::set<std::size_t> shown_at_first(const Comparison& c, const std::vector<std::size_t>& ranking) {
   std::set<std::size_t> shown;
   std::set<std::string> kinds;
-  for (std::size_t i = 0; i < ranking.size() && shown.size() < kMostLines; ++i)
+  for (std::size_t i = 0; i < ranking.size() && shown.size() < kMostShown; ++i)
     if (kinds.insert(c.optimizers[ranking[i]].mathematics()).second || i == 1)
       shown.insert(ranking[i]);
   return shown;
 }
 
-std::set<std::size_t> all_but(const Comparison& c, const std::set<std::size_t>& shown) {
-  std::set<std::size_t> others;
-  for (std::size_t s = 0; s < c.optimizers.size(); ++s)
-    if (!shown.contains(s)) others.insert(s);
-  return others;
-}
+namespace {
 
 // Points a line, so that all lines together stay within a few megabytes.
 std::size_t points_per_curve(const Comparison& c) {
@@ -107,7 +95,7 @@ class Curves {
   Curves(const Comparison& c, std::size_t p) : c_(c), p_(p), ranking_(ranking(c, p)) {
     for (const std::size_t s : ranking_)
       curves_.push_back(median_curve(c, c.cell(p, s), points_per_curve(c)));
-    on_demand_ = all_but(c, shown_at_first(c, ranking_));
+    shown_ = shown_at_first(c, ranking_);
     for (const Cell& cell : c.cells[p])
       for (const std::size_t run : cell.runs)
         if (const auto& scale = c.runs[run].record->x_scale) scales_.push_back(*scale);
@@ -129,7 +117,7 @@ class Curves {
         const bool is_own = (is_of_error == (has_x && is_of_x)) && by == c_.yardstick.by;
         drawing.attributes = fmt::format(" data-by={} data-vertical={}{}", name_of(by),
                                          vertical.name, is_own ? "" : " hidden");
-        html += drawing_svg(drawing, tau_of(c_));
+        html += drawing_svg(drawing, c_.yardstick.tolerances[kTightest].tau);
       }
     }
     return html;
@@ -161,7 +149,7 @@ class Curves {
                  .is_log_y = true},
         .join = are_stairs ? Join::steps : Join::straight,
         .has_names = true,
-        .on_demand = on_demand_};
+        .shown = shown_};
     Real start = 0;  // the greatest
     for (std::size_t i = 0; i < ranking_.size(); ++i) {
       const std::size_t s = ranking_[i];
@@ -174,16 +162,13 @@ class Curves {
               : kept;
       line.optimizer = s;
       line.name = optimizer_name(c_.optimizers[s]);
-      if (are_stairs || on_demand_.contains(s)) line.low.clear(), line.high.clear();
+      if (are_stairs || !shown_.contains(s)) line.low.clear(), line.high.clear();
       out.plot.series.push_back(std::move(line));
     }
     if (is_of_error == is_x_sought() && !is_learned)
       out.tolerance = is_of_error ? median_of(scales_) : 1;
     out.has_points = !are_stairs;
-    Plot shown = out.plot;
-    std::erase_if(shown.series,
-                  [&](const PlotSeries& line) { return on_demand_.contains(*line.optimizer); });
-    Window window = window_of(shown.series.empty() ? out.plot : shown);
+    Window window = window_of(shown_lines(out));
     const Real most = is_of_error ? kHighest * std::max(start, kLowest) : kHighest;
     window.y_high = std::max(std::min(window.y_high, most), 2 * window.y_low);
     out.window = window;
@@ -194,85 +179,9 @@ class Curves {
   std::size_t p_;
   std::vector<std::size_t> ranking_;
   std::vector<MedianCurve> curves_;
-  std::set<std::size_t> on_demand_;
+  std::set<std::size_t> shown_;
   std::vector<Real> scales_;
 };
-
-// --- paths
-
-using Rows = std::vector<std::vector<Real>>;
-
-PlotSeries path_series(const Rows& rows, std::size_t most) {
-  PlotSeries line;
-  for (const std::size_t i : thinned(rows.size(), most)) {
-    const bool is_point = rows[i].size() == 2;
-    line.x.push_back(is_point ? rows[i][0] : NAN);
-    line.y.push_back(is_point ? rows[i][1] : NAN);
-  }
-  return line;
-}
-
-Drawing plane_drawing(const Comparison& c, std::size_t p, const Landscape& landscape,
-                      const char* space, Rows Path::*rows, const std::vector<Real>& goal) {
-  constexpr Real kMostStretch = 12;  // beyond it a valley would be a line
-  const std::vector<Path> all = paths(c, p);
-  const std::size_t points = std::clamp<std::size_t>(8000 / all.size(), 12, 120);
-  const auto& [left, right, low, high] = landscape.window;
-  const Real stretch = std::max((right - left) / (high - low), (high - low) / (right - left));
-  Drawing out{
-      .plot = {.kind = Plot::Kind::lines,
-               .title = fmt::format("Paths in {} on {}", space, problem_name(c.problems[p])),
-               .x_label = space + std::string("₁"),
-               .y_label = space + std::string("₂")},
-      .is_to_scale = stretch <= kMostStretch,
-      .on_demand = all_but(c, shown_at_first(c, ranking(c, p))),
-      .window = Window{left, right, low, high}};
-  for (const Contour& contour : contours(landscape)) {
-    PlotSeries& line = out.ground.emplace_back();
-    for (const Polyline& piece : contour.lines) {
-      for (const Point& point : piece) {
-        line.x.push_back(point.x1);
-        line.y.push_back(point.x2);
-      }
-      line.x.push_back(NAN);
-      line.y.push_back(NAN);
-    }
-  }
-  for (const Path& path : all) {
-    PlotSeries line = path_series(path.*rows, points);
-    line.optimizer = path.index;
-    line.name = optimizer_name(c.optimizers[path.index]);
-    out.plot.series.push_back(std::move(line));
-  }
-  const PlotSeries& first = out.plot.series.front();
-  out.ends.push_back({{}, "start", {first.x.at(0)}, {first.y.at(0)}, {}, {}});
-  if (goal.size() == 2) out.ends.push_back({{}, "goal", {goal[0]}, {goal[1]}, {}, {}});
-  if (!out.is_to_scale)
-    out.plot.caption = fmt::format("Not to scale: one axis is {:.3g} times as long.", stretch);
-  return out;
-}
-
-// Of the paths in x or in y; empty where fewer than two say anything.
-std::string path_reading(const Comparison& c, std::size_t problem, Rows Path::*rows) {
-  std::vector<Path> all = paths(c, problem);
-  const auto length = [rows](const Path& path) { return detour(path.*rows); };
-  std::erase_if(all, [&](const Path& path) { return length(path) == kNever; });
-  if (all.size() < 2) return "";
-  const auto [straight, winding] = std::ranges::minmax(all, {}, length);
-  constexpr Real kStraight = 1.0005;
-  const Real least = length(straight);
-  return fmt::format(
-      "Straightest: {}, {}. Longest way round: {}, {} the direct distance.",
-      shown_spec(straight.optimizer),
-      least < kStraight ? "a straight line" : multiple(least) + " the direct distance",
-      shown_spec(winding.optimizer), multiple(length(winding)));
-}
-
-std::string plane_html(const Drawing& drawing, const char* title, const std::string& reading) {
-  return fmt::format("<figure class=plane><figcaption><b>{}</b> {} {}</figcaption>{}</figure>",
-                     title, html_text(reading), html_text(drawing.plot.caption),
-                     drawing_svg(drawing));
-}
 
 // --- papers
 
@@ -289,18 +198,14 @@ std::set<std::size_t> lines_of_paper(const Comparison& c, const Figure& figure) 
     });
   });
   std::ranges::sort(all);  // by rank
-  if (figure.of_the_paper.empty() && all.size() > kMostLines) return shown_at_first(c, all);
-  all.resize(std::min(all.size(), kMostLines));
+  if (figure.of_the_paper.empty() && all.size() > kMostShown) return shown_at_first(c, all);
+  all.resize(std::min(all.size(), kMostShown));
   return {all.begin(), all.end()};
 }
 
 // No axis leaves out the end of a line. The overshoot of a path's first steps would flatten all.
 Window figure_window(const Figure& figure, const Drawing& drawing) {
-  Plot shown = drawing.plot;
-  std::erase_if(shown.series, [&](const PlotSeries& line) {
-    return drawing.on_demand.contains(*line.optimizer);
-  });
-  if (shown.series.empty()) shown = drawing.plot;
+  Plot shown = shown_lines(drawing);
   if (figure.kind == "path") {
     constexpr Real kDiverged = 1e3;  // times as far as most
     const auto reach = [](const PlotSeries& line) {
@@ -338,22 +243,17 @@ Drawing figure_drawing(const Comparison& c, const Figure& figure) {
                        .is_log_y = figure.is_log_y},
               .join = figure.kind == "scatter" ? Join::none : Join::straight,
               .has_names = figure.kind != "scatter",
-              .on_demand = all_but(c, lines_of_paper(c, figure))};
+              .shown = lines_of_paper(c, figure)};
   for (const FigureLine& line : figure.lines)
     out.plot.series.push_back({line.optimizer, optimizer_name(c.optimizers[line.optimizer]), line.x,
                                line.y, line.low, line.high});
   for (const PublishedMark& mark : figure.published)
-    if (!out.on_demand.contains(mark.optimizer))
+    if (out.shown->contains(mark.optimizer))
       out.plot.published.push_back(
           {mark.optimizer, mark.name, {mark.x}, {mark.y}, {mark.low}, {mark.high}});
   out.window = figure_window(figure, out);
-  if (figure.has_diagonal)
-    out.ground.push_back({{},
-                          "",
-                          {out.window->x_low, out.window->x_high},
-                          {out.window->x_low, out.window->x_high},
-                          {},
-                          {}});
+  const std::vector<Real> ends = {out.window->x_low, out.window->x_high};
+  if (figure.has_diagonal) out.ground.push_back({{}, "", ends, ends, {}, {}});
   return out;
 }
 
@@ -374,14 +274,10 @@ std::string pictures_html(const std::vector<Picture>& pictures) {
   return "<div class=pictures>" + html + "</div>";
 }
 
-std::string problem_attribute(const Comparison& c, const Figure& figure) {
-  const auto at = std::ranges::find_if(c.problems, [&](const ProblemAxis& problem) {
-    return shown_spec(problem.spec) == shown_spec(figure.problem);
-  });
-  return at == c.problems.end() ? "" : fmt::format(" data-p={}", at - c.problems.begin());
-}
-
 std::string figure_html(const Comparison& c, const Figure& figure) {
+  Topic topic;
+  for (std::size_t p = c.problems.size(); p-- > 0;)  // the first
+    if (shown_spec(c.problems[p].spec) == shown_spec(figure.problem)) topic.problem = p;
   std::string drawn;
   if (!figure.pictures.empty()) {
     drawn = pictures_html(figure.pictures);
@@ -392,40 +288,13 @@ std::string figure_html(const Comparison& c, const Figure& figure) {
   return fmt::format(
       "<figure class=\"plot panel{}\"{}><figcaption><b>{}</b> <span class=formula>{}</span><p "
       "class=reading>{}</p></figcaption>{}</figure>\n",
-      figure.pictures.empty() ? "" : " wide", problem_attribute(c, figure), html_text(figure.title),
+      figure.pictures.empty() ? "" : " wide", topic_attributes(topic), html_text(figure.title),
       html_text(figure.problem), html_text(figure.reading), drawn);
 }
 
 }  // namespace
 
-Real tau_of(const Comparison& c) { return c.yardstick.tolerances[kTightest].tau; }
-
-std::vector<std::size_t> first_lines(const Comparison& c, std::size_t p) {
-  const std::set<std::size_t> shown = shown_at_first(c, ranking(c, p));
-  return {shown.begin(), shown.end()};
-}
-
 std::string curves_html(const Comparison& c, std::size_t p) { return Curves(c, p).html(); }
-
-// Paths as the paper draws them: short runs with a point a step, long ones as lines.
-std::string planes_html(const Comparison& c, std::size_t p) {
-  const Sheet* sheet = c.problems[p].sheet;
-  const bool has_planes = sheet != nullptr && (sheet->landscape_x || sheet->landscape_y);
-  if (!has_planes || paths(c, p).empty()) return "";
-  std::string html = "<div class=planes>";
-  if (sheet->landscape_x)
-    html += plane_html(plane_drawing(c, p, *sheet->landscape_x, "x", &Path::x, sheet->truth),
-                       "Paths in x, over the loss.", path_reading(c, p, &Path::x));
-  if (sheet->landscape_y)
-    html += plane_html(plane_drawing(c, p, *sheet->landscape_y, "y", &Path::y, sheet->target),
-                       "The same paths in y.", path_reading(c, p, &Path::y));
-  return html +
-         fmt::format(
-             "</div><p class=legend>Thin lines: equal loss, {}. Paths of the lowest seed; "
-             "points are steps, drawn for runs of few steps. ○ start, ● solution in x, "
-             "target in y.</p>",
-             contour_wording(sheet->landscape_x ? *sheet->landscape_x : *sheet->landscape_y));
-}
 
 std::string figures_html(const Document& document) {
   std::string html;

@@ -5,7 +5,7 @@
 function commandOf(p, s) {
   const packed = document.querySelector('#cells > noscript')?.textContent;
   if (packed === undefined) return [...LONG.values()][0]?.rows.find((row) => row.dataset.p === String(p) && row.dataset.s === String(s))?.querySelector('[data-command]')?.dataset.command;
-  const row = packed.match(new RegExp(`<tr data-p=${p} data-s=${s}>.*`))?.[0], made = document.createElement('template');
+  const row = packed.match(new RegExp(`<tr data-s=${s} data-p=${p}>.*`))?.[0], made = document.createElement('template');
   made.innerHTML = row?.match(/<button.*<\/button>/)?.[0] ?? '';
   return made.content.firstChild?.dataset.command;
 }

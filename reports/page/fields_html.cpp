@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <ranges>
 
-#include "reports/formats/escape.h"
-#include "reports/page/kinds.h"
+#include "reports/formats/formats.h"
 #include "reports/page/page.h"
 #include "reports/sections/words.h"
 
@@ -51,19 +51,17 @@ namespace {
 std::string quantity_name(const Quantity& quantity) {
   return quantity.unit.empty() ? quantity.name : quantity.name + ", " + quantity.unit;
 }
-
 // For x, and for all that follows from it if it is a history.
 std::string quantity_name(const FoundFields& all) {
   return all.is_history() ? all.x.name + " → " + quantity_name(all.y) : quantity_name(all.x);
 }
 
-// The caption of the snapshots.
+// The captions of the snapshots.
 struct Labels {
-  std::string x, truth, rest;
+  std::string x = "x", truth = "x*", rest = "x − x*";
 };
 Labels labels_of(const FoundFields& all) {
-  return all.is_history() ? Labels{"x → y", "x* → y*", "x − x* → y − y*"}
-                          : Labels{"x", "x*", "x − x*"};
+  return all.is_history() ? Labels{"x → y", "x* → y*", "x − x* → y − y*"} : Labels{};
 }
 
 std::string short_figure(Real value) { return figure(std::stod(fmt::format("{:.3g}", value))); }
@@ -185,24 +183,24 @@ std::string fields_html(const Comparison& c, const FoundFields& all) {
 }
 
 std::string fields_json(const FoundFields& all) {
-  std::string found;
-  for (const FoundField& one : all.found) {
-    std::string iterations, apart, x;
-    for (std::size_t i = 0; i < one.frames.iterations.size(); ++i) {
-      const char* comma = i > 0 ? "," : "";
-      iterations += fmt::format("{}{}", comma, one.frames.iterations[i]);
-      apart += comma + json_quoted(apart_text(one, i));
-      x += fmt::format("{}\"{}\"", comma, radix64(cells_of(all, one.frames.x(i), all.x_scale)));
-    }
-    found += fmt::format("{}{{\"s\":{},\"iterations\":[{}],\"apart\":[{}],\"x\":[{}]}}",
-                         found.empty() ? "" : ",", one.optimizer, iterations, apart, x);
-  }
+  const auto found_json = [&](const FoundField& one) {
+    const auto of_each = [&](auto item) {
+      return json_list(std::views::iota(std::size_t{0}, one.frames.iterations.size()), item);
+    };
+    return fmt::format(
+        "{{\"s\":{},\"iterations\":{},\"apart\":{},\"x\":{}}}", one.optimizer,
+        of_each([&](std::size_t i) { return std::to_string(one.frames.iterations[i]); }),
+        of_each([&](std::size_t i) { return json_quoted(apart_text(one, i)); }),
+        of_each([&](std::size_t i) {
+          return '"' + radix64(cells_of(all, one.frames.x(i), all.x_scale)) + '"';
+        }));
+  };
   const FieldFrames& frames = all.frames();
   const Labels labels = labels_of(all);
-  return fmt::format("{{\"labels\":[{},{}],\"truth\":\"{}\",\"found\":[{}]}}",
-                     json_quoted(labels.x), json_quoted(labels.rest),
+  return fmt::format("{{\"labels\":[{},{}],\"truth\":\"{}\",\"found\":{}}}", json_quoted(labels.x),
+                     json_quoted(labels.rest),
                      frames.has_truth() ? radix64(cells_of(all, frames.truth(), all.x_scale)) : "",
-                     found);
+                     json_list(all.found, found_json));
 }
 
 }  // namespace isoline::reports

@@ -5,14 +5,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <set>
 #include <string_view>
 
 #include "core/results/ranking.h"
-#include "reports/formats/escape.h"
-#include "reports/page/kinds.h"
-#include "reports/sections/claim_terms.h"
+#include "reports/formats/formats.h"
 #include "reports/sections/sections.h"
 #include "reports/sections/words.h"
 
@@ -46,26 +45,27 @@ std::string remarks_html(const Document& document) {
   return html.empty() ? "" : "<ul class=remarks>" + html + "</ul>";
 }
 
-std::string day_of(const Record& record) {
+// The suites, and the last day a run began.
+std::vector<std::string> origin_of(const Comparison& c) {
   constexpr std::size_t kDay = 10;
-  return record.provenance.run.started.substr(0, kDay);
+  std::vector<std::string> parts = c.study->plan.suites;
+  std::string day;
+  for (const Run& run : c.runs)
+    day = std::max(day, run.record->provenance.run.started.substr(0, kDay));
+  if (!day.empty()) parts.push_back(day);
+  return parts;
 }
 
-// "quick · 2026-11-22 · 1a2b3c4 · 38 optimizers on …": the suites, the last day a run began, the
-// commits of the programs that ran.
+// "quick · 2026-11-22 · 1a2b3c4 · 38 optimizers on …", with the commits of the programs that ran.
 std::string head_html(const Document& document) {
   const Comparison& c = document.comparison;
   constexpr std::size_t kShort = 7;
-  std::vector<std::string> parts = c.study->plan.suites;
-  std::string day;
+  std::vector<std::string> parts = origin_of(c);
   std::set<std::string> commits;
-  for (const Run& run : c.runs) {
-    const Provenance& from = run.record->provenance;
-    day = std::max(day, day_of(*run.record));
-    if (!run.record->imported && !from.build->commit.empty())
-      commits.insert(from.build->commit.substr(0, kShort));
-  }
-  if (!day.empty()) parts.push_back(day);
+  for (const Run& run : c.runs)
+    if (const auto& build = *run.record->provenance.build;
+        !run.record->imported && !build.commit.empty())
+      commits.insert(build.commit.substr(0, kShort));
   if (commits.size() == 1) parts.push_back(*commits.begin());
   if (commits.size() > 1) parts.push_back(counted(commits.size(), "commit"));
   parts.push_back(document.headline);
@@ -73,12 +73,8 @@ std::string head_html(const Document& document) {
 }
 
 // "quick, 2026-11-22": what tells two tabs of a browser apart.
-std::string title_of(const Document& document) {
-  const Comparison& c = document.comparison;
-  std::vector<std::string> parts = c.study->plan.suites;
-  std::string day;
-  for (const Run& run : c.runs) day = std::max(day, day_of(*run.record));
-  if (!day.empty()) parts.push_back(day);
+std::string title_of(const Comparison& c) {
+  const std::vector<std::string> parts = origin_of(c);
   return (parts.empty() ? "" : joined(parts) + " · ") + "Isoline";
 }
 
@@ -100,9 +96,8 @@ std::string profile_html(const Comparison& c) {
   return html_text(profile_reading(c, kTightest));
 }
 
-// --- the first tab
-
-std::string alerts_html(const Document& document) {
+// The first tab: alerts; a sentence that decides, of which all that these runs say opens; facts.
+std::string overview_html(const Document& document) {
   const Comparison& c = document.comparison;
   std::string html;
   if (!document.incomplete.empty())
@@ -114,22 +109,14 @@ std::string alerts_html(const Document& document) {
         "<p class=alert><b>{} failed</b>{} — <a href=\"#failures\">which, and why</a></p>\n",
         counted(c.failures.size(), "run"),
         unread > 0 ? fmt::format(", {} unreadable", counted(unread, "file")) : "");
-  return html;
-}
-
-// A sentence decides; all that these runs say opens.
-std::string verdict_html(const Comparison& c) {
-  const std::vector<std::string> sentences = verdict(c);
-  if (sentences.empty()) return "";
-  std::string html = fmt::format("<p class=verdict>{}</p>\n", html_text(short_verdict(c)));
-  html += "<details><summary>All that these runs say</summary>";
-  for (const std::string& sentence : sentences)
-    html += fmt::format("<p class=lead>{}</p>\n", html_text(sentence));
-  return html + "</details>\n";
-}
-
-std::string settled_html(const Comparison& c) {
-  std::string html = "<dl class=settled>";
+  if (const std::vector<std::string> sentences = verdict(c); !sentences.empty()) {
+    html += fmt::format("<p class=verdict>{}</p>\n", html_text(short_verdict(c)));
+    html += "<details><summary>All that these runs say</summary>";
+    for (const std::string& sentence : sentences)
+      html += fmt::format("<p class=lead>{}</p>\n", html_text(sentence));
+    html += "</details>\n";
+  }
+  html += "<dl class=settled>";
   for (const Reading& reading : ranking_facts(c))
     html += fmt::format("<dt>{}<dd>{}", html_text(reading.title), html_text(reading.text));
   return html + "</dl>\n";
@@ -145,7 +132,40 @@ std::string endings_html(const Comparison& c) {
   return "<ul class=tiles>" + html + "</ul>";
 }
 
+// --- kinds of methods as colours, dashes and words
+
+const std::map<std::string_view, std::string> kTitles = {{"gradient", "Gradient"},
+                                                         {"adaptive", "Adaptive gradient"},
+                                                         {"quasi-newton", "Quasi-Newton"},
+                                                         {"second-order", "Second order"},
+                                                         {"least-squares", "Least squares"},
+                                                         {"half-inverse", "Half-inverse gradients"},
+                                                         {"inversion", "Inversion of the physics"},
+                                                         {"derivative-free", "Derivative-free"}};
+
+constexpr std::array<std::string_view, 5> kDashes = {"none", "7 3", "2 3", "9 3 2 3", "14 4"};
+constexpr std::array<int, 3> kShares = {100, 72, 50};  // of the kind's colour; the rest is ink
+
 }  // namespace
+
+std::string kind_title(std::string_view kind) {
+  const auto at = kTitles.find(kind);
+  return at == kTitles.end() ? "Other" : at->second;
+}
+
+std::string kind_rules(const Comparison& c) {
+  std::string rules;
+  std::map<std::string, std::size_t> counts;
+  for (std::size_t s = 0; s < c.optimizers.size(); ++s) {
+    std::string kind = c.optimizers[s].mathematics();
+    if (!kTitles.contains(kind)) kind = "other";
+    const std::size_t place = counts[kind]++;
+    rules += fmt::format(
+        "[data-s=\"{}\"]{{--series:color-mix(in oklab,var(--{}) {}%,var(--ink));--dash:{}}}\n", s,
+        kind, kShares[place / kDashes.size() % kShares.size()], kDashes[place % kDashes.size()]);
+  }
+  return rules;
+}
 
 std::string marks_html(const OptimizerAxis& axis) {
   std::string marks;
@@ -159,7 +179,7 @@ std::string marks_html(const OptimizerAxis& axis) {
 std::string html_report(const Document& document) {
   const Comparison& c = document.comparison;
   const AllFields fields = all_found_fields(c);
-  Parts parts{{"title", html_text(title_of(document))},
+  Parts parts{{"title", html_text(title_of(c))},
               {"style", std::string(embedded_page_css()) + kind_rules(c)},
               {"scripts", std::string(embedded_page_js())},
               {"tau", tau_name(c)},
@@ -167,7 +187,7 @@ std::string html_report(const Document& document) {
               {"counted", std::string(counted_name(c))},
               {"unit", std::string(unit_name(c))},
               {"setting", std::string(setting_noun(c))},
-              {"overview", alerts_html(document) + verdict_html(c) + settled_html(c)},
+              {"overview", overview_html(document)},
               {"endings", endings_html(c)},
               {"remarks", remarks_html(document)},
               {"order", section_html(document.section("standings"))},

@@ -2,21 +2,17 @@
 // problem, is hidden where the reader filters that one out; with both, where either is.
 #pragma once
 
+#include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "core/results/ranking.h"
-#include "reports/page/svg.h"
-#include "reports/read/found_fields.h"
-#include "reports/sections/ranking.h"
+#include "reports/sections/figures.h"
 #include "reports/sections/sections.h"
 
 namespace isoline::reports {
-
-using namespace results;
-
-std::string html_report(const Document& document);  // one file that asks nothing of the network
 
 // A section as every other: sentences, plots, tables. Complete without scripts.
 std::string section_html(const Section& section);
@@ -36,7 +32,16 @@ std::string claims_html(const Document& document);  // verdicts, and each claim 
 std::string curves_html(const Comparison& comparison, std::size_t problem);
 std::string planes_html(const Comparison& comparison, std::size_t problem);
 std::string figures_html(const Document& document);
-std::vector<std::size_t> first_lines(const Comparison& comparison, std::size_t problem);
+// The best two of a ranking and the best of each kind, at most eight: more cannot be told apart.
+inline constexpr std::size_t kMostShown = 8;
+std::set<std::size_t> shown_at_first(const Comparison& comparison,
+                                     const std::vector<std::size_t>& ranking);
+
+// Isolines by marching squares (Lorensen, Cline 1987, in two dimensions): segments apart by NaN,
+// linear between grid points. A cell with a corner that is not finite is left out.
+PlotSeries isoline(const Landscape& landscape, Real level);
+// Spaced as the landscape asks: 2^i for i = −5 … 7, or even steps of L^0.2 or of log L.
+std::vector<Real> contour_levels(const Landscape& landscape);
 
 // Fields. Bytes 1 to 255, of which 128 is 0 and 255 twice `scale`: colours end at ±scale, and what
 // a difference of two may need is not lost before. Beyond twice the scale a value is cut.
@@ -52,6 +57,15 @@ std::string fields_json(const FoundFields& all);
 std::string page_data(const Document& document, const AllFields& fields);
 std::string runs_address(const Document& document);  // of the folder of records, from the page
 std::string json_quoted(const std::string& text);
+template <class Range, class Item>
+std::string json_list(Range&& range, Item item) {  // of whatever `item` writes
+  std::string text = "[";
+  for (const auto& one : range) {
+    if (text.size() > 1) text += ',';
+    text += item(one);
+  }
+  return text + "]";
+}
 // Those that the page can be switched to, in the order of its data.
 std::vector<Measure> measures_of(const Comparison& comparison);
 // Those of the 51 targets that the page holds medians to: all, but of a study too large for that
@@ -60,10 +74,64 @@ std::vector<std::size_t> targets_of(const Comparison& comparison);
 // Whether its page leaves out what would make it too long: commands of cells, which stand in
 // report.csv, and curves by other measures than its own.
 bool is_large(const Comparison& comparison);
-Real tau_of(const Comparison& comparison);  // of the report
 
 // † tells what an optimizer sees that others do not, § that its figures are claims of others; empty
 // where neither holds.
 std::string marks_html(const OptimizerAxis& axis);
+
+// One colour a kind of method, in every report; within a kind a dash and a lightness by rank.
+
+std::string kind_title(std::string_view kind);  // "Adaptive gradients"
+// Rules of the style sheet: what has data-s has the colour and dash of that optimizer. No two of a
+// kind have both alike, up to fifteen.
+std::string kind_rules(const Comparison& comparison);
+std::string swatch();  // a short line in the colour and dash of the element around it
+
+// What an element is about, as attributes by which the page filters.
+std::string topic_attributes(const Topic& topic);
+
+// All drawings as SVG that needs no browser: axes, and an area of lines in coordinates from 0 to
+// 5,000, so that a script zooms by a change of the view and reads every point; dots and bars.
+
+struct Frame {
+  Real left = 0, top = 0, width = 0, height = 0;  // on the paper
+  Window window = {};
+  bool is_log_x = false, is_log_y = false;
+
+  Real x(Real value) const;  // on the paper; what has no logarithm is put at the low edge
+  Real y(Real value) const;
+  Real right() const { return left + width; }
+  Real bottom() const { return top + height; }
+};
+
+// Round values within, at most some ten of them: powers of two or ten where logarithmic.
+std::vector<Real> ticks_of(Real low, Real high, bool is_logarithmic);
+
+std::string x_axis(const Frame& frame, const std::string& label);  // with a grid line a tick
+std::string y_axis(const Frame& frame, const std::string& label, bool is_share);
+
+enum class Join { straight, steps, none };
+
+// A plot of lines, with what only the page draws.
+struct Drawing {
+  Plot plot;
+  Join join = Join::straight;
+  bool has_names = false;                           // at the ends of the lines
+  bool has_points = false;                          // marked, be they many
+  bool is_to_scale = false;                         // a unit across is a unit up
+  std::optional<std::set<std::size_t>> shown = {};  // optimizers whose lines are, at first; or all
+  std::optional<Window> window;                     // else what the lines that are shown need
+  std::optional<Real> tolerance;   // a line at τ times this, at the τ of the report
+  std::vector<PlotSeries> ground;  // thin lines below all others
+  std::vector<PlotSeries> ends;    // a point each: the start, and the goal
+  std::string attributes;          // of the element
+};
+std::string drawing_svg(const Drawing& drawing, Real tau = 1);
+// The lines that are not hidden at first; all where every one is.
+Plot shown_lines(const Drawing& drawing);
+// Its lines as buttons that show and hide them, and what the marks of published values mean.
+std::string names_html(const Drawing& drawing);
+
+std::string plot_html(const Plot& plot);
 
 }  // namespace isoline::reports

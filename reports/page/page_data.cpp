@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <ranges>
 #include <set>
 #include <span>
 #include <string_view>
@@ -11,10 +12,7 @@
 
 #include "core/json.h"
 #include "core/threads.h"
-#include "reports/page/kinds.h"
 #include "reports/page/page.h"
-#include "reports/sections/claim_terms.h"
-#include "reports/sections/origins.h"
 #include "reports/sections/words.h"
 
 namespace isoline::reports {
@@ -22,45 +20,31 @@ namespace {
 
 std::string number(Real value) { return std::isfinite(value) ? figure(value) : "null"; }
 
-// "[a,b,c]" of whatever `item` writes.
-template <class Range, class Item>
-std::string list(const Range& range, Item item) {
-  std::string text = "[";
-  for (const auto& one : range) {
-    if (text.size() > 1) text += ',';
-    text += item(one);
-  }
-  return text + "]";
+template <class Indices>
+std::string indices(const Indices& all) {
+  return json_list(all, [](std::size_t index) { return std::to_string(index); });
 }
 
-std::string indices(const std::vector<std::size_t>& all) {
-  return list(all, [](std::size_t index) { return std::to_string(index); });
-}
-
-// Medians to targets as they are printed, costs with a digit more: 0 where as the one before.
-std::string medians_text(const std::vector<Real>& medians, Measure by) {
-  std::string last;
-  return list(medians, [&](Real median) {
-    std::string text = by == Measure::time   ? milliseconds(median)
-                       : by == Measure::cost ? fmt::format("{:.5g}", median)
-                                             : fmt::format("{:.12g}", median);
-    return text == last ? "0" : last = text;
-  });
-}
-
-// In the order of measures_of; 0 where they are those of the first.
+// Medians to targets by each measure as they are printed, costs with a digit more: 0 where as the
+// one before, or where all are those of the first measure.
 std::string medians_json(const Comparison& c, const Cell& cell) {
   const std::vector<std::size_t> targets = targets_of(c);
-  const auto of = [&](Measure by) {
+  const auto medians = [&](Measure by) {
     std::vector<Real> taken;
     for (const std::size_t target : targets)
       if (const Real median = cell.median(by, target); median < kNever) taken.push_back(median);
     return taken;
   };
   const std::vector<Measure> measures = measures_of(c);
-  return list(measures, [&](Measure by) {
-    if (by != measures[0] && of(by) == of(measures[0])) return std::string("0");
-    return medians_text(of(by), by);
+  return json_list(measures, [&](Measure by) {
+    if (by != measures[0] && medians(by) == medians(measures[0])) return std::string("0");
+    std::string last;
+    return json_list(medians(by), [&](Real median) {
+      std::string text = by == Measure::time   ? milliseconds(median)
+                         : by == Measure::cost ? fmt::format("{:.5g}", median)
+                                               : fmt::format("{:.12g}", median);
+      return text == last ? "0" : last = text;
+    });
   });
 }
 
@@ -75,19 +59,12 @@ std::string cell_json(const Comparison& c, std::size_t p, std::size_t s) {
   constexpr std::size_t kRecords = 10'000, kLeast = 1;  // of all cells; of one
   const std::size_t most = std::max(kLeast, kRecords / (c.problems.size() * c.optimizers.size()));
   const std::span runs(cell.runs.data(), std::min(most, cell.runs.size()));
-  const std::string records = list(runs, [&](std::size_t run) {
+  const std::string records = json_list(runs, [&](std::size_t run) {
     const std::string name = c.runs[run].record->file_name();
     return json_quoted(name.substr(0, name.find('.')));
   });
   return fmt::format("[{},{},{},{},{},{}]", s, indices(reached), medians_json(c, cell), cell.failed,
                      cell.missing(), records);
-}
-
-std::string cells_json(const Comparison& c, std::size_t p) {
-  std::vector<std::size_t> asked;
-  for (std::size_t s = 0; s < c.optimizers.size(); ++s)
-    if (c.cell(p, s).planned > 0) asked.push_back(s);
-  return list(asked, [&](std::size_t s) { return cell_json(c, p, s); });
 }
 
 // {"optimizer": "3.8e-5, tuned"}, of those whose options a table of rates chose.
@@ -111,18 +88,23 @@ std::string learned_json(const Comparison& c, std::size_t p) {
                        at.x_error.n, at.diverged);
   };
   return fmt::format(",\"learned\":{{\"work\":{},\"rows\":{}}}", number(equal.work),
-                     list(equal.nearest_first(), row));
+                     json_list(equal.nearest_first(), row));
 }
 
 std::string problem_json(const Comparison& c, std::size_t p,
                          const std::optional<FoundFields>& fields) {
   const ProblemAxis& problem = c.problems[p];
+  std::vector<std::size_t> asked;
+  for (std::size_t s = 0; s < c.optimizers.size(); ++s)
+    if (c.cell(p, s).planned > 0) asked.push_back(s);
   return fmt::format(
              "{{\"spec\":{},\"name\":{},\"group\":\"{}\",\"isOrdered\":{},\"cells\":{},"
              "\"order\":{},\"lines\":{}",
              json_quoted(problem_name(problem)), json_quoted(problem.name), problem.group(),
-             is_ordered(c, p), cells_json(c, p), indices(ranking(c, p)),
-             indices(first_lines(c, p))) +
+             is_ordered(c, p), json_list(asked, [&](std::size_t s) { return cell_json(c, p, s); }),
+             indices(ranking(c, p)),
+             json_list(shown_at_first(c, ranking(c, p)),
+                       [](std::size_t s) { return std::to_string(s); })) +
          origins_json(c, p) + learned_json(c, p) +
          (fields ? ",\"fields\":" + fields_json(*fields) : "") + "}";
 }
@@ -141,8 +123,7 @@ std::string claims_about(const Document& document) {
         problems.insert(at->second->problem);
       }
     text += fmt::format("{}{}:[{},{}]", text.size() > 1 ? "," : "", json_quoted(judgement.id),
-                        indices({optimizers.begin(), optimizers.end()}),
-                        indices({problems.begin(), problems.end()}));
+                        indices(optimizers), indices(problems));
   }
   return text + "}";
 }
@@ -150,7 +131,7 @@ std::string claims_about(const Document& document) {
 // [optimizer, score, solved, wins, median slowdown, runs that get there] of each, one after the
 // other.
 std::string places_json(const std::vector<Ranked>& places) {
-  return list(places, [](const Ranked& place) {
+  return json_list(places, [](const Ranked& place) {
     const Standing& standing = place.standing;
     return fmt::format("{},{:.4g},{},{},{},{}", place.optimizer, standing.score, standing.solved,
                        standing.wins,
@@ -181,7 +162,7 @@ std::string standings_json(const Comparison& c) {
 std::string given_json(const Comparison& c) {
   const std::vector<Interval> intervals = score_intervals(c);
   std::size_t s = 0;
-  return list(c.optimizers, [&](const OptimizerAxis& axis) {
+  return json_list(c.optimizers, [&](const OptimizerAxis& axis) {
     const Interval& interval = intervals[s++];
     return fmt::format("[{},{},{},{},{}]", axis.tightest().settings, axis.tightest().runs,
                        axis.failed, number(interval.low), number(interval.high));
@@ -190,22 +171,22 @@ std::string given_json(const Comparison& c) {
 
 std::string axes_json(const Comparison& c) {
   const auto texts = [&](auto text) {
-    return list(c.optimizers, [&](const OptimizerAxis& axis) { return json_quoted(text(axis)); });
+    return json_list(c.optimizers,
+                     [&](const OptimizerAxis& axis) { return json_quoted(text(axis)); });
   };
-  std::vector<std::size_t> all;
-  for (std::size_t s = 0; s < c.optimizers.size(); ++s) all.push_back(s);
   return fmt::format(
       "\"optimizers\":{},\"methods\":{},\"kinds\":{},\"privileges\":{},\"marks\":{},\"asks\":{}",
       texts([](const OptimizerAxis& axis) { return optimizer_name(axis); }),
       texts([](const OptimizerAxis& axis) { return axis.method; }),
       texts([](const OptimizerAxis& axis) { return kind_title(axis.mathematics()); }),
       texts([](const OptimizerAxis& axis) { return joined(axis.privileges); }), texts(marks_of),
-      list(all, [&](std::size_t s) { return json_quoted(counted_oracles(c, s)); }));
+      json_list(std::views::iota(std::size_t{0}, c.optimizers.size()),
+                [&](std::size_t s) { return json_quoted(counted_oracles(c, s)); }));
 }
 
 // name, what is counted, its unit, the least that counts.
 std::string measures_json(const Comparison& c) {
-  return list(measures_of(c), [](Measure by) {
+  return json_list(measures_of(c), [](Measure by) {
     return fmt::format("{{\"name\":\"{}\",\"counted\":\"{}\",\"unit\":\"{}\",\"least\":{}}}",
                        name_of(by), counted_name(by), unit_name(by),
                        by == Measure::time ? "1e-3" : "1");
@@ -245,19 +226,15 @@ std::string page_data(const Document& document, const AllFields& fields) {
       "\"rungs\":{},\"targets\":{},{},\"given\":{},\"ranked\":{},\"common\":{},\"claims\":{},"
       "\"standings\":{},\"problems\":[",
       json_quoted(runs_address(document)), name_of(c.yardstick.by), is_all_learned(c),
-      list(kShades, exact_figure), measures_json(c), c.is_any_timed_together,
-      list(c.yardstick.tolerances,
-           [](const Tolerance& tolerance) { return std::to_string(tolerance.rung); }),
+      json_list(kShades, exact_figure), measures_json(c), c.is_any_timed_together,
+      json_list(c.yardstick.tolerances,
+                [](const Tolerance& tolerance) { return std::to_string(tolerance.rung); }),
       indices(targets_of(c)), axes_json(c), given_json(c), indices(c.order.methods),
       indices(c.order.settings), claims_about(document), standings_json(c));
   for (std::size_t p = 0; p < c.problems.size(); ++p)
     text += (p > 0 ? "," : "") + problem_json(c, p, fields[p]);
   std::string safe;  // no </script and no <!-- can stand in it
-  for (const char letter : text + "]}")
-    if (letter == '<')
-      safe += "\\u003c";
-    else
-      safe += letter;
+  for (const char letter : text + "]}") safe += letter == '<' ? "\\u003c" : std::string(1, letter);
   return safe;
 }
 

@@ -2,16 +2,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <cctype>
 #include <cmath>
 #include <filesystem>
 
 #include "core/files.h"
-#include "core/records/audited.h"
-#include "reports/formats/escape.h"
-#include "reports/page/kinds.h"
+#include "core/records/sheet.h"
+#include "reports/formats/formats.h"
 #include "reports/page/page.h"
-#include "reports/sections/claim_terms.h"
-#include "reports/sections/origins.h"
 #include "reports/sections/sections.h"
 #include "reports/sections/words.h"
 
@@ -23,26 +22,8 @@ std::string command_button(const std::string& command) {
   return fmt::format("<button class=copy data-command=\"{}\">copy</button>", html_text(command));
 }
 
-// What an element is about, as attributes by which the page filters.
 std::string about(const std::vector<Topic>& topics, std::size_t i) {
-  if (i >= topics.size()) return "";
-  const Topic& topic = topics[i];
-  std::string attributes;
-  if (topic.optimizer) attributes += fmt::format(" data-s={}", *topic.optimizer);
-  if (topic.problem) attributes += fmt::format(" data-p={}", *topic.problem);
-  if (!topic.method.empty())
-    attributes += fmt::format(" data-method=\"{}\"", html_text(topic.method));
-  if (!topic.claim.empty()) attributes += fmt::format(" data-claim=\"{}\"", html_text(topic.claim));
-  return attributes;
-}
-
-std::string head_html(const Table& table) {
-  std::string html = "<thead><tr>";
-  for (std::size_t i = 0; i < table.columns.size(); ++i) {
-    html += fmt::format("<th scope=col{}>{}", about(table.column_topics, i),
-                        html_text(table.columns[i]));
-  }
-  return html + "<tbody>\n";
+  return i < topics.size() ? topic_attributes(topics[i]) : "";
 }
 
 // Cells and rows are left open, as HTML allows.
@@ -56,6 +37,7 @@ std::string cell_html(const Table& table, const TableCell& cell, std::size_t col
   tag += about(table.column_topics, column);
   if (!cell.note.empty()) tag += fmt::format(" title=\"{}\"", html_text(cell.note));
   std::string text = html_text(cell.text);
+  if (align == 'b' && !text.empty()) text = command_button(cell.text);
   if (align == 'c' && !text.empty()) text = "<code>" + text + "</code>";
   if (!cell.link.empty()) text = fmt::format("<a href=\"{}\">{}</a>", html_text(cell.link), text);
   if (cell.is_best) text = "<b>" + text + "</b>";
@@ -64,7 +46,11 @@ std::string cell_html(const Table& table, const TableCell& cell, std::size_t col
 }
 
 std::string rows_html(const Table& table) {
-  std::string html;
+  std::string html = "<thead><tr>";
+  for (std::size_t i = 0; i < table.columns.size(); ++i)
+    html += fmt::format("<th scope=col{}>{}", about(table.column_topics, i),
+                        html_text(table.columns[i]));
+  html += "<tbody>\n";
   for (std::size_t r = 0; r < table.rows.size(); ++r) {
     const auto& row = table.rows[r];
     html += fmt::format("<tr{}>", about(table.row_topics, r));
@@ -79,18 +65,15 @@ std::string rows_html(const Table& table) {
   return html;
 }
 
-// What the columns are, in words that need no pointing.
-std::string meanings_html(const Table& table) {
-  std::string html;
-  for (std::size_t i = 0; i < std::min(table.meanings.size(), table.columns.size()); ++i)
-    if (!table.meanings[i].empty())
-      html += fmt::format("{}<b>{}</b>: {}", html.empty() ? "" : " · ", html_text(table.columns[i]),
-                          html_text(table.meanings[i]));
-  return html.empty() ? "" : "<p class=legend>" + html + "</p>";
+// " · <b>name</b>: what it means", but for the first dot.
+void add_meaning(std::string& html, const std::string& name, const std::string& meaning) {
+  if (!meaning.empty())
+    html += fmt::format("{}<b>{}</b>: {}", html.empty() ? "" : " · ", html_text(name),
+                        html_text(meaning));
 }
 
 std::string table_html(const Table& table, const std::string& name) {
-  std::string html;
+  std::string html, meanings;
   if (!table.title.empty())
     html += fmt::format("<h3 id=\"{}\">{}</h3>", table.id, html_text(table.title));
   if (!table.reading.empty())
@@ -98,14 +81,17 @@ std::string table_html(const Table& table, const std::string& name) {
   constexpr std::size_t kTall = 25;  // rows: more scroll in a window of their own
   const bool is_tall = table.rows.size() > kTall && !table.is_folded;
   html += fmt::format(
-      "{}<div class=\"scroll{}\" tabindex=0 role=region aria-label=\"{}\"><table class=sortable>{}{}"
+      "{}<div class=\"scroll{}\" tabindex=0 role=region aria-label=\"{}\"><table class=sortable>{}"
       "</table></div>",
       table.is_folded ? "<details><summary>Table</summary>" : "", is_tall ? " tall" : "",
-      html_text(table.title.empty() ? name : table.title), head_html(table), rows_html(table));
+      html_text(table.title.empty() ? name : table.title), rows_html(table));
   if (!table.caption.empty())
     html += fmt::format("<p class=legend>{}</p>", html_text(table.caption));
-  html += meanings_html(table) + (table.is_folded ? "</details>\n" : "\n");
-  const std::string topic = about({table.topic}, 0);
+  for (std::size_t i = 0; i < std::min(table.meanings.size(), table.columns.size()); ++i)
+    add_meaning(meanings, table.columns[i], table.meanings[i]);
+  if (!meanings.empty()) html += "<p class=legend>" + meanings + "</p>";
+  html += table.is_folded ? "</details>\n" : "\n";
+  const std::string topic = topic_attributes(table.topic);
   return topic.empty() ? html : fmt::format("<div{}>{}</div>\n", topic, html);
 }
 
@@ -134,16 +120,12 @@ std::string section_html(const Section& section) {
 
 namespace {
 
-namespace fs = std::filesystem;
-
 // A path as a relative address.
 std::string address(const std::string& path) {
   std::string out;
   for (const char letter : path) {
     const auto byte = static_cast<unsigned char>(letter);
-    const bool is_plain = (letter >= 'a' && letter <= 'z') || (letter >= 'A' && letter <= 'Z') ||
-                          (letter >= '0' && letter <= '9') ||
-                          std::string_view("-._~/").find(letter) != std::string_view::npos;
+    const bool is_plain = std::isalnum(byte) != 0 || std::string_view("-._~/").find(letter) < 5;
     out += is_plain ? std::string(1, letter) : fmt::format("%{:02X}", byte);
   }
   return out;
@@ -152,52 +134,33 @@ std::string address(const std::string& path) {
 // From the page to a record; empty where it is not known where either lies.
 std::string record_link(const Document& document, const std::string& name) {
   if (document.out.empty()) return "";
-  for (const fs::path folder : document.comparison.study->folders) {
+  for (const std::filesystem::path folder : document.comparison.study->folders) {
     std::error_code unknown;
-    const fs::path file = folder / "runs" / name;
+    const std::filesystem::path file = folder / "runs" / name;
     if (!is_there(file)) continue;
-    const fs::path way = fs::proximate(file, document.out, unknown);
-    return unknown ? "" : address(way.generic_string());
+    const std::string way =
+        std::filesystem::proximate(file, document.out, unknown).generic_string();
+    return unknown ? "" : address(way);
   }
   return "";
 }
 
-}  // namespace
-
-std::string runs_address(const Document& document) {
-  const auto& runs = document.comparison.runs;
-  const std::string name = runs.empty() ? "" : runs.front().record->file_name();
-  const std::string link = name.empty() ? "" : record_link(document, name);
-  return link.substr(0, link.rfind('/') + 1);
-}
-
-namespace {
-
-void link_records(const Document& document, Section& claim) {
+std::string claim_html(const Document& document, const Judgement& judgement) {
+  Section claim = claim_section(judgement);
   for (Table& table : claim.tables)
     if (!table.columns.empty() && table.columns.back() == "record")
       for (auto& row : table.rows) row.back().link = record_link(document, row.back().text);
-}
-
-std::string readings_html(const Section& claim) {
-  std::string html = "<dl>";
+  std::string html = fmt::format(
+      "<details class=claim id=\"{0}\" data-claim=\"{1}\"><summary><b>{2}</b> {3} "
+      "<code>{1}</code></summary><noscript>\n<div class=decided><dl>",
+      html_text(claim.id), html_text(judgement.id), html_text(marked_verdict(judgement)),
+      html_text(claim.title));
   for (const Reading& reading : claim.readings)
     html += fmt::format("<dt>{}<dd>{}", html_text(reading.title), html_text(reading.text));
   if (!claim.command.empty())
     html += fmt::format("<dt>To repeat it<dd><code>{}</code> {}", html_text(claim.command),
                         command_button(claim.command));
-  return html + "</dl>\n";
-}
-
-std::string claim_html(const Document& document, const Judgement& judgement) {
-  Section claim = claim_section(judgement);
-  link_records(document, claim);
-  std::string html = fmt::format(
-      "<details class=claim id=\"{0}\" data-claim=\"{1}\"><summary><b>{2}</b> {3} "
-      "<code>{1}</code></summary><noscript>\n",
-      html_text(claim.id), html_text(judgement.id), html_text(marked_verdict(judgement)),
-      html_text(claim.title));
-  html += "<div class=decided>" + readings_html(claim) + "<div>";
+  html += "</dl>\n<div>";
   for (const Plot& plot : claim.plots) html += plot_html(plot);
   html += "</div></div>\n";
   claim.readings.clear();
@@ -208,6 +171,12 @@ std::string claim_html(const Document& document, const Judgement& judgement) {
 
 }  // namespace
 
+std::string runs_address(const Document& document) {
+  const auto& runs = document.comparison.runs;
+  const std::string link = runs.empty() ? "" : record_link(document, runs[0].record->file_name());
+  return link.substr(0, link.rfind('/') + 1);
+}
+
 std::string claims_html(const Document& document) {
   std::string html = section_html(document.section("claims"));
   if (document.claims.empty()) return html;
@@ -216,68 +185,29 @@ std::string claims_html(const Document& document) {
   return html + "</div>";
 }
 
-// The table of all cells. Scripts sort and filter it; without scripts it is complete.
-
 namespace {
-
-std::string spread_cell(const Spread& spread, const char* kind = "") {
-  if (spread.n == 0) return "<td>";
-  const std::string range = range_figure(spread, reached_figure);
-  return fmt::format("<td{}>{}{}", kind, reached_figure(spread.median),
-                     range.empty() ? "" : "<small>" + range + "</small>");
-}
-
-std::string time_cell(const Spread& seconds, bool is_timed_alone) {
-  const std::string range = range_figure(seconds, milliseconds);
-  return fmt::format("<td>{}{}{}", milliseconds(seconds.median),
-                     is_timed_alone || !seconds.is_solved() ? "" : "≈",
-                     range.empty() ? "" : "<small>" + range + "</small>");
-}
 
 // The command that repeats a cell: all its seeds where these follow each other and were asked for
 // alike, else the first.
 std::string cell_command(const Comparison& c, const Cell& cell) {
   const Request& first = c.runs[cell.runs.front()].record->request;
+  std::string command = rerun_command(first);
   std::uint64_t next = first.seed;
   for (const std::size_t run : cell.runs) {
     const Request& request = c.runs[run].record->request;
-    const bool is_alike = request.optimizer.spec == first.optimizer.spec &&
-                          budget_options(request) == budget_options(first);
-    if (request.seed != next++ || !is_alike) return rerun_command(first);
+    if (request.seed != next++ || request.optimizer.spec != first.optimizer.spec ||
+        budget_options(request) != budget_options(first))
+      return command;
   }
   const std::string one = fmt::format("--seeds ={} ", first.seed);
-  std::string command = rerun_command(first);
-  if (next - 1 > first.seed)
-    command.replace(command.find(one), one.size(),
-                    fmt::format("--seeds {}..{} ", first.seed, next - 1));
-  return command;
-}
-
-std::string detail_row(const Comparison& c, std::size_t p, std::size_t s) {
-  const Cell& cell = c.cell(p, s);
-  std::string row = fmt::format(
-      "<tr data-p={} data-s={}><th>{}<th>{}{}", p, s, html_text(problem_name(c.problems[p])),
-      html_text(setting_text(c, p, s)), cell.privileges.empty() ? "" : "<sup>†</sup>");
-  if (!cell.is_measured()) {
-    row += cell.runs.empty() ? "<td>" : "<td>n/a";
-    for (int empty = 0; empty < 8; ++empty) row += "<td>";
-    return row + fmt::format("<td>{}<td>\n", cell.runs.empty()
-                                                 ? "missing"
-                                                 : "n/a: " + html_text(cell.inapplicable));
-  }
-  row += fmt::format("<td>{}", count_text(cell, kTightest));
-  const Measure by = c.yardstick.by == Measure::time ? Measure::work : c.yardstick.by;
-  for (std::size_t t = 0; t < kTolerances.size(); ++t)
-    row += spread_cell(cell.taken[by][t], cell.is_best[t] ? " class=best" : "");
-  for (std::size_t t = 0; t < kTolerances.size(); ++t)
-    row += time_cell(cell.taken[Measure::time][t], cell.is_timed_alone);
-  row += spread_cell(cell.loss) + spread_cell(cell.x_error);
-  return row + fmt::format("<td>{}<td>{}\n", status_text(cell.statuses),
-                           is_large(c) ? "" : command_button(cell_command(c, cell)));
+  if (cell.runs.size() == 1) return command;
+  return command.replace(command.find(one), one.size(),
+                         fmt::format("--seeds {}..{} ", first.seed, next - 1));
 }
 
 }  // namespace
 
+// The table of all cells. Scripts sort and filter it; without scripts it is complete.
 std::string details_html(const Comparison& c) {
   constexpr std::size_t kMost = 20'000;  // rows of some 200 bytes
   if (c.problems.size() * c.optimizers.size() > kMost)
@@ -285,86 +215,91 @@ std::string details_html(const Comparison& c) {
         "<p class=lead>Of more than {} cells there is no table here: all of them stand "
         "in report.csv.</p>",
         kMost);
-  std::string rows;
-  for (std::size_t p = 0; p < c.problems.size(); ++p)
-    for (std::size_t s = 0; s < c.optimizers.size(); ++s)
-      if (c.cell(p, s).planned > 0) rows += detail_row(c, p, s);
-  std::string html = fmt::format(
-      "<table class=sortable id=detail-table><thead><tr><th scope=col>problem<th scope=col>"
-      "optimizer<th scope=col>runs<br>to {}",
-      tau_name(c));
-  const std::string_view counted =
-      c.yardstick.by == Measure::time ? "work" : name_of(c.yardstick.by);
-  for (const std::string_view what : {counted, std::string_view("time, ms,")})
+  const auto spread_cell = [](const Spread& spread, std::string (*text)(Real)) {
+    TableCell cell = spread.n == 0 ? "" : text(spread.median);
+    cell.remark = range_figure(spread, text);
+    return cell;
+  };
+  const Measure by = c.yardstick.by == Measure::time ? Measure::work : c.yardstick.by;
+  Table table{.columns = {"problem", "optimizer", "runs to " + tau_name(c)},
+              .align = "llrrrrrrrrrlb",
+              .names = 2};
+  for (const std::string_view what : {name_of(by), std::string_view("time, ms,")})
     for (const Tolerance& tolerance : c.yardstick.tolerances)
-      html += fmt::format("<th scope=col>{}<br>to {}", what, tolerance.name);
-  html +=
-      "<th scope=col>final loss<th scope=col>error in x<th scope=col>how the runs ended<th "
-      "scope=col>again<tbody>\n";
-  return html + rows + "</table>";
+      table.columns.push_back(fmt::format("{} to {}", what, tolerance.name));
+  for (const char* last : {"final loss", "error in x", "how the runs ended", "again"})
+    table.columns.emplace_back(last);
+  for (std::size_t p = 0; p < c.problems.size(); ++p)
+    for (std::size_t s = 0; s < c.optimizers.size(); ++s) {
+      const Cell& cell = c.cell(p, s);
+      if (cell.planned == 0) continue;
+      table.row_topics.push_back({.optimizer = s, .problem = p});
+      auto& row = table.rows.emplace_back();
+      row = {problem_name(c.problems[p]),
+             setting_text(c, p, s) + (cell.privileges.empty() ? "" : " †")};
+      if (!cell.is_measured()) {
+        row.push_back(cell.runs.empty() ? "missing" : "n/a: " + cell.inapplicable);
+        continue;
+      }
+      row.push_back(count_text(cell, kTightest));
+      for (std::size_t t = 0; t < kTolerances.size(); ++t) {
+        row.push_back(spread_cell(cell.taken[by][t], reached_figure));
+        row.back().is_best = cell.is_best[t];
+      }
+      for (const Spread& seconds : cell.taken[Measure::time]) {
+        row.push_back(spread_cell(seconds, milliseconds));
+        if (!cell.is_timed_alone && seconds.is_solved()) row.back().text += "≈";
+      }
+      row.push_back(spread_cell(cell.loss, reached_figure));
+      row.push_back(spread_cell(cell.x_error, reached_figure));
+      row.push_back(status_text(cell.statuses));
+      row.push_back(is_large(c) ? "" : cell_command(c, cell));
+    }
+  return "<table class=sortable id=detail-table>" + rows_html(table) + "</table>";
 }
 
 // The grid of measured properties, a row a method, from which its card opens.
 
 namespace {
 
-enum class Answer { yes, no, unknown };
-
-Answer is_kept(Real deviation) {
-  if (std::isnan(deviation)) return Answer::unknown;
-  return deviation <= kInvariantDeviation ? Answer::yes : Answer::no;
-}
-
-Answer has_order(const Approach& approach, Real least) {
-  if (std::isnan(approach.remaining)) return Answer::unknown;
-  const bool is_regular = approach.residual <= kMostOrderResidual;
-  return (approach.is_exact && approach.steps == 1) || (is_regular && approach.order >= least)
-             ? Answer::yes
-             : Answer::no;
-}
-
-Answer is_in_one_step(const Approach& approach) {
-  if (std::isnan(approach.remaining)) return Answer::unknown;
-  return approach.is_exact && approach.steps == 1 ? Answer::yes : Answer::no;
-}
-
 struct Property {
   const char *name, *meaning;
-  Answer (*answer)(const AuditedOptimizer& audited);
 };
+constexpr Property kProperties[] = {
+    {"units of x", "the path in y is the same in other units of each component of x"},
+    {"rotation of x", "the path in y is the same in rotated coordinates of x"},
+    {"linear map of x", "the path in y is the same under any linear map of x"},
+    {"units of y", "the path in x is the same in other units of each component of y"},
+    {"rotation of y", "the path in x is the same in rotated coordinates of y"},
+    {"linear map of y", "the path in x is the same under any linear map of y"},
+    {"one step", "reaches a regular solution in one step"},
+    {"superlinear", "order 1.5 or more near a regular solution"},
+    {"singular too", "order 1.5 or more where J is singular at the solution"},
+    {"as declared", "asked for no oracle that its entry does not name"}};
 
-const Property kProperties[] = {
-    {"units of x", "the path in y is the same in other units of each component of x",
-     [](const AuditedOptimizer& a) { return is_kept(a.deviations[0]); }},
-    {"rotation of x", "the path in y is the same in rotated coordinates of x",
-     [](const AuditedOptimizer& a) { return is_kept(a.deviations[1]); }},
-    {"linear map of x", "the path in y is the same under any linear map of x",
-     [](const AuditedOptimizer& a) { return is_kept(a.deviations[2]); }},
-    {"units of y", "the path in x is the same in other units of each component of y",
-     [](const AuditedOptimizer& a) { return is_kept(a.deviations[3]); }},
-    {"rotation of y", "the path in x is the same in rotated coordinates of y",
-     [](const AuditedOptimizer& a) { return is_kept(a.deviations[4]); }},
-    {"linear map of y", "the path in x is the same under any linear map of y",
-     [](const AuditedOptimizer& a) { return is_kept(a.deviations[5]); }},
-    {"one step", "reaches a regular solution in one step",
-     [](const AuditedOptimizer& a) { return is_in_one_step(a.regular); }},
-    {"superlinear", "order 1.5 or more near a regular solution",
-     [](const AuditedOptimizer& a) { return has_order(a.regular, 1.5); }},
-    {"singular too", "order 1.5 or more where J is singular at the solution",
-     [](const AuditedOptimizer& a) { return has_order(a.singular, 1.5); }},
-    {"as declared", "asked for no oracle that its entry does not name",
-     [](const AuditedOptimizer& a) { return a.flags.empty() ? Answer::yes : Answer::no; }}};
-
-const AuditedOptimizer* audit_of(const Comparison& c, std::size_t s) {
-  const auto& all = c.study->audits;
-  const auto at = std::ranges::find(all, c.optimizers[s].method, &AuditedOptimizer::name);
-  return at == all.end() ? nullptr : &*at;
-}
-
-std::string answer_html(const Property& property, const AuditedOptimizer* audited) {
-  const Answer answer = audited == nullptr ? Answer::unknown : property.answer(*audited);
-  if (answer == Answer::yes) return "<td class=yes>✓";
-  return answer == Answer::no ? "<td class=no>✗" : "<td class=none>";
+// Of each property whether it holds; none where it was not measured.
+std::array<std::optional<bool>, std::size(kProperties)> answers_of(
+    const AuditedOptimizer& audited) {
+  constexpr Real kLeastOrder = 1.5;
+  const auto is_in_one_step = [](const Approach& approach) {
+    return approach.is_exact && approach.steps == 1;
+  };
+  const auto has_order = [&](const Approach& approach) -> std::optional<bool> {
+    if (std::isnan(approach.remaining)) return std::nullopt;
+    return is_in_one_step(approach) ||
+           (approach.residual <= kMostOrderResidual && approach.order >= kLeastOrder);
+  };
+  std::array<std::optional<bool>, std::size(kProperties)> answers;
+  std::size_t at = 0;
+  for (const Real deviation : audited.deviations) {
+    if (!std::isnan(deviation)) answers[at] = deviation <= kInvariantDeviation;
+    ++at;
+  }
+  if (!std::isnan(audited.regular.remaining)) answers[at] = is_in_one_step(audited.regular);
+  answers[++at] = has_order(audited.regular);
+  answers[++at] = has_order(audited.singular);
+  answers[++at] = audited.flags.empty();
+  return answers;
 }
 
 std::string row_html(const Comparison& c, std::size_t s) {
@@ -372,7 +307,11 @@ std::string row_html(const Comparison& c, std::size_t s) {
   std::string html = fmt::format(
       "<tr data-s={0}><th scope=row><a href=\"#optimizer-{0}\">{1}{2}</a>{3}<td class=text>{4}", s,
       swatch(), html_text(optimizer_name(axis)), marks_html(axis), kind_title(axis.mathematics()));
-  for (const Property& property : kProperties) html += answer_html(property, audit_of(c, s));
+  std::array<std::optional<bool>, std::size(kProperties)> answers;
+  for (const AuditedOptimizer& audited : c.study->audits)
+    if (audited.name == axis.method) answers = answers_of(audited);
+  for (const std::optional<bool>& answer : answers)
+    html += !answer ? "<td class=none>" : *answer ? "<td class=yes>✓" : "<td class=no>✗";
   return html + fmt::format("<td class=text>{}<td class=text>{}\n",
                             html_text(counted_oracles(c, s)), html_text(joined(axis.privileges)));
 }
@@ -384,10 +323,9 @@ std::string methods_html(const Comparison& c) {
       "<table class=\"grid sortable\" id=methods-table><caption>Methods by rank; press a name for "
       "its card</caption><thead><tr><th scope=col>method<th scope=col>kind";
   std::string legend;
-  for (const Property& property : kProperties) {
-    html += fmt::format("<th scope=col>{}", property.name);
-    legend += fmt::format("{}<b>{}</b>: {}", legend.empty() ? "" : " · ", property.name,
-                          property.meaning);
+  for (const auto& [name, meaning] : kProperties) {
+    html += fmt::format("<th scope=col>{}", name);
+    add_meaning(legend, name, meaning);
   }
   html += "<th scope=col>asks for<th scope=col id=privileges>† privileged information<tbody>\n";
   for (std::size_t s = 0; s < c.optimizers.size(); ++s) html += row_html(c, s);

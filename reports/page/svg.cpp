@@ -1,6 +1,4 @@
 // Axes, lines, dots and bars as SVG; colours and dashes are in page.css.
-#include "reports/page/svg.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,8 +6,8 @@
 #include <cmath>
 #include <limits>
 
-#include "reports/formats/escape.h"
-#include "reports/page/kinds.h"
+#include "reports/formats/formats.h"
+#include "reports/page/page.h"
 #include "reports/sections/words.h"
 
 namespace isoline::reports {
@@ -18,8 +16,7 @@ namespace {
 constexpr Real kArea = 5'000, kBeyond = 4;  // lines go as many times the area beyond it
 
 Real share_of(Real value, Real low, Real high, bool is_log) {
-  if (!(high > low) || std::isnan(value)) return 0;
-  if (is_log && !(value > 0)) return 0;
+  if (!(high > low) || std::isnan(value) || (is_log && !(value > 0))) return 0;
   const Real share =
       is_log ? std::log(value / low) / std::log(high / low) : (value - low) / (high - low);
   return std::clamp(share, -kBeyond, kBeyond);
@@ -27,15 +24,16 @@ Real share_of(Real value, Real low, Real high, bool is_log) {
 
 std::string tick_text(Real value) {
   constexpr Real kInFull = 9999;
-  if (value > kInFull) return fmt::format("1e{:.0f}", std::log10(value));
-  return figure(value);
+  return value > kInFull ? fmt::format("1e{:.0f}", std::log10(value)) : figure(value);
 }
 
 }  // namespace
 
-Real Frame::x(Real value) const { return left + width * share_of(value, x_low, x_high, is_log_x); }
+Real Frame::x(Real value) const {
+  return left + width * share_of(value, window.x_low, window.x_high, is_log_x);
+}
 Real Frame::y(Real value) const {
-  return bottom() - height * share_of(value, y_low, y_high, is_log_y);
+  return bottom() - height * share_of(value, window.y_low, window.y_high, is_log_y);
 }
 
 std::vector<Real> ticks_of(Real low, Real high, bool is_logarithmic) {
@@ -66,7 +64,7 @@ std::vector<Real> ticks_of(Real low, Real high, bool is_logarithmic) {
 
 std::string x_axis(const Frame& frame, const std::string& label) {
   std::string svg;
-  for (const Real tick : ticks_of(frame.x_low, frame.x_high, frame.is_log_x))
+  for (const Real tick : ticks_of(frame.window.x_low, frame.window.x_high, frame.is_log_x))
     svg += fmt::format(
         "<path class=grid d=\"M{0:.1f} {1:.0f}V{2:.0f}\"/><text x={0:.1f} y={3:.0f} "
         "text-anchor=middle>{4}</text>",
@@ -77,13 +75,27 @@ std::string x_axis(const Frame& frame, const std::string& label) {
 
 std::string y_axis(const Frame& frame, const std::string& label, bool is_share) {
   std::string svg;
-  for (const Real tick : ticks_of(frame.y_low, frame.y_high, frame.is_log_y))
+  for (const Real tick : ticks_of(frame.window.y_low, frame.window.y_high, frame.is_log_y))
     svg += fmt::format(
         "<path class=grid d=\"M{0:.0f} {1:.1f}H{2:.0f}\"/><text x={3:.0f} y={4:.1f} "
         "text-anchor=end>{5}</text>",
         frame.left, frame.y(tick), frame.right(), frame.left - 6, frame.y(tick) + 4,
         is_share ? percent(tick) : tick_text(tick));
   return svg + fmt::format("<text x=4 y={:.0f}>{}</text>", frame.top - 8, html_text(label));
+}
+
+// What is filtered with an optimizer, a problem, a method or a claim.
+std::string topic_attributes(const Topic& topic) {
+  std::string tag;
+  if (topic.optimizer) tag += fmt::format(" data-s={}", *topic.optimizer);
+  if (topic.problem) tag += fmt::format(" data-p={}", *topic.problem);
+  if (!topic.method.empty()) tag += fmt::format(" data-method=\"{}\"", html_text(topic.method));
+  if (!topic.claim.empty()) tag += fmt::format(" data-claim=\"{}\"", html_text(topic.claim));
+  return tag;
+}
+
+std::string swatch() {
+  return "<svg class=swatch viewBox=\"0 0 24 8\" aria-hidden=true><path d=\"M0 4h24\"/></svg>";
 }
 
 // Lines.
@@ -93,7 +105,7 @@ namespace {
 constexpr Real kLeft = 62, kTop = 26, kBelow = 40, kNameWidth = 164;
 
 bool is_hidden(const Drawing& drawing, const PlotSeries& line) {
-  return line.optimizer && drawing.on_demand.contains(*line.optimizer);
+  return line.optimizer && drawing.shown && !drawing.shown->contains(*line.optimizer);
 }
 
 // Narrow where names stand below, so that letters can be read on a telephone.
@@ -104,11 +116,10 @@ Frame frame_of(const Drawing& drawing) {
               .top = kTop,
               .width = width - kLeft - (drawing.has_names ? kNameWidth : 16),
               .height = height - kTop - kBelow,
+              .window = drawing.window.value_or(window_of(shown_lines(drawing))),
               .is_log_x = plot.is_log_x,
               .is_log_y = plot.is_log_y};
-  Plot shown = plot;
-  std::erase_if(shown.series, [&](const PlotSeries& line) { return is_hidden(drawing, line); });
-  Window window = drawing.window.value_or(window_of(shown.series.empty() ? plot : shown));
+  Window& window = frame.window;
   if (plot.kind == Plot::Kind::steps && !drawing.window)
     window = {plot.series[0].x.front(), plot.series[0].x.back(), 0, 1};
   if (drawing.is_to_scale) {
@@ -118,10 +129,6 @@ Frame frame_of(const Drawing& drawing) {
     window = {x - unit * frame.width / 2, x + unit * frame.width / 2, y - unit * frame.height / 2,
               y + unit * frame.height / 2};
   }
-  frame.x_low = window.x_low;
-  frame.x_high = window.x_high;
-  frame.y_low = window.y_low;
-  frame.y_high = window.y_high;
   return frame;
 }
 
@@ -147,7 +154,7 @@ std::string path_of(const Frame& area, const std::vector<Real>& x, const std::ve
         path += fmt::format("M{} {}{}", at_x, at_y, join == Join::none ? "h0" : "");
       else if (join == Join::straight)
         path += fmt::format("l{}{}{}", across, up < 0 ? "" : " ", up);
-      else if (across != 0 || up != 0)
+      else
         path += (across != 0 ? fmt::format("h{}", across) : "") +
                 (up != 0 ? fmt::format("v{}", up) : "");
       last_x = at_x;
@@ -159,44 +166,29 @@ std::string path_of(const Frame& area, const std::vector<Real>& x, const std::ve
 }
 
 std::string band_of(const Frame& area, const PlotSeries& line, Join join) {
-  std::vector<Real> x, low, high;
-  for (std::size_t i = 0; i < line.low.size(); ++i)
-    if (!std::isnan(line.low[i]) && !std::isnan(line.high[i])) {
-      x.push_back(line.x[i]);
-      low.push_back(line.low[i]);
-      high.push_back(line.high[i]);
+  std::vector<Real> x, high, back_x, back;  // a stair back from its end turns before its steps
+  for (std::size_t i = 0; i < line.low.size(); ++i) {
+    if (std::isnan(line.low[i]) || std::isnan(line.high[i])) continue;
+    if (join == Join::steps && !back.empty()) {
+      back_x.push_back(line.x[i]);
+      back.push_back(back.back());
     }
+    back_x.push_back(line.x[i]);
+    back.push_back(line.low[i]);
+    x.push_back(line.x[i]);
+    high.push_back(line.high[i]);
+  }
   if (x.empty()) return "";
-  if (join == Join::steps) {  // a stair back from its end turns before its steps, not after
-    std::vector<Real> stair_x, stair_low;
-    for (std::size_t i = 0; i < x.size(); ++i) {
-      if (i > 0) {
-        stair_x.push_back(x[i]);
-        stair_low.push_back(low[i - 1]);
-      }
-      stair_x.push_back(x[i]);
-      stair_low.push_back(low[i]);
-    }
-    std::ranges::reverse(stair_x);
-    std::ranges::reverse(stair_low);
-    std::string back = path_of(area, stair_x, stair_low, Join::straight);
-    back[0] = 'L';
-    return fmt::format("<path class=band d=\"{}{}Z\"/>", path_of(area, x, high, join), back);
+  std::ranges::reverse(back_x);
+  std::ranges::reverse(back);
+  if (join == Join::steps) {
+    std::string way_back = path_of(area, back_x, back, Join::straight);
+    way_back[0] = 'L';
+    return fmt::format("<path class=band d=\"{}{}Z\"/>", path_of(area, x, high, join), way_back);
   }
-  for (std::size_t i = x.size(); i-- > 0;) {
-    x.push_back(x[i]);
-    high.push_back(low[i]);
-  }
+  x.insert(x.end(), back_x.begin(), back_x.end());
+  high.insert(high.end(), back.begin(), back.end());
   return fmt::format("<path class=band d=\"{}Z\"/>", path_of(area, x, high, Join::straight));
-}
-
-// What is filtered with an optimizer, a problem or a method.
-std::string topic_attributes(const Topic& topic) {
-  std::string tag;
-  if (topic.optimizer) tag += fmt::format(" data-s={}", *topic.optimizer);
-  if (topic.problem) tag += fmt::format(" data-p={}", *topic.problem);
-  if (!topic.method.empty()) tag += fmt::format(" data-method=\"{}\"", html_text(topic.method));
-  return tag;
 }
 
 // Which line a button is of: of an optimizer in all drawings the same.
@@ -217,10 +209,8 @@ std::string series_svg(const Drawing& drawing, const Frame& area, std::size_t pl
     svg += band_of(area, line, drawing.join);
   std::string path = path_of(area, line.x, line.y, drawing.join);
   if (drawing.plot.kind == Plot::Kind::steps) path += fmt::format("H{:.0f}", kArea);
-  if (drawing.join == Join::none)
-    svg += fmt::format("<path class=\"line points\" d=\"{}\"", path);
-  else
-    svg += fmt::format("<path class=line d=\"{}\"", path);
+  svg += fmt::format("<path class={} d=\"{}\"",
+                     drawing.join == Join::none ? "\"line points\"" : "line", path);
   // What the scripts show later they mark and name.
   svg += is_off ? "/>" : fmt::format("><title>{}</title></path>", html_text(line.name));
   const bool are_few = drawing.join == Join::straight && line.x.size() <= kFewPoints;
@@ -269,7 +259,7 @@ std::string end_names(const Drawing& drawing, const Frame& frame) {
     if (last == 0 || is_hidden(drawing, line)) continue;
     std::string text = line.name;
     if (text.size() > kLongest) text = text.substr(0, kLongest - 1) + "…";
-    const Real x = drawing.plot.kind == Plot::Kind::steps ? frame.x_high : line.x[last - 1];
+    const Real x = drawing.plot.kind == Plot::Kind::steps ? frame.window.x_high : line.x[last - 1];
     ends.push_back({std::min(frame.x(x), frame.right()) + 6,
                     std::clamp(frame.y(line.y[last - 1]), frame.top, frame.bottom()),
                     kLetter * static_cast<Real>(text.size()), i, text});
@@ -297,6 +287,12 @@ std::string axis_attribute(Real low, Real high, bool is_log, bool is_share) {
 
 }  // namespace
 
+Plot shown_lines(const Drawing& drawing) {
+  Plot shown = drawing.plot;
+  std::erase_if(shown.series, [&](const PlotSeries& line) { return is_hidden(drawing, line); });
+  return shown.series.empty() ? drawing.plot : shown;
+}
+
 std::string drawing_svg(const Drawing& drawing, Real tau) {
   const Plot& plot = drawing.plot;
   const Frame frame = frame_of(drawing), area = area_of(frame);
@@ -306,10 +302,10 @@ std::string drawing_svg(const Drawing& drawing, Real tau) {
       "aria-label=\"{}\"><title>{}</title><g class=axes>{}{}</g>",
       drawing.has_names ? drawing.has_points ? " wide marked" : " wide" : "",
       frame.right() + (drawing.has_names ? kNameWidth : 16), frame.bottom() + kBelow,
-      axis_attribute(frame.x_low, frame.x_high, plot.is_log_x, false),
-      axis_attribute(frame.y_low, frame.y_high, plot.is_log_y, is_share), drawing.attributes,
-      html_text(plot.title + ". " + plot.reading + plot.caption), html_text(plot.title),
-      x_axis(frame, plot.x_label), y_axis(frame, plot.y_label, is_share));
+      axis_attribute(frame.window.x_low, frame.window.x_high, plot.is_log_x, false),
+      axis_attribute(frame.window.y_low, frame.window.y_high, plot.is_log_y, is_share),
+      drawing.attributes, html_text(plot.title + ". " + plot.reading + plot.caption),
+      html_text(plot.title), x_axis(frame, plot.x_label), y_axis(frame, plot.y_label, is_share));
   svg += fmt::format(
       "<svg class=area x={:.0f} y={:.0f} width={:.0f} height={:.0f} viewBox=\"0 0 {:.0f} {:.0f}\" "
       "preserveAspectRatio=none>",
@@ -389,8 +385,7 @@ Frame rows_frame(const Plot& plot) {
           .top = kPlotTop,
           .width = kPlotWidth - kNames - 20,
           .height = kRow * static_cast<Real>(plot.rows.size()),
-          .x_low = low,
-          .x_high = high,
+          .window = {low, high, 0, 1},
           .is_log_x = plot.is_log_x};
 }
 
@@ -463,40 +458,32 @@ std::string marks_html(const Plot& plot) {
   return html + "</p>";
 }
 
-// Rows of methods close up where some are hidden: the scripts read how high a row is.
-std::string closing_rows(const Plot& plot) {
-  if (plot.rows.empty() || plot.rows[0].topic.method.empty()) return "";
-  return fmt::format(" data-row={:.0f} data-edge={:.0f}", kRow, kPlotTop + kBelow);
-}
-
-Drawing drawing_of(const Plot& plot) {
-  const bool is_steps = plot.kind == Plot::Kind::steps;
-  return {.plot = plot, .join = is_steps ? Join::steps : Join::straight, .has_names = is_steps};
-}
-
-bool is_of_lines(const Plot& plot) {
-  return plot.kind == Plot::Kind::steps || plot.kind == Plot::Kind::lines;
-}
-
-}  // namespace
-
-std::string plot_svg(const Plot& plot) {
-  if (is_of_lines(plot)) return drawing_svg(drawing_of(plot));
+std::string rows_svg(const Plot& plot) {
+  // Rows of methods close up where some are hidden: the scripts read how high a row is.
+  const bool is_closing = !plot.rows.empty() && !plot.rows[0].topic.method.empty();
   return fmt::format(
              "<svg class=rows{} viewBox=\"0 0 {:.0f} {:.0f}\" role=img aria-label=\"{}\"><title>{}"
              "</title>",
-             closing_rows(plot), kPlotWidth,
-             kPlotTop + kRow * static_cast<Real>(plot.rows.size()) + kBelow,
+             is_closing ? fmt::format(" data-row={:.0f} data-edge={:.0f}", kRow, kPlotTop + kBelow)
+                        : "",
+             kPlotWidth, kPlotTop + kRow * static_cast<Real>(plot.rows.size()) + kBelow,
              html_text(plot.title + ". " + plot.reading), html_text(plot.title)) +
          (plot.kind == Plot::Kind::dots ? dots_svg(plot) : bars_svg(plot)) + "</svg>";
 }
 
+}  // namespace
+
 std::string plot_html(const Plot& plot) {
+  const bool is_steps = plot.kind == Plot::Kind::steps;
+  const Drawing drawing{
+      .plot = plot, .join = is_steps ? Join::steps : Join::straight, .has_names = is_steps};
+  const std::string drawn = is_steps || plot.kind == Plot::Kind::lines
+                                ? drawing_svg(drawing) + names_html(drawing)
+                                : rows_svg(plot) + marks_html(plot);
   std::string figure = fmt::format(
-      "<figure class=plot id={}><figcaption><b>{}.</b> {}</figcaption>{}{}<p class=legend>{}</p>"
+      "<figure class=plot id={}><figcaption><b>{}.</b> {}</figcaption>{}<p class=legend>{}</p>"
       "</figure>\n",
-      plot.id, html_text(plot.title), html_text(plot.reading), plot_svg(plot),
-      is_of_lines(plot) ? names_html(drawing_of(plot)) : marks_html(plot), html_text(plot.caption));
+      plot.id, html_text(plot.title), html_text(plot.reading), drawn, html_text(plot.caption));
   if (!plot.is_folded) return figure;
   return fmt::format("<details><summary>{}</summary>{}</details>\n", html_text(plot.title), figure);
 }

@@ -5,17 +5,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "reports/sections/sections.h"
+#include "reports/sections/claims.h"
 #include "reports/sections/words.h"
 
 namespace isoline::reports {
 namespace {
-
-bool has_abscissa(const Evidence& evidence) {
-  return evidence.kind.ends_with("slope") || evidence.kind == "crossing";
-}
-
-PlotSeries series_of(std::string name) { return {{}, std::move(name), {}, {}, {}, {}}; }
 
 // The expected value of a quantity that is read at one point: for a ratio, the place of the first
 // of two terms relative to the second.
@@ -34,10 +28,8 @@ std::vector<PlotSeries> goals_of(const Evidence& evidence) {
 
 // One line a term; terms that are the same runs read at several places have one.
 Plot curves(const Evidence& evidence) {
-  Plot plot{.kind = Plot::Kind::lines,
-            .title = evidence.is_over_time ? "Over processor time" : "Over iterations",
-            .x_label = evidence.is_over_time ? "seconds of processor time" : "iterations",
-            .y_label = column_words(evidence.curve)};
+  Plot plot = worded_plot(evidence.is_over_time ? "curves-over-time" : "curves");
+  plot.y_label = column_words(evidence.curve);
   const std::vector<std::string> names = term_names(evidence);
   for (std::size_t i = 0; i < evidence.terms.size(); ++i) {
     const EvidenceTerm& term = evidence.terms[i];
@@ -49,42 +41,23 @@ Plot curves(const Evidence& evidence) {
     if (!is_known) plot.series.push_back({{}, names[i], term.x, term.y, term.low, term.high});
   }
   constexpr Real kLong = 100;
-  const Real end = plot.series.at(0).x.back();
-  plot.is_log_x = end > kLong || evidence.is_over_time;
+  plot.is_log_x = plot.series.at(0).x.back() > kLong || evidence.is_over_time;
   plot.published = goals_of(evidence);
-  plot.caption =
-      "Medians over seeds with the range as a band; a run that has ended keeps its "
-      "last figure.";
   if (!plot.published.empty())
-    plot.caption +=
-        std::string(" The bar marks where the quantity is read: ") +
-        (evidence.kind == "ratio" ? "the published place of the first line, relative to the second."
-                                  : "the published value with its error.");
+    plot.caption += " " + words(evidence.kind == "ratio" ? "curves.ratio" : "curves.value");
   return plot;
 }
 
 // Terms by their abscissas.
-std::vector<const EvidenceTerm*> sorted(const Evidence& evidence, std::size_t first,
-                                        std::size_t last) {
-  std::vector<const EvidenceTerm*> terms;
-  for (std::size_t i = first; i < last; ++i) terms.push_back(&evidence.terms.at(i));
+PlotSeries over_abscissa(std::vector<EvidenceTerm> terms) {
   std::ranges::sort(terms, {}, &EvidenceTerm::at);
-  return terms;
-}
-
-std::string name_of(const std::vector<const EvidenceTerm*>& terms) {
   const bool is_one = std::ranges::all_of(
-      terms, [&](const EvidenceTerm* term) { return term->optimizer == terms[0]->optimizer; });
-  return is_one ? shown_spec(terms[0]->optimizer) : terms[0]->method;
-}
-
-PlotSeries over_abscissa(const Evidence& evidence, std::size_t first, std::size_t last) {
-  const auto terms = sorted(evidence, first, last);
-  PlotSeries line = series_of(name_of(terms));
-  for (const EvidenceTerm* term : terms) {
-    const auto [low, high] = std::ranges::minmax(term->runs, {}, &EvidenceRun::figure);
-    line.x.push_back(term->at);
-    line.y.push_back(term->level);
+      terms, [&](const EvidenceTerm& term) { return term.optimizer == terms[0].optimizer; });
+  PlotSeries line{.name = is_one ? shown_spec(terms[0].optimizer) : terms[0].method};
+  for (const EvidenceTerm& term : terms) {
+    const auto [low, high] = std::ranges::minmax(term.runs, {}, &EvidenceRun::figure);
+    line.x.push_back(term.at);
+    line.y.push_back(term.level);
     line.low.push_back(low.figure);
     line.high.push_back(high.figure);
   }
@@ -100,7 +73,7 @@ PlotSeries published_slope(const Evidence& evidence, const PlotSeries& line) {
     mean_x += std::log(line.x[i]) / n;
     mean_y += std::log(line.y[i]) / n;
   }
-  PlotSeries out = series_of("published");
+  PlotSeries out{.name = "published"};
   for (const Real x : {std::log(line.x.front()), mean_x, std::log(line.x.back())}) {
     const auto at = [&](Real slope) { return std::exp(mean_y + slope * (x - mean_x)); };
     const Real one = at(evidence.band.low), other = at(evidence.band.high);
@@ -113,43 +86,33 @@ PlotSeries published_slope(const Evidence& evidence, const PlotSeries& line) {
 }
 
 // The medians of the first half of the terms over those of the second.
-PlotSeries ratios_over_abscissa(const Evidence& evidence) {
-  const std::size_t n = evidence.terms.size();
-  const auto over = sorted(evidence, 0, n / 2), under = sorted(evidence, n / 2, n);
-  PlotSeries line = series_of(name_of(over) + " / " + name_of(under));
-  for (std::size_t i = 0; i < std::min(over.size(), under.size()); ++i) {
-    line.x.push_back(over[i]->at);
-    line.y.push_back(over[i]->level / under[i]->level);
-  }
+PlotSeries ratios_of(const PlotSeries& over, const PlotSeries& under) {
+  PlotSeries line{.name = over.name + " / " + under.name, .x = over.x, .y = over.y};
+  for (std::size_t i = 0; i < line.y.size(); ++i) line.y[i] /= under.y.at(i);
   return line;
 }
 
-std::string abscissa_words(const Evidence& evidence) {
+Plot figures_over_abscissa(const Evidence& evidence) {
   const auto is_iteration = [](const EvidenceTerm& term) {
     return term.iteration && static_cast<Real>(*term.iteration) == term.at;
   };
-  if (!evidence.abscissa.empty()) return evidence.abscissa;
-  return std::ranges::all_of(evidence.terms, is_iteration) ? "iterations" : "abscissa";
-}
-
-Plot figures_over_abscissa(const Evidence& evidence) {
-  Plot plot{.kind = Plot::Kind::lines,
-            .title = "Over " + abscissa_words(evidence),
-            .x_label = abscissa_words(evidence),
-            .y_label = column_words(evidence.column),
-            .is_log_x = true};
-  const std::size_t n = evidence.terms.size();
-  plot.caption = "Medians over seeds with the range as a band.";
+  std::string abscissa = evidence.abscissa;
+  if (abscissa.empty())
+    abscissa = std::ranges::all_of(evidence.terms, is_iteration) ? "iterations" : "abscissa";
+  Plot plot = worded_plot("over-abscissa", abscissa, column_words(evidence.column));
+  plot.is_log_x = true;
+  const auto middle = evidence.terms.begin() + std::ssize(evidence.terms) / 2;
+  const PlotSeries first = over_abscissa({evidence.terms.begin(), middle}),
+                   second = over_abscissa({middle, evidence.terms.end()});
   if (evidence.kind != "crossing") {
     const bool is_of_ratios = evidence.kind == "ratio_slope";
-    plot.series = {is_of_ratios ? ratios_over_abscissa(evidence) : over_abscissa(evidence, 0, n)};
+    plot.series = {is_of_ratios ? ratios_of(first, second) : over_abscissa(evidence.terms)};
     if (is_of_ratios) plot.y_label += ", ratio";
     plot.published = {published_slope(evidence, plot.series[0])};
-    plot.caption +=
-        " Broken line: the published slope through the centre of the values, with its error.";
+    plot.caption += " " + words("over-abscissa.slope");
     return plot;
   }
-  plot.series = {over_abscissa(evidence, 0, n / 2), over_abscissa(evidence, n / 2, n)};
+  plot.series = {first, second};
   const Agreement& band = evidence.band;
   plot.published = {{.optimizer = {},
                      .name = "published",
@@ -157,14 +120,8 @@ Plot figures_over_abscissa(const Evidence& evidence) {
                      .y = {},
                      .low = std::vector<Real>(3, 0),
                      .high = std::vector<Real>(3, kNever)}};
-  plot.caption += " The vertical band is the published crossing of the lines.";
+  plot.caption += " " + words("over-abscissa.crossing");
   return plot;
-}
-
-bool is_all(const Evidence& evidence, const std::string EvidenceTerm::*part) {
-  return std::ranges::all_of(evidence.terms, [&](const EvidenceTerm& term) {
-    return term.*part == evidence.terms[0].*part;
-  });
 }
 
 // Logarithmic where all that is drawn is above 0 and spans more than a factor of ten.
@@ -184,26 +141,34 @@ bool is_logarithmic(const Plot& plot) {
 }  // namespace
 
 std::vector<std::string> term_names(const Evidence& evidence) {
+  const auto is_one = [&](const std::string EvidenceTerm::*part) {
+    return std::ranges::all_of(evidence.terms, [&](const EvidenceTerm& term) {
+      return term.*part == evidence.terms[0].*part;
+    });
+  };
   const bool has_abscissa = !evidence.abscissa.empty();  // tells the problems apart
-  const bool one_problem = has_abscissa || is_all(evidence, &EvidenceTerm::problem);
-  const bool one_optimizer = is_all(evidence, &EvidenceTerm::optimizer) && !one_problem;
+  const bool one_problem = has_abscissa || is_one(&EvidenceTerm::problem);
+  const bool one_optimizer = is_one(&EvidenceTerm::optimizer) && !one_problem;
   std::vector<std::string> names;
   for (const EvidenceTerm& term : evidence.terms) {
-    std::string name = one_optimizer ? shown_spec(term.problem) : shown_spec(term.optimizer);
+    std::string& name =
+        names.emplace_back(shown_spec(one_optimizer ? term.problem : term.optimizer));
     if (!one_problem && !one_optimizer) name += " on " + shown_spec(term.problem);
     if (term.scale != 1) name += fmt::format(", times {}", figure(term.scale));
     if (has_abscissa) name += fmt::format(", {} = {}", evidence.abscissa, figure(term.at));
-    names.push_back(std::move(name));
   }
   return names;
 }
 
 std::vector<Plot> claim_plots(const Evidence& evidence, const std::string& id) {
   if (evidence.terms.empty()) return {};
+  const bool has_abscissa = evidence.kind.ends_with("slope") || evidence.kind == "crossing";
   const bool has_curves =
+      evidence.printed.empty() &&
       std::ranges::none_of(evidence.terms, [](const EvidenceTerm& term) { return term.x.empty(); });
-  if (!has_abscissa(evidence) && (!has_curves || !evidence.printed.empty())) return {};
-  Plot plot = has_abscissa(evidence) ? figures_over_abscissa(evidence) : curves(evidence);
+  if (!has_abscissa && !has_curves) return {};
+  Plot plot = has_abscissa ? figures_over_abscissa(evidence) : curves(evidence);
+  plot.kind = Plot::Kind::lines;
   plot.id = "plot-" + id;
   plot.is_log_y = is_logarithmic(plot);
   return {plot};

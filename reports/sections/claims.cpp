@@ -1,13 +1,12 @@
 // One claim whole: what is said and by whom, the verdict, what was published and measured, the
 // figures that decide it, and how to get them again.
+#include "reports/sections/claims.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "core/results/statistics.h"
-#include "reports/sections/figures.h"
-#include "reports/sections/sections.h"
 #include "reports/sections/words.h"
 
 namespace isoline::reports {
@@ -24,49 +23,40 @@ std::string band_text(const Agreement& band) {
                                : fmt::format("{} to {}", low, high);
 }
 
-std::string measured_sentence(const Judgement& judgement) {
-  if (!judgement.measured) return "Nothing: there are no runs of it.";
-  std::string text = measured_text(judgement);
-  if (judgement.measured->n > 1)
-    text += fmt::format("; in brackets the {}", interval_name(judgement.measured->n));
-  return text + ".";
-}
-
 std::string cells_sentence(const CellSet& set) {
-  const std::string text =
-      fmt::format("{} of {} iterations", counted(set.planned, "run"), set.iterations);
-  const bool is_one = set.planned == 1;
-  if (set.is_deciding)
-    return fmt::format("{}, which {} here and {} it.", text, is_one ? "is" : "are",
-                       is_one ? "decides" : "decide");
-  if (set.here == set.planned) return text + ", which are here too.";
-  return fmt::format("{}, of which {} are here; {}.", text, set.here,
-                     set.is_long ? "--long runs the others, which takes hours"
-                                 : "without --no-run the others are run");
+  const std::string text = words("claim.cells", set.planned, set.iterations);
+  if (set.is_deciding) return text + words("claim.cells.deciding", set.planned);
+  if (set.here == set.planned) return text + words("claim.cells.here");
+  return text + words(set.is_long ? "claim.cells.long" : "claim.cells.others", set.here);
 }
 
 std::vector<Reading> readings_of(const Judgement& judgement) {
   std::vector<Reading> all = {{"Verdict", marked_verdict(judgement) + "."},
                               {"Source", judgement.source + "."}};
-  const auto add = [&](const char* title, std::string text) {
-    all.push_back({title, std::move(text)});
-  };
   if (judgement.band) {
-    add("What is read", judgement.quantity + ".");
-    add("Published",
-        fmt::format("{}. That agrees with {}.", judgement.published, band_text(*judgement.band)));
-    add("Measured", measured_sentence(judgement));
+    const auto& measured = judgement.measured;
+    const std::string interval =
+        measured && measured->n > 1 ? words("claim.interval", interval_name(measured->n)) : "";
+    all.push_back({"What is read", judgement.quantity + "."});
+    all.push_back(
+        {"Published", words("claim.published", judgement.published, band_text(*judgement.band))});
+    all.push_back({"Measured", measured ? measured_text(judgement) + interval + "."
+                                        : words("claim.unmeasured")});
   }
   for (Reading& note : claim_notes(judgement)) all.push_back(std::move(note));
-  for (const CellSet& set : judgement.sets) add("Cells", cells_sentence(set));
+  for (const CellSet& set : judgement.sets) all.push_back({"Cells", cells_sentence(set)});
   return all;
 }
 
+// A table of the evidence of a claim, which IDs and titles name.
+Table evidence_table(const char* key, const Evidence& evidence, const std::string& id) {
+  Table table = worded_table(key, column_words(evidence.column));
+  table.id += "-" + id;
+  return table;
+}
+
 Table terms_table(const Evidence& evidence, const std::string& id) {
-  Table table{.id = "terms-" + id,
-              .title = "Figures: " + column_words(evidence.column),
-              .columns = {"of", "read", "median", "least", "greatest", "runs"},
-              .align = "llrrrr"};
+  Table table = evidence_table("terms", evidence, id);
   const std::vector<std::string> names = term_names(evidence);
   for (std::size_t i = 0; i < evidence.terms.size(); ++i) {
     const EvidenceTerm& term = evidence.terms[i];
@@ -86,10 +76,7 @@ std::string point_text(const std::vector<Real>& point) {
 }
 
 Table printed_table(const Evidence& evidence, const std::string& id) {
-  Table table{.id = "printed-" + id,
-              .title = "Printed beside measured",
-              .columns = {"iteration", "published", "measured", "largest distance"},
-              .align = "rrrr"};
+  Table table = evidence_table("printed", evidence, id);
   for (const PrintedRow& row : evidence.printed) {
     Real largest = 0;
     for (std::size_t j = 0; j < row.printed.size(); ++j)
@@ -102,11 +89,8 @@ Table printed_table(const Evidence& evidence, const std::string& id) {
 
 // Run by run.
 Table runs_table(const Evidence& evidence, const std::string& id) {
-  Table table{.id = "runs-" + id,
-              .title = "Runs",
-              .columns = {"cell", "seed", "figure", "ended", "record"},
-              .align = "lrrll",
-              .is_folded = true};
+  Table table = evidence_table("runs", evidence, id);
+  table.is_folded = true;
   for (const EvidenceTerm& term : evidence.terms)
     for (const EvidenceRun& run : term.runs)
       table.rows.push_back({shown_spec(term.problem) + " × " + shown_spec(term.optimizer),
@@ -123,23 +107,18 @@ void show(Section& section, const Evidence& evidence, const std::string& id,
     plot.title = (prefix.empty() ? "" : prefix + ": ") + plot.title;
     section.plots.push_back(std::move(plot));
   }
-  std::vector<Table> tables;
-  if (!evidence.printed.empty()) tables.push_back(printed_table(evidence, id));
-  tables.push_back(terms_table(evidence, id));
-  tables.push_back(runs_table(evidence, id));
-  for (Table& table : tables) {
+  for (const auto table_of : {printed_table, terms_table, runs_table}) {
+    Table table = table_of(evidence, id);
     table.title = (prefix.empty() ? "" : prefix + ". ") + table.title;
-    section.tables.push_back(std::move(table));
+    if (!table.rows.empty()) section.tables.push_back(std::move(table));
   }
 }
 
 }  // namespace
 
 Section claim_section(const Judgement& judgement) {
-  Section section{.id = "claim-" + judgement.id,
-                  .title = judgement.sentence,
-                  .lead = {},
-                  .readings = readings_of(judgement)};
+  Section section{.id = "claim-" + judgement.id, .title = judgement.sentence};
+  section.readings = readings_of(judgement);
   show(section, judgement.evidence, judgement.id, "");
   for (std::size_t i = 0; i < judgement.contrasts.size(); ++i) {
     const std::string number = i == 0 ? "" : fmt::format("-{}", i + 1);
@@ -148,8 +127,6 @@ Section claim_section(const Judgement& judgement) {
   section.command = repeat_command(judgement.id, judgement.sets);
   return section;
 }
-
-// The verdicts on claims of papers, and the figures they rest on.
 
 namespace {
 
@@ -182,22 +159,6 @@ std::string seeds_text(const Judgement& judgement) {
   return judgement.measured ? std::to_string(judgement.measured->n) : kNothing;
 }
 
-std::vector<TableCell> claim_row(const Judgement& judgement) {
-  std::vector<std::string> remarks;
-  for (const Reading& note : claim_notes(judgement)) remarks.push_back(note.text);
-  TableCell claim = judgement.sentence;
-  claim.note = judgement.quantity;
-  claim.remark = judgement.source;
-  claim.link = "#claim-" + judgement.id;
-  return {claim,
-          marked_verdict(judgement),
-          judgement.published,
-          value_text(judgement),
-          over_seeds(judgement),
-          seeds_text(judgement),
-          joined(remarks, " ")};
-}
-
 }  // namespace
 
 std::string measured_text(const Judgement& judgement) {
@@ -216,29 +177,25 @@ std::string marked_verdict(const Judgement& judgement) {
 // source.
 std::vector<Reading> claim_notes(const Judgement& judgement) {
   std::vector<Reading> notes;
-  const auto add = [&](const char* title, std::string text) {
-    notes.push_back({title, std::move(text)});
-  };
   for (const Contrast& contrast : judgement.contrasts)
-    add("Contrast", fmt::format("Checked against the {}: published {}, measured {}.",
-                                contrast.quantity, contrast.published,
-                                contrast.measured ? figure(contrast.measured->value) : kNothing));
+    notes.push_back(
+        {"Contrast", words("claim.contrast", contrast.quantity, contrast.published,
+                           contrast.measured ? figure(contrast.measured->value) : kNothing)});
   for (const OtherReading& other : judgement.others)
-    add("Read otherwise", fmt::format("Read {}: {}, {}.", other.how, figure(other.measured.value),
-                                      name_of(other.verdict)));
-  if (const auto& measured = judgement.measured; measured && measured->predicted)
-    if (judgement.is_of_one_run)
-      add("One published run",
-          fmt::format("One further run of ours would lie from {} to {}.",
-                      figure(measured->predicted->low), figure(measured->predicted->high)));
-  if (!judgement.reading.empty()) add("Published figure", judgement.reading);
-  if (!judgement.why.empty()) add("Why", judgement.why + ".");
+    notes.push_back({"Read otherwise", words("claim.otherwise", other.how, other.measured.value,
+                                             name_of(other.verdict))});
+  if (const auto& measured = judgement.measured;
+      measured && measured->predicted && judgement.is_of_one_run)
+    notes.push_back({"One published run",
+                     words("claim.one-run", measured->predicted->low, measured->predicted->high)});
+  if (!judgement.reading.empty()) notes.push_back({"Published figure", judgement.reading});
+  if (!judgement.why.empty()) notes.push_back({"Why", judgement.why + "."});
   if (!judgement.survives.empty())
-    add("Not refutable",
-        fmt::format("The data could not refute it: {} would come to the same verdict.",
-                    joined(judgement.survives, " and ")));
-  if (judgement.fact != judgement.id) add("Fact", fmt::format("Counted with {}.", judgement.fact));
-  if (!judgement.caveat.empty()) add("Caveat", judgement.caveat);
+    notes.push_back(
+        {"Not refutable", words("claim.survives", joined(judgement.survives, " and "))});
+  if (judgement.fact != judgement.id)
+    notes.push_back({"Fact", fmt::format("Counted with {}.", judgement.fact)});
+  if (!judgement.caveat.empty()) notes.push_back({"Caveat", judgement.caveat});
   return notes;
 }
 
@@ -258,67 +215,52 @@ std::string claims_reading(const std::vector<Judgement>& judgements) {
     if (const auto count = std::ranges::count(facts, static_cast<Verdict>(i)); count > 0)
       parts.push_back(fmt::format("{} {}", count, kVerdictNames[i]));
   if (const auto decided = std::ranges::count_if(identities, is_decided); decided > 0)
-    parts.push_back(fmt::format("{} of {} identities and printed digits verified, counted apart",
-                                std::ranges::count(identities, Verdict::reproduced), decided));
-  std::string text = fmt::format("{} in {}: {}.", counted(facts.size() + identities.size(), "fact"),
-                                 counted(judgements.size(), "claim"), joined(parts));
+    parts.push_back(
+        words("claims.identities", std::ranges::count(identities, Verdict::reproduced), decided));
+  std::string text =
+      words("claims.reading", facts.size() + identities.size(), judgements.size(), joined(parts));
   const auto surviving = std::ranges::count_if(
       judgements, [](const Judgement& judgement) { return !judgement.survives.empty(); });
-  if (surviving > 0)
-    text += fmt::format(" {} of the claims could not have been refuted by these runs.", surviving);
+  if (surviving > 0) text += " " + words("claims.surviving", surviving);
   return text;
 }
 
 Section claims_section(const std::vector<Judgement>& judgements) {
-  Section section{.id = "claims",
-                  .title = "Claims of the papers",
-                  .otherwise = "No published claim is decided by the runs of this report."};
+  Section section = worded_section("claims");
   if (judgements.empty()) return section;
-  section.lead =
-      "Measured are medians over seeds, with 95 % of the bootstrap over seeds, or the range of "
-      "fewer "
-      "than six. Reproduced: all of that lies within the error of what was published, or, where "
-      "that "
-      "is one run, one further run of ours may be it. Consistent: some of it does. Stronger: all "
-      "of "
-      "it is better than published. Partly: all of it is on the published side of a tie, with a "
-      "third to three times the published effect. Fewer than six seeds are consistent or at odds. "
-      "Claims that restate one fact count once, by the weakest.";
   section.readings = {{"", claims_reading(judgements)}};
-  Table& table = section.tables.emplace_back(Table{
-      .id = "claims-table",
-      .columns = {"claim", "verdict", "published", "measured", "over seeds", "seeds", "remarks"},
-      .align = "plrrrrp"});
+  Table& table = section.tables.emplace_back(worded_table("claims-table"));
   for (const Judgement& judgement : judgements) {
-    table.rows.push_back(claim_row(judgement));
+    std::vector<std::string> remarks;
+    for (const Reading& note : claim_notes(judgement)) remarks.push_back(note.text);
+    TableCell claim = judgement.sentence;
+    claim.note = judgement.quantity;
+    claim.remark = judgement.source;
+    claim.link = "#claim-" + judgement.id;
+    table.rows.push_back({claim, marked_verdict(judgement), judgement.published,
+                          value_text(judgement), over_seeds(judgement), seeds_text(judgement),
+                          joined(remarks, " ")});
     table.row_topics.push_back({.claim = judgement.id});
   }
   return section;
 }
 
-namespace {
-
-std::string rough_time(Real seconds) {
-  constexpr Real kMinute = 60;
-  if (seconds < 1) return "< 1 s";
-  return seconds < 2 * kMinute ? fmt::format("{:.0f} s", seconds)
-                               : fmt::format("{:.0f} min", seconds / kMinute);
-}
-
-}  // namespace
-
 Section papers_section(const std::vector<Judgement>& judgements) {
-  Section section{.id = "papers",
-                  .title = "The papers, sentence by sentence",
-                  .readings = {{"", claims_reading(judgements)}}};
+  Section section = worded_section("papers");
+  section.readings = {{"", claims_reading(judgements)}};
   for (const Judgement& judgement : judgements) {
     auto table = std::ranges::find(section.tables, judgement.paper, &Table::title);
-    if (table == section.tables.end())
-      table =
-          section.tables.insert(table, Table{.title = judgement.paper,
-                                             .columns = {"what it says", "where", "command", "time",
-                                                         "published", "measured", "verdict"},
-                                             .align = "lllrlll"});
+    if (table == section.tables.end()) {
+      table = section.tables.insert(table, worded_table("papers-table"));
+      table->id.clear();
+      table->title = judgement.paper;
+    }
+    constexpr Real kMinute = 60;
+    const auto rough_time = [](Real seconds) {
+      return seconds < 1             ? "< 1 s"
+             : seconds < 2 * kMinute ? fmt::format("{:.0f} s", seconds)
+                                     : fmt::format("{:.0f} min", seconds / kMinute);
+    };
     const bool has_runs = judgement.measured.has_value();
     const bool is_long = !judgement.sets.empty() && judgement.sets.back().is_long;
     const bool is_not_run = !has_runs && !judgement.sets.empty();
@@ -337,12 +279,11 @@ Section papers_section(const std::vector<Judgement>& judgements) {
 }
 
 Section claims_summary(const std::vector<Judgement>& judgements) {
-  Section section{.id = "claims",
-                  .title = "Claims of the papers",
-                  .readings = {{"", claims_reading(judgements)}},
-                  .otherwise = "No claim was judged."};
-  Table& table = section.tables.emplace_back(
-      Table{.columns = {"claim", "verdict", "published", "measured", "seeds"}, .align = "lllll"});
+  Section section = worded_section("claims-summary");
+  section.id = "claims";
+  section.readings = {{"", claims_reading(judgements)}};
+  Table& table = section.tables.emplace_back(worded_table("claims-summary-table"));
+  table.id.clear();
   for (const Verdict verdict : {Verdict::not_reproduced, Verdict::partly, Verdict::consistent,
                                 Verdict::reproduced, Verdict::too_short, Verdict::not_comparable})
     for (const Judgement& judgement : judgements)
@@ -350,66 +291,6 @@ Section claims_summary(const std::vector<Judgement>& judgements) {
         table.rows.push_back({judgement.id, marked_verdict(judgement), judgement.published,
                               value_text(judgement), seeds_text(judgement)});
   return section;
-}
-
-// The published values, as marks in the papers' figures.
-
-namespace {
-
-// The lines of a method.
-std::vector<std::size_t> optimizers_of(const Comparison& c, const Figure& figure,
-                                       const std::string& method) {
-  std::vector<std::size_t> optimizers;
-  for (const FigureLine& line : figure.lines)
-    if (c.optimizers[line.optimizer].method == method) optimizers.push_back(line.optimizer);
-  return optimizers;
-}
-
-// Where a term of a claim stands across a figure; nothing where it is of another problem.
-std::optional<Real> place_in(const Figure& figure, const EvidenceTerm& term) {
-  const std::string problem = shown_spec(term.problem);
-  const bool is_relative = std::abs(term.scale - 1) > 1e-9;
-  if (figure.kind == "sweep" && is_relative == figure.is_relative)
-    for (const auto& [name, x] : figure.places)
-      if (name == problem) return x;
-  if (figure.kind != "curve" || figure.problem != problem || is_relative) return std::nullopt;
-  return term.read_at;
-}
-
-void add_mark(Figure& figure, const Comparison& c, const Judgement& claim) {
-  const Evidence& evidence = claim.evidence;
-  const bool is_level = evidence.kind == "value" && evidence.terms.size() == 1 && claim.band &&
-                        evidence.column.find("x_error") != std::string::npos;
-  if (!is_level) return;
-  const EvidenceTerm& term = evidence.terms[0];
-  const auto x = place_in(figure, term);
-  const std::vector<std::size_t> optimizers = optimizers_of(c, figure, term.method);
-  if (x && !optimizers.empty())
-    figure.published.push_back(
-        {.optimizer = optimizers[0],
-         .name = fmt::format("{}, published: {}", term.method, column_words(evidence.column)),
-         .x = *x,
-         .y = evidence.published,
-         .low = claim.band->low,
-         .high = claim.band->high});
-}
-
-void add_methods(Figure& figure, const Comparison& c, const Judgement& claim) {
-  for (const EvidenceTerm& term : claim.evidence.terms)
-    if (place_in(figure, term) || shown_spec(term.problem) == figure.problem)
-      for (const std::size_t optimizer : optimizers_of(c, figure, term.method))
-        figure.of_the_paper.insert(optimizer);
-}
-
-}  // namespace
-
-void add_published(std::vector<Figure>& all, const Comparison& c,
-                   const std::vector<Judgement>& claims) {
-  for (Figure& figure : all)
-    for (const Judgement& claim : claims) {
-      add_mark(figure, c, claim);
-      add_methods(figure, c, claim);
-    }
 }
 
 }  // namespace isoline::reports

@@ -1,13 +1,12 @@
-// Tables of costs: raw counts of oracle calls with what they come to, and the prices themselves.
+// Tables of costs: raw counts of oracle calls with what they come to, the prices themselves,
+// expected running times by restarts, and the work of every optimizer on each problem.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "core/results/statistics.h"
-#include "core/results/targets.h"
-#include "reports/sections/claim_terms.h"
-#include "reports/sections/evidence.h"
+#include "core/results/study.h"
 #include "reports/sections/sections.h"
 #include "reports/sections/words.h"
 
@@ -39,8 +38,6 @@ Calls calls_of(const Comparison& c, std::size_t s) {
   return calls;
 }
 
-TableCell sum_cell(Real sum) { return {figure(sum), {{"sum", sum}}}; }
-
 const MeasuredPrice* price_of(const MeasuredPrices& prices, std::string_view oracle) {
   const auto at = std::ranges::find(prices.oracles, oracle, &MeasuredPrice::oracle);
   return at == prices.oracles.end() ? nullptr : &*at;
@@ -64,104 +61,39 @@ TableCell price_cell(const MeasuredPrices& prices, std::string_view oracle) {
   return cell;
 }
 
-// A summary of the costs that are used.
-struct PriceSummary {
-  std::vector<Real> pullbacks;
-  std::size_t measured = 0, untold = 0;
-  Real distance = 0;  // of the one farthest from the declared price, by its logarithm
-  std::string farthest = "none";
-
-  void add(const MeasuredPrices& prices, const std::string& problem) {
-    for (const MeasuredPrice& price : prices.oracles) {
-      if (price.oracle == kInference) continue;  // no run asks it: it counts in no cost
-      ++measured;
-      untold += !is_told(prices, price);
-      if (!is_told(prices, price)) continue;
-      if (price.oracle == "pullback") pullbacks.push_back(price.price);
-      if (price.declared == 0) continue;
-      const Real away = std::abs(std::log(price.price / Real(price.declared)));
-      if (away <= distance) continue;
-      distance = away;
-      farthest = fmt::format("{} of {}, declared {}, measured {}", price.oracle, problem,
-                             price.declared, figure(price.price));
-    }
-  }
-  std::string reading() const {
-    if (measured == 0) return "These results contain no measured costs: nominal costs are used.";
-    std::string text;
-    if (!pullbacks.empty()) {
-      const Spread spread = spread_of(pullbacks);
-      text = fmt::format(
-          "A pullback, with nominal cost 1, takes {:.3g} forward solves in the median of the {} "
-          "where it is resolved, from {:.3g} to {:.3g}; farthest from its nominal cost: {}. ",
-          spread.median, spread.n, spread.low, spread.high, farthest);
-    }
-    if (untold == 0) return text + "All measured costs are used.";
-    return text + fmt::format(
-                      "{} measured costs in total; {} are replaced by the nominal ones: there, a "
-                      "call, "
-                      "or the forward solve that is their unit, takes less than a microsecond, "
-                      "which is mostly the overhead of any call, or the rounds disagree.",
-                      measured, untold);
-  }
-};
-
 }  // namespace
 
 Table calls_table(const Comparison& c) {
-  Table table{.id = "calls",
-              .title = "Oracle calls",
-              .reading = "",
-              .caption = fmt::format(
-                  "Raw counts until {} was met, summed over the runs that met it; their nominal "
-                  "cost (work) and in {} (cost). For every single run: "
-                  "report.csv.",
-                  tau_name(c), priced_unit(c)),
-              .columns = {"optimizer", "runs to " + tau_name(c)},
-              .rows = {}};
+  Table table = worded_table("calls", tau_name(c), priced_unit(c));
   std::vector<Calls> all;
   std::array<bool, kOracles> is_asked{};
-  for (std::size_t s = 0; s < listed_optimizers(c, kMostTableRows); ++s) {
-    all.push_back(calls_of(c, s));
+  Real work = 0, cost = 0;
+  for (std::size_t s = 0; s < std::min(c.optimizers.size(), kMostTableRows); ++s) {
+    const Calls& calls = all.emplace_back(calls_of(c, s));
     for (std::size_t kind = 0; kind < kOracles; ++kind)
-      is_asked[kind] = is_asked[kind] || all.back().counts[kind] > 0;
+      is_asked[kind] = is_asked[kind] || calls.counts[kind] > 0;
+    work += calls.work;
+    cost += calls.cost;
   }
   for (std::size_t kind = 0; kind < kOracles; ++kind)
     if (is_asked[kind]) table.columns.emplace_back(kOracleNames[kind]);
   for (const char* column : {"work", "cost", "n runs", "failed"}) table.columns.push_back(column);
-  Real work = 0, cost = 0;
   for (std::size_t s = 0; s < all.size(); ++s) {
-    std::vector<TableCell> row = {optimizer_text(c, s), count_cell(all[s].reached)};
+    std::vector<TableCell> row = {count_cell(all[s].reached)};
     for (std::size_t kind = 0; kind < kOracles; ++kind)
-      if (is_asked[kind]) row.push_back(sum_cell(all[s].counts[kind]));
-    row.push_back(sum_cell(all[s].work));
-    row.push_back(sum_cell(all[s].cost));
+      if (is_asked[kind]) row.push_back(number_cell("sum", all[s].counts[kind]));
+    row.push_back(number_cell("sum", all[s].work));
+    row.push_back(number_cell("sum", all[s].cost));
     row.push_back(count_cell(all[s].runs));
     row.push_back(failed_cell(c, s));
-    table.rows.push_back(std::move(row));
-    work += all[s].work;
-    cost += all[s].cost;
+    add_row(table, c, s, std::move(row));
   }
-  rows_are_optimizers(table);
-  table.reading = fmt::format("All of these took {} forward solves at nominal cost, {} in {}.",
-                              figure(work), figure(cost), priced_unit(c));
+  table.reading = words("calls.reading", work, cost, priced_unit(c));
   return table;
 }
 
 Table prices_table(const Comparison& c) {
-  Table table{
-      .id = "prices",
-      .title = "Prices",
-      .reading = "",
-      .caption =
-          "The cost of the first call of an oracle at a new point, in forward solves: nominal : "
-          "measured [middle 80 % of the rounds], in processor time, before the runs. The nominal "
-          "cost is used if the call, or the forward solve, takes less than a microsecond, or the "
-          "rounds "
-          "disagree. Empty: not offered, or left out because it takes too long, and counted at its "
-          "declared price.",
-      .columns = {"problem", "forward, µs"},
-      .rows = {}};
+  Table table = worded_table("prices");
   std::vector<std::string_view> oracles;
   for (const std::string_view oracle : kOracleNames)
     if (oracle != "forward" && std::ranges::any_of(c.problems, [&](const ProblemAxis& problem) {
@@ -170,50 +102,35 @@ Table prices_table(const Comparison& c) {
         }))
       oracles.push_back(oracle);
   table.columns.insert(table.columns.end(), oracles.begin(), oracles.end());
-  PriceSummary summary;
+  std::size_t measured = 0, untold = 0;
   for (std::size_t p = 0; p < c.problems.size(); ++p) {
     const MeasuredPrices* prices = prices_of(c.problems[p]);
     if (prices == nullptr) continue;
     table.row_topics.push_back({.problem = p});
-    const std::string name = problem_name(c.problems[p]);
-    const Real microseconds = 1e6 * prices->forward_seconds;
-    std::vector<TableCell> row = {name, {figure(microseconds), {{"microseconds", microseconds}}}};
+    std::vector<TableCell> row = {problem_name(c.problems[p]),
+                                  number_cell("microseconds", 1e6 * prices->forward_seconds)};
     for (const std::string_view oracle : oracles) row.push_back(price_cell(*prices, oracle));
-    summary.add(*prices, name);
+    for (const MeasuredPrice& price : prices->oracles) {
+      if (price.oracle == kInference) continue;  // no run asks it: it counts in no cost
+      ++measured;
+      untold += !is_told(*prices, price);
+    }
     table.rows.push_back(std::move(row));
   }
-  table.reading = summary.reading();
+  table.reading = words(measured == 0 ? "prices.none"
+                        : untold == 0 ? "prices.all"
+                                      : "prices.some",
+                        measured, untold);
   return table;
 }
 
 // Problem by problem: what this data shows of each, and the work of every optimizer on it.
-
-namespace {
-
-constexpr std::size_t kMostColumns = 7;  // problems: more side by side are too wide to read
-
-TableCell work_cell(const Comparison& c, const Cell& cell) {
-  TableCell shown = matrix_text(c, cell, kTightest);
-  shown.is_best = cell.is_best[kTightest];
-  if (cell.is_measured() && !is_complete(cell, kTightest))
-    shown.remark = count_text(cell, kTightest);
-  return shown;
-}
-
-}  // namespace
-
 Section problems_section(const Comparison& c) {
-  Section section{.id = "problems", .title = "Problem by problem"};
-  Table table{.id = "matrix",
-              .title = "Every problem and optimizer",
-              .caption = fmt::format(
-                  "Median {}. Bold: the least of its problem. ✗: not reached by half of the "
-                  "runs. (k/n): k of n runs reached it. n/a: not applicable. Empty: "
-                  "not planned. {}",
-                  counted_to_tau(c), marks_legend(c)),
-              .columns = {"optimizer"},
-              .is_folded = c.problems.size() > kMostColumns,
-              .most_columns = kMostColumns};
+  constexpr std::size_t kMostColumns = 7;  // problems: more side by side are too wide to read
+  Section section = worded_section("problems");
+  Table table = worded_table("matrix", counted_to_tau(c), marks_legend(c));
+  table.is_folded = c.problems.size() > kMostColumns;
+  table.most_columns = kMostColumns;
   for (std::size_t p = 0; p < c.problems.size(); ++p) {
     const std::string name = problem_name(c.problems[p]);
     section.readings.push_back({name, curve_reading(c, p)});
@@ -221,7 +138,13 @@ Section problems_section(const Comparison& c) {
   }
   for (std::size_t s = 0; s < c.optimizers.size(); ++s) {
     std::vector<TableCell> row = {optimizer_text(c, s)};
-    for (std::size_t p = 0; p < c.problems.size(); ++p) row.push_back(work_cell(c, c.cell(p, s)));
+    for (std::size_t p = 0; p < c.problems.size(); ++p) {
+      const Cell& cell = c.cell(p, s);
+      TableCell& shown = row.emplace_back(matrix_text(c, cell, kTightest));
+      shown.is_best = cell.is_best[kTightest];
+      if (cell.is_measured() && !is_complete(cell, kTightest))
+        shown.remark = count_text(cell, kTightest);
+    }
     table.rows.push_back(std::move(row));
   }
   section.tables.push_back(std::move(table));
@@ -232,9 +155,10 @@ Section problems_section(const Comparison& c) {
 
 namespace {
 
-constexpr std::size_t kMostProblems = 25;  // columns of a matrix
-
-std::vector<Attempt> attempts_of(const Comparison& c, const Cell& cell) {
+// The cost of restarts on one cell; `rescued` counts cells that only restarts solve.
+TableCell restart_cell(const Comparison& c, std::size_t p, std::size_t s, std::size_t& rescued) {
+  const Cell& cell = c.cell(p, s);
+  if (!cell.is_measured()) return cell.planned == 0 ? "" : cell.runs.empty() ? "missing" : "n/a";
   const Measure by = cost_measure(c);
   std::vector<Attempt> attempts;
   for (const std::size_t index : cell.runs) {
@@ -243,35 +167,10 @@ std::vector<Attempt> attempts_of(const Comparison& c, const Cell& cell) {
     const bool is_success = taken < kNever;
     attempts.push_back({in_units(by, is_success ? taken : run.spent_by(by)), is_success});
   }
-  return attempts;
-}
-
-// The raw counts of the median successful run, as a tooltip of its cost.
-TableCell with_calls(const Comparison& c, const Cell& cell, TableCell shown) {
-  std::vector<std::pair<Real, std::size_t>> reached;
-  for (const std::size_t index : cell.runs)
-    if (const Real work = c.taken(c.runs[index], Measure::work, kTightest); work < kNever)
-      reached.emplace_back(work, index);
-  if (reached.empty()) return shown;
-  std::ranges::sort(reached);
-  const auto [work, middle] = reached[(reached.size() - 1) / 2];
-  const OracleCounts counts = counts_at(*c.runs[middle].record, work);
-  for (std::size_t kind = 0; kind < kOracles; ++kind)
-    if (counts[kind] > 0)
-      shown.note +=
-          fmt::format("{}{} {}", shown.note.empty() ? "" : ", ", counts[kind], kOracleNames[kind]);
-  return shown;
-}
-
-// The cost of restarts on one cell; `rescued` counts cells that only restarts solve.
-TableCell restart_cell(const Comparison& c, std::size_t p, std::size_t s, std::size_t& rescued) {
-  const Cell& cell = c.cell(p, s);
-  if (!cell.is_measured()) return cell.planned == 0 ? "" : cell.runs.empty() ? "missing" : "n/a";
-  const std::vector<Attempt> attempts = attempts_of(c, cell);
   const auto successes = std::ranges::count_if(attempts, &Attempt::is_success);
   const Real expected = expected_running_time(attempts);
   TableCell shown{
-      fmt::format("{} ({}/{})", reached_figure(expected), successes, attempts.size()),
+      reached_figure(expected),
       {{"expected", expected}, {"reached", Real(successes)}, {"n", Real(attempts.size())}}};
   rescued += expected < kNever && !cell.headline[kTightest].is_solved();
   if (expected < kNever && attempts.size() > 1) {
@@ -279,46 +178,35 @@ TableCell restart_cell(const Comparison& c, std::size_t p, std::size_t s, std::s
     const std::vector<Real> costs = simulated_restarts(attempts, key);
     const Real low = quantile(costs, 0.1), high = quantile(costs, 0.9);
     if (low < high) {
-      shown.text = fmt::format("{} [{}–{}] ({}/{})", reached_figure(expected), figure(low),
-                               figure(high), successes, attempts.size());
+      shown.text += fmt::format(" [{}–{}]", figure(low), figure(high));
       shown.numbers.push_back({"low", low});
       shown.numbers.push_back({"high", high});
     }
   }
-  return with_calls(c, cell, std::move(shown));
+  shown.text += fmt::format(" ({}/{})", successes, attempts.size());
+  return shown;
 }
 
 }  // namespace
 
 Table restart_table(const Comparison& c) {
-  Table table{
-      .id = "restarts",
-      .title = "Expected running time",
-      .reading = "",
-      .caption = fmt::format(
-          "Cost to {} of a method that restarts until it reaches it, in {}: the total cost over "
-          "the number of successes, and the middle 80 % of 1,000 simulated restarts resampled "
-          "from the runs; ✗ if no run reached it. In parentheses: successful runs of all runs. "
-          "The runs have different seeds. A restart therefore has another start and, if the "
-          "problem has one, another target: the number is the cost of solving one of these "
-          "instances, not a given one.",
-          tau_name(c), cost_unit(c)),
-      .columns = {"optimizer"},
-      .rows = {}};
-  std::size_t rescued = 0;
+  constexpr std::size_t kMostProblems = 25;  // columns of a matrix
+  Table table = worded_table("restarts", tau_name(c), cost_unit(c));
   const std::size_t problems = std::min(c.problems.size(), kMostProblems);
-  for (std::size_t p = 0; p < problems; ++p) table.columns.push_back(problem_name(c.problems[p]));
+  table.column_topics.emplace_back();
+  for (std::size_t p = 0; p < problems; ++p) {
+    table.columns.push_back(problem_name(c.problems[p]));
+    table.column_topics.push_back({.problem = p});
+  }
   table.columns.push_back("failed");
-  for (std::size_t s = 0; s < listed_optimizers(c, kMostTableRows); ++s) {
-    std::vector<TableCell> row = {optimizer_text(c, s)};
+  std::size_t rescued = 0;
+  for (std::size_t s = 0; s < std::min(c.optimizers.size(), kMostTableRows); ++s) {
+    std::vector<TableCell> row;
     for (std::size_t p = 0; p < problems; ++p) row.push_back(restart_cell(c, p, s, rescued));
     row.push_back(failed_cell(c, s));
-    table.rows.push_back(std::move(row));
+    add_row(table, c, s, std::move(row));
   }
-  rows_are_optimizers(table);
-  columns_are_problems(table, problems);
-  table.reading = fmt::format("In {}, only restarts reach it: the median run does not.",
-                              counted(rescued, "cell"));
+  table.reading = words("restarts.reading", rescued);
   return table;
 }
 

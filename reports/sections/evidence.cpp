@@ -1,6 +1,5 @@
-// Gathers the statistics, and what their tables and plots share.
-#include "reports/sections/evidence.h"
-
+// Collects what decides a claim, figures run by run and curves that are read as the figures are,
+// and judges it.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,176 +8,174 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <unordered_map>
 
 #include "core/json.h"
-#include "core/threads.h"
-#include "reports/read/curves.h"
-#include "reports/sections/claim_terms.h"
-#include "reports/sections/sections.h"
+#include "reports/sections/claims.h"
+#include "reports/sections/figures.h"
 #include "reports/sections/words.h"
 
 namespace isoline::reports {
 
-std::size_t shown_optimizers(const Comparison& c, std::size_t most) {
-  return std::min(c.order.methods.size(), most);
-}
-std::size_t listed_optimizers(const Comparison& c, std::size_t most) {
-  return std::min(c.optimizers.size(), most);
-}
-
-void rows_are_optimizers(Table& table) {
-  for (std::size_t s = 0; s < table.rows.size(); ++s) table.row_topics.push_back({.optimizer = s});
-}
-
-void columns_are_problems(Table& table, std::size_t count) {
-  table.column_topics.emplace_back();
-  for (std::size_t p = 0; p < count; ++p) table.column_topics.push_back({.problem = p});
-}
-
-TableCell failed_cell(const Comparison& c, std::size_t s) {
-  const OptimizerAxis& optimizer = c.optimizers[s];
-  return {fmt::format("{}/{}", optimizer.failed, optimizer.runs),
-          {{"failed", Real(optimizer.failed)}, {"runs", Real(optimizer.runs)}}};
-}
-
-TableCell count_cell(std::size_t count) {
-  return {std::to_string(count), {{"count", Real(count)}}};
-}
-
-TableCell share_cell(std::size_t part, std::size_t whole) {
-  if (whole == 0) return "";
-  const Real share = Real(part) / Real(whole);
-  return {percent(share), {{"share", share}, {"count", Real(part)}}};
-}
-
-Measure cost_measure(const Comparison& c) {
-  return c.yardstick.by == Measure::work ? Measure::cost : c.yardstick.by;
-}
-
-Real in_units(Measure by, Real value) { return by == Measure::time ? 1e3 * value : value; }
-
-std::string cost_unit(const Comparison& c) {
-  const Measure by = cost_measure(c);
-  if (by == Measure::iterations) return "iterations";
-  if (by == Measure::time)
-    return c.is_any_timed_together ? "ms of wall time (≈: some runs shared the machine)"
-                                   : "ms of wall time";
-  return priced_unit(c);
-}
-
-std::string priced_unit(const Comparison& c) {
-  const auto measured = static_cast<std::size_t>(std::ranges::count_if(
-      c.problems, [](const ProblemAxis& problem) { return problem.prices.are_measured(); }));
-  const std::size_t all = c.problems.size();
-  if (measured == all) return "equivalent forward solves at measured cost";
-  if (measured == 0) return "forward solves at nominal cost (no measured ones are used)";
-  return fmt::format(
-      "equivalent forward solves, at nominal cost on the {} of {} where none was measured or a "
-      "call is too short to be",
-      all - measured, counted_settings(c, all));
-}
-
-std::string denominators(const Comparison& c, std::size_t shown) {
-  std::size_t runs = 0, failed = 0;
-  for (std::size_t s = 0; s < shown; ++s) {
-    runs += c.optimizers[s].runs;
-    failed += c.optimizers[s].failed;
-  }
-  return fmt::format(
-      "the first {} of {} ranked methods; n = {}, common to all of them; {} of {} of their runs "
-      "failed",
-      shown, c.order.methods.size(), counted_settings(c, c.order.settings.size()), failed, runs);
-}
-
-std::vector<Real> cost_grid(Measure by, Real most) {
-  constexpr int kPerDecade = 8;
-  const int first = by == Measure::time ? -3 * kPerDecade : 0;
-  std::vector<Real> grid;
-  const Real last = std::ceil(kPerDecade * std::log10(std::max(most, 10.0)));
-  for (int i = first; i <= last; ++i) grid.push_back(std::pow(10.0, Real(i) / kPerDecade));
-  return grid;
-}
-
-void Leading::offer(Real mine, const std::string& label) {
-  if (mine > value) {
-    value = mine;
-    count = 0;
-    name = label;
-  }
-  count += mine == value && mine > 0;
-}
-
-std::string Leading::names() const {
-  if (count == 0) return "no method";
-  return count == 1 ? name : fmt::format("{} and {} more", name, count - 1);
-}
-
-std::string highest_at(const Plot& plot, Real x) {
-  Real best = 0;
-  std::vector<std::string> names;
-  for (const PlotSeries& line : plot.series) {
-    Real y = 0;
-    for (std::size_t i = 0; i < line.x.size() && line.x[i] <= x * (1 + 1e-9); ++i) y = line.y[i];
-    if (y > best) {
-      best = y;
-      names.clear();
-    }
-    if (y == best && y > 0) names.push_back(line.name);
-  }
-  if (names.empty()) return "no method";
-  return fmt::format("{}{} ({})", names[0],
-                     names.size() > 1 ? fmt::format(" and {} more", names.size() - 1) : "",
-                     percent(best));
-}
-
-Column column_of(const Costs& costs, std::size_t s) {
-  Column column;
-  for (const auto& row : costs) column.push_back(row[s]);
-  return column;
-}
-
-PlotSeries share_series(const Comparison& c, std::size_t s, const Column& measure,
-                        const std::vector<Real>& grid) {
-  Band band = band_over_names(c, measure, "problems", [&](Real value) {
-    std::vector<Real> within;
-    for (const Real most : grid) within.push_back(value <= most);
-    return within;
-  });
-  band.value.resize(grid.size(), 0);  // where nothing was asked
-  band.low.resize(grid.size(), 0);
-  band.high.resize(grid.size(), 0);
-  return {s, optimizer_text(c, s), grid, band.value, band.low, band.high};
-}
-
-Section statistics_section(const Comparison& c) {
-  Section section{.id = "statistics", .title = "Statistics"};
-  for (std::string& sentence : limits_of_evidence(c))
-    section.readings.push_back({"What cannot be concluded", std::move(sentence)});
-  if (c.runs.empty()) return section;
-  section.lead = fmt::format(
-      "Rankings and tests use {}{}. Costs are in {}; the raw counts are in Oracle calls and "
-      "Prices.",
-      counted_name(c), c.yardstick.by == Measure::work ? ", which is equal on every machine" : "",
-      cost_unit(c));
-  constexpr std::size_t kTables = std::size(kStatisticTables), kPlots = std::size(kStatisticPlots);
-  section.tables.resize(kTables);
-  std::array<Plots, kPlots> plots;
-  share(kTables + kPlots, [&](std::size_t i) {
-    if (i < kPlots)
-      plots[i] = kStatisticPlots[i](c);
-    else
-      section.tables[i - kPlots] = kStatisticTables[i - kPlots](c);
-  });
-  for (Table& table : section.tables) table.is_folded = true;
-  for (Plots& some : plots)
-    for (Plot& plot : some) section.plots.push_back(std::move(plot));
-  return section;
-}
-
-// Collects what decides a claim: figures run by run, and curves that are read as the figures are.
-
 using Json = nlohmann::json;
 namespace {
+
+using ByCell = std::unordered_map<std::string, const Record*>;
+
+// Where a term of a claim, or of its contrast, is read.
+Place place_of(const Json& claim, const Json& term) {
+  const Json& quantity = claim.at("quantity");
+  Place place;
+  (term.contains("column") ? term : quantity).at("column").get_to(place.column);
+  const Json& from = term.contains("iteration") ? term : quantity;
+  if (from.contains("iteration")) place.iteration = from["iteration"].get<std::int64_t>();
+  const Json& published = claim.at("published");
+  if (published.contains("table")) published["table"].get_to(place.table);
+  return place;
+}
+
+using Runs = std::vector<const Record*>;
+
+Runs runs_of(const Json& alternative, const ByCell& runs) {
+  Runs all;
+  for (const Json& cell : alternative.at("cells")) all.push_back(runs.at(cell.get<std::string>()));
+  return all;
+}
+
+// The processor time of each seed, or its counted work, at which the cheapest run of it has made so
+// many iterations: a run is charged at its own price, also where it stopped before.
+std::vector<Real> equal_spending(const Json& cells, const ByCell& runs, std::int64_t iterations,
+                                 bool is_work) {
+  std::vector<Real> spent;
+  for (const Json& term : cells)
+    for (const Json& alternative : term) {
+      const Runs all = runs_of(alternative, runs);
+      spent.resize(std::max(spent.size(), all.size()), kNever);
+      for (std::size_t seed = 0; seed < all.size(); ++seed) {
+        const Summary& summary = all[seed]->summary;
+        if (summary.iterations == 0) continue;
+        const Real whole = is_work ? static_cast<Real>(summary.work) : summary.processor_seconds;
+        spent[seed] = std::min(spent[seed], whole / static_cast<Real>(summary.iterations) *
+                                                static_cast<Real>(iterations));
+      }
+    }
+  return spent;
+}
+
+// How the figures of a claim are read.
+enum class Way {
+  asked,
+  // The comparisons that must refute a claim, besides permuted names of optimizers.
+  untrained,  // nothing was learned: each figure is that of iteration 0
+  twins,      // one method under several names: all terms of a problem are the same run
+  // The verdict must not hang on these: a time is that of a machine, and the published runs of the
+  // sine had a time, in which SIP made a third of the iterations of others.
+  equal_work,
+  third_of_sip
+};
+
+// The figures of a claim's terms, or of a contrast's. `cells` is a list of terms, each a list of
+// alternatives. Where the claim asks for equal time, all are read at the time at which the fastest
+// has made `iterations`.
+std::vector<Term> terms_of(const Json& claim, const Json& cells, const ByCell& runs,
+                           std::int64_t iterations, Way way = Way::asked) {
+  constexpr std::int64_t kThird = 3;
+  const Json &quantity = claim.at("quantity"), &asked = quantity.at("terms");
+  const bool is_work = way == Way::equal_work;
+  std::vector<Real> spent;
+  if (quantity.value("clock", "") == "seconds")
+    spent = equal_spending(cells, runs, iterations, is_work);
+  std::vector<Term> terms;
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    Term& term = terms.emplace_back(Term{.figures = {},
+                                         .at = asked.at(i).value("at", 1.0),
+                                         .scale = asked[i].value("scale", 1.0),
+                                         .is_worst = asked[i].value("of", "best") == "worst"});
+    for (const Json& alternative : cells[i]) {
+      auto& values = term.figures.emplace_back();
+      for (const Record* run : runs_of(alternative, runs)) {
+        Place place = place_of(claim, asked[i]);
+        const bool is_third = way == Way::third_of_sip && run->request.optimizer.name == "sip";
+        if (way == Way::untrained) place.iteration = 0;
+        if (is_third && !place.iteration) place.iteration = iterations / kThird;
+        if (!spent.empty() && !place.iteration && is_work)
+          place.work = std::llround(spent.at(values.size()));
+        if (!spent.empty() && !place.iteration && !is_work) place.seconds = spent.at(values.size());
+        values.push_back(figure_of(*run, place));
+      }
+    }
+    // A twin takes the figures of the first term of its problem that is read at its iteration.
+    const auto is_same = [&](const Term& other) {
+      const Json& its = asked[static_cast<std::size_t>(&other - terms.data())];
+      return std::ranges::all_of(
+          std::array{"problem", "iteration", "column"},
+          [&](const char* key) { return asked[i].value(key, Json()) == its.value(key, Json()); });
+    };
+    if (way == Way::twins) term.figures = std::ranges::find_if(terms, is_same)->figures;
+  }
+  return terms;
+}
+
+std::string tolerance_text(const Json& tolerance) {
+  const std::string from = tolerance.at("from");
+  if (from == "none" || from == "order") return words("tolerance." + from);
+  if (from == "digits") return words("tolerance.digits", real_of(tolerance["absolute"]));
+  const Real t = real_of(tolerance["relative"]);
+  const std::string text = words("tolerance." + from, 100 * t);
+  if (from == "about" || tolerance.value("values", 1) != 2) return text;
+  // The band of quantities.cpp for a ratio of two readings.
+  return words("tolerance.two", text, 100 * ((1 - t) / (1 + t) - 1), 100 * ((1 + t) / (1 - t) - 1));
+}
+
+std::string iteration_text(const Json& from, const char* otherwise) {
+  if (!from.contains("iteration")) return otherwise;
+  return fmt::format("at iteration {}", from["iteration"].get<std::int64_t>());
+}
+
+std::string term_text(const Json& term) {
+  const Json& optimizer = term.at("optimizer");
+  std::string text = optimizer.is_array()
+                         ? fmt::format("{} of {}", term.value("of", "best"), optimizer.size())
+                         : shown_spec(optimizer.get<std::string>());
+  if (term.contains("column")) text += " " + column_words(term["column"]);
+  if (term.contains("iteration")) text += " " + iteration_text(term, "");
+  if (term.contains("at")) text += fmt::format(" at {}", figure(real_of(term["at"])));
+  return text;
+}
+
+// "≥ 3 (±5 % from text)"
+std::string published_text(const Json& claim) {
+  const Json& published = claim.at("published");
+  const std::string error = tolerance_text(claim.at("tolerance"));
+  if (published.contains("table"))
+    return published["table"].size() == 1
+               ? fmt::format("an end point ({})", error)
+               : fmt::format("{} rows of figures ({})", published["table"].size(), error);
+  const char* relation = published.contains("at_least")  ? "≥ "
+                         : published.contains("at_most") ? "≤ "
+                                                         : "";
+  return fmt::format("{}{} ({})", relation, figure(published_value(published)), error);
+}
+
+// How it was read off a figure, else empty.
+std::string reading_text(const Json& claim) {
+  const std::string from = claim.at("tolerance").at("from");
+  if (from != "figure" && from != "digitized") return "";
+  const Json& source = claim.at("source");
+  return words("reading." + from, source.value("figure", source.value("section", "a figure")));
+}
+
+// "ratio of the loss, at the end: adam / sip"
+std::string quantity_text(const Json& claim) {
+  const Json& quantity = claim.at("quantity");
+  const std::string kind = quantity.at("kind");
+  std::vector<std::string> terms;
+  for (const Json& term : quantity.at("terms")) terms.push_back(term_text(term));
+  return fmt::format("{} of the {}, {}: {}", kind, column_words(quantity.at("column")),
+                     iteration_text(quantity, quantity.contains("clock") ? "at equal processor time"
+                                                                         : "at the end"),
+                     joined(terms, kind == "ratio" ? " / " : ", "));
+}
 
 constexpr std::size_t kPoints = 24;  // a curve has up to twice as many
 
@@ -188,14 +185,6 @@ std::string curve_of(const std::string& column) {
   if (column.ends_with("deviation") || std::ranges::find(kWhole, column) != kWhole.end()) return "";
   if (column.starts_with("until: ")) return bound_of(column).first;
   return column == "slowdown" ? "x_error" : column;
-}
-
-using Runs = std::vector<const Record*>;
-
-Runs runs_of(const Json& alternative, const ByCell& runs) {
-  Runs all;
-  for (const Json& cell : alternative.at("cells")) all.push_back(runs.at(cell.get<std::string>()));
-  return all;
 }
 
 // Kept points of a run, close at the start and close at the end, and that which is read.
@@ -246,26 +235,7 @@ std::string abscissa_of(const std::vector<Term>& terms, const Json& cells, const
   return "";
 }
 
-EvidenceTerm evidence_of_term(const Term& term, const Chosen& chosen, const Runs& all,
-                              const Json& asked, const Place& place) {
-  const Request& request = all.at(0)->request;
-  const Json& optimizer = asked.at("optimizer");
-  EvidenceTerm out{.problem = request.problem.spec,
-                   .optimizer = optimizer.is_array() ? optimizer.at(chosen.alternative) : optimizer,
-                   .method = request.optimizer.name,
-                   .at = term.at,
-                   .scale = term.scale,
-                   .iteration = place.iteration,
-                   .level = chosen.level};
-  const std::vector<Real>& figures = term.figures.at(chosen.alternative);
-  for (std::size_t seed = 0; seed < all.size(); ++seed)
-    out.runs.push_back({all[seed]->cell, all[seed]->file_name(), all[seed]->request.seed,
-                        term.scale * figures[seed], all[seed]->status});
-  return out;
-}
-
-}  // namespace
-
+// For a claim, or for its contrast. `cells` and `iterations` are those of the set that decides it.
 Evidence evidence_of(const Json& claim, const Json& cells, const ByCell& runs,
                      std::int64_t iterations) {
   const Json& quantity = claim.at("quantity");
@@ -280,21 +250,60 @@ Evidence evidence_of(const Json& claim, const Json& cells, const ByCell& runs,
   const Real seconds =
       out.is_over_time ? median_of(equal_spending(cells, runs, iterations, false)) : kNever;
   for (std::size_t i = 0; i < terms.size(); ++i) {
-    const Json& asked = quantity.at("terms").at(i);
+    const Json &asked = quantity.at("terms").at(i), &optimizer = asked.at("optimizer");
     Place place = place_of(claim, asked);
-    const Chosen chosen = chosen_of(terms[i]);
-    const Runs all = runs_of(cells.at(i).at(chosen.alternative), runs);
-    EvidenceTerm& term =
-        out.terms.emplace_back(evidence_of_term(terms[i], chosen, all, asked, place));
+    const auto [alternative, level] = chosen_of(terms[i]);
+    const Runs all = runs_of(cells.at(i).at(alternative), runs);
+    const Request& request = all.at(0)->request;
+    EvidenceTerm& term = out.terms.emplace_back(
+        EvidenceTerm{.problem = request.problem.spec,
+                     .optimizer = optimizer.is_array() ? optimizer.at(alternative) : optimizer,
+                     .method = request.optimizer.name,
+                     .at = terms[i].at,
+                     .scale = terms[i].scale,
+                     .iteration = place.iteration,
+                     .level = level});
+    for (std::size_t seed = 0; seed < all.size(); ++seed)
+      term.runs.push_back({all[seed]->cell, all[seed]->file_name(), all[seed]->request.seed,
+                           term.scale * terms[i].figures.at(alternative)[seed], all[seed]->status});
     if (i == 0 && !place.table.empty()) out.printed = printed_rows(*all.at(0), place);
     place.column = curve_of(place.column);
     if (!place.column.empty()) add_curve(term, all, place, out.is_over_time);
     if (term.x.empty()) continue;
-    const Real end = term.x.back();
-    term.read_at = place.iteration ? std::min(static_cast<Real>(*place.iteration), end)
-                                   : std::min(seconds, end);
+    term.read_at =
+        std::min(place.iteration ? static_cast<Real>(*place.iteration) : seconds, term.x.back());
   }
   return out;
+}
+
+// Every way to fill a term, of the claim and of its contrasts.
+std::vector<Json> alternatives_of(const Json& set) {
+  std::vector<Json> all, lists = {set.at("terms")};
+  for (const Json& terms : set.value("contrast_terms", Json::array())) lists.push_back(terms);
+  for (const Json& terms : lists)
+    for (const Json& term : terms) all.insert(all.end(), term.begin(), term.end());
+  return all;
+}
+
+// Digests.
+std::vector<std::string> cells_of(const Json& set) {
+  std::vector<std::string> cells;
+  for (const Json& alternative : alternatives_of(set))
+    for (const Json& cell : alternative.at("cells")) cells.push_back(cell);
+  return cells;
+}
+
+// Cells of a set that have no record, in words.
+std::vector<std::string> missing_cells(const Json& set, const ByCell& runs) {
+  std::vector<std::string> missing;
+  for (const Json& alternative : alternatives_of(set)) {
+    const auto title = alternative.at("title").get<std::string>();
+    const bool is_whole = std::ranges::all_of(alternative.at("cells"), [&](const Json& cell) {
+      return runs.contains(cell.get<std::string>());
+    });
+    if (!is_whole && std::ranges::find(missing, title) == missing.end()) missing.push_back(title);
+  }
+  return missing;
 }
 
 std::vector<CellSet> cell_sets(const Json& claim, const ByCell& runs) {
@@ -314,34 +323,17 @@ std::vector<CellSet> cell_sets(const Json& claim, const ByCell& runs) {
   return sets;
 }
 
-std::string repeat_command(const std::string& id, const std::vector<CellSet>& sets) {
-  if (sets.empty()) return "";
-  const auto deciding = std::ranges::find_if(sets, &CellSet::is_deciding);
-  const bool is_long =
-      deciding != sets.end() ? deciding->is_long : std::ranges::all_of(sets, &CellSet::is_long);
-  return fmt::format("./isoline claims {0} --out results/{0}{1}", id, is_long ? " --long" : "");
-}
-
-// Finds the runs of each claim, measures what it speaks of, and compares with what was published.
-
-using Json = nlohmann::json;
-namespace {
-
 // A claim by one set of its cells.
 struct Measured {
   const Json& claim;
   const Json& set;
   const ByCell& runs;
-  Null null = Null::none;
-  ReadAt at = ReadAt::asked;
+  Way way = Way::asked;
 
   std::int64_t iterations() const { return set.at("iterations").get<std::int64_t>(); }
   Measurement of(const Json& asked, const Json& cells) const {
-    const std::vector<Term> terms = terms_of(asked, cells, runs, iterations(), null, at);
-    return measure(asked.at("quantity").at("kind"), terms, claim.at("id"));
-  }
-  Evidence evidence(const Json& asked, const Json& cells) const {
-    return evidence_of(asked, cells, runs, iterations());
+    return measure(asked.at("quantity").at("kind"), terms_of(asked, cells, runs, iterations(), way),
+                   claim.at("id"));
   }
 };
 
@@ -368,40 +360,38 @@ bool take(Judgement& out, const Measured& from) {
 
 // Reads the claim in the ways that its source leaves open: its verdict must not hang on them.
 void read_otherwise(Judgement& out, Measured from) {
-  const auto add = [&](ReadAt at, const char* how) {
+  const auto add = [&](Way way, const char* how) {
     Judgement other = out;
-    from.at = at;
+    from.way = way;
     if (!take(other, from)) return;
     out.others.push_back({how, *other.measured, weakest_verdict(other, from.claim)});
   };
-  if (from.claim.at("quantity").contains("clock")) add(ReadAt::equal_work, "at equal counted work");
+  if (from.claim.at("quantity").contains("clock")) add(Way::equal_work, "at equal counted work");
   if (from.claim.contains("length") && from.claim["length"].value("guessed", false))
-    add(ReadAt::third_of_sip, "at a third of SIP’s iterations");
+    add(Way::third_of_sip, "at a third of SIP’s iterations");
   for (const OtherReading& other : out.others)
     out.verdict = joint_verdict(out.verdict, other.verdict);
 }
 
 // Other sources of the same verdict: then the data cannot refute the claim.
 void name_survived_nulls(Judgement& out, Measured from) {
-  const auto is_survived = [&](Null null) {
+  const auto try_way = [&](Way way, const char* name) {
     Judgement planted = out;
-    from.null = null;
-    return take(planted, from) && weakest_verdict(planted, from.claim) <= out.verdict;
+    from.way = way;
+    if (take(planted, from) && weakest_verdict(planted, from.claim) <= out.verdict)
+      out.survives.emplace_back(name);
   };
-  if (is_survived(Null::untrained)) out.survives.emplace_back("untrained networks");
-  if (has_rivals(from.claim) && is_survived(Null::twins))
-    out.survives.emplace_back("one method under several names");
+  try_way(Way::untrained, "untrained networks");
+  if (has_rivals(from.claim)) try_way(Way::twins, "one method under several names");
 }
 
 // The length that the claim speaks of.
 std::int64_t needed_iterations(const Json& claim) {
   if (claim.contains("length")) return claim["length"].at("iterations").get<std::int64_t>();
-  std::int64_t needed = 0;
-  const auto look = [&](const Json& from) {
-    needed = std::max(needed, from.value("iteration", std::int64_t{0}));
-  };
-  look(claim.at("quantity"));
-  for (const Json& term : claim.at("quantity").at("terms")) look(term);
+  const Json& quantity = claim.at("quantity");
+  std::int64_t needed = quantity.value("iteration", std::int64_t{0});
+  for (const Json& term : quantity.at("terms"))
+    needed = std::max(needed, term.value("iteration", std::int64_t{0}));
   return needed;
 }
 
@@ -414,10 +404,10 @@ void measure_in(Judgement& out, const Measured& from) {
   const bool is_known = take(out, from);
   if (set.contains("deviation"))
     out.caveat = set["deviation"].get<std::string>() + (out.caveat.empty() ? "" : " ") + out.caveat;
-  out.evidence = from.evidence(claim, set.at("terms"));
+  out.evidence = evidence_of(claim, set.at("terms"), from.runs, from.iterations());
   for (std::size_t i = 0; i < out.contrasts.size(); ++i)
-    out.contrasts[i].evidence =
-        from.evidence(claim.at("contrasts").at(i), set.at("contrast_terms").at(i));
+    out.contrasts[i].evidence = evidence_of(
+        claim.at("contrasts").at(i), set.at("contrast_terms").at(i), from.runs, from.iterations());
   if (!out.why.empty()) return;
   if (from.iterations() < out.needs) {
     out.verdict = Verdict::too_short;
@@ -436,8 +426,10 @@ Judgement judge_one(const Json& claim, const ByCell& runs) {
   claim.at("id").get_to(out.id);
   claim.at("sentence").get_to(out.sentence);
   out.fact = claim.value("fact", out.id);
-  out.source = source_text(claim.at("source"));
-  out.paper = claim["source"].at("paper");
+  out.paper = out.source = claim.at("source").at("paper");
+  for (const char* part : {"section", "figure"})
+    if (claim["source"].contains(part))
+      out.source += ", " + claim["source"][part].get<std::string>();
   out.place = claim["source"].value("figure", claim["source"].value("section", ""));
   out.caveat = claim.value("caveat", "");
   out.published = published_text(claim);
@@ -469,6 +461,25 @@ Judgement judge_one(const Json& claim, const ByCell& runs) {
 }
 
 }  // namespace
+
+bool has_rivals(const Json& claim) {
+  const Json& terms = claim.at("quantity").at("terms");
+  for (const Json& one : terms)
+    for (const Json& other : terms)
+      if (one.value("problem", "") == other.value("problem", "") &&
+          one.at("optimizer") != other.at("optimizer"))
+        return true;
+  const Json contrasts = claim.value("contrasts", Json::array());
+  return std::ranges::any_of(contrasts, has_rivals);
+}
+
+std::string repeat_command(const std::string& id, const std::vector<CellSet>& sets) {
+  if (sets.empty()) return "";
+  const auto deciding = std::ranges::find_if(sets, &CellSet::is_deciding);
+  const bool is_long =
+      deciding != sets.end() ? deciding->is_long : std::ranges::all_of(sets, &CellSet::is_long);
+  return fmt::format("./isoline claims {0} --out results/{0}{1}", id, is_long ? " --long" : "");
+}
 
 std::vector<Judgement> judge(const Json& claims, const std::vector<Record>& runs) {
   ByCell by_cell;

@@ -11,7 +11,6 @@
 #include <span>
 
 #include "core/results/statistics.h"
-#include "reports/read/curves.h"
 #include "reports/sections/words.h"
 
 namespace isoline::reports {
@@ -63,9 +62,9 @@ std::string ends_reading(const Comparison& c, std::vector<FigureLine> lines) {
   for (std::size_t i = 0; i < std::min(kMostRead, lines.size()); ++i) {
     const Real end = lines[i].y.back();
     parts.push_back(fmt::format("{}{} {}", label(c, lines[i]), i == 0 ? " has" : "", figure(end)));
-    if (i > 0) parts.back() += fmt::format(" ({:.3g}×)", end / lines[0].y.back());
+    if (i > 0) parts.back() += fmt::format(" ({})", multiple(end / lines[0].y.back()));
   }
-  return parts.empty() ? "" : fmt::format("At the end {}.", joined(parts));
+  return parts.empty() ? "" : words("figure.ends", joined(parts));
 }
 
 // "sip 0.5, adam 0.7": what `value` makes of each line.
@@ -88,7 +87,7 @@ const std::vector<Real>* series_of(const Record& record, const std::string& name
 Figure curve_figure(const Comparison& c, std::size_t p, const std::string& name) {
   const bool is_error = name.empty();
   Figure out{.x_label = "iterations",
-             .y_label = is_error ? "error in x, on the validation samples" : name,
+             .y_label = is_error ? words("figure.error") : name,
              .is_log_x = true,
              .is_log_y = is_error};
   out.lines = lines_of(c, p, [&](const Records& records, FigureLine& line) {
@@ -106,7 +105,7 @@ Figure curve_figure(const Comparison& c, std::size_t p, const std::string& name)
   });
   const auto end = [](const FigureLine& line) { return line.y.back(); };
   out.reading = is_error ? ends_reading(c, out.lines)
-                         : fmt::format("At the end: {}.", read_lines(c, out.lines, kMostRead, end));
+                         : words("figure.series-ends", read_lines(c, out.lines, kMostRead, end));
   return out;
 }
 
@@ -121,14 +120,14 @@ Figure path_figure(const Comparison& c, std::size_t p, const std::string& pair) 
       line.y.push_back((*y)[i]);
     }
   });
-  out.reading = "Paths of the first seed.";
+  out.reading = words("figure.path");
   return out;
 }
 
 // take(y*, x*, x) for every number of every sample shown.
 template <class Take>
 void each_error(const Record& record, Take take) {
-  if (!record.exhibit || record.exhibit->is_picture() || record.exhibit->truth.is_empty()) return;
+  if (!record.exhibit || record.exhibit->truth.is_empty()) return;
   const Exhibit& shown = *record.exhibit;
   for (Index b = 0; b < shown.x.columns(); ++b)
     for (Index i = 0; i < shown.x.rows() && i < shown.target.rows(); ++i)
@@ -150,8 +149,7 @@ Figure scatter_figure(const Comparison& c, std::size_t p) {
     for (std::size_t i = 0; i < line.x.size(); ++i) gaps.push_back(std::abs(line.y[i] - line.x[i]));
     return median_of(std::move(gaps));
   };
-  out.reading = fmt::format("Median |x − x*| over the plotted samples of the first seed: {}.",
-                            read_lines(c, out.lines, out.lines.size(), gap));
+  out.reading = words("figure.scatter", read_lines(c, out.lines, out.lines.size(), gap));
   return out;
 }
 
@@ -168,9 +166,7 @@ Figure decades_figure(const Comparison& c, std::size_t p) {
     for (auto& [decade, gaps] : decades)
       if (gaps.size() >= kFewest) add_point(line, std::pow(10.0, decade + 0.5), std::move(gaps));
   });
-  if (!out.lines.empty())
-    out.reading =
-        "Each point is a decade of y*, the last one up to 1. " + ends_reading(c, out.lines);
+  if (!out.lines.empty()) out.reading = words("figure.decades", ends_reading(c, out.lines));
   return out;
 }
 
@@ -192,30 +188,19 @@ Figure picture_figure(const Comparison& c, std::size_t p) {
     }
   if (out.pictures.empty()) return out;
   add("x*", last.truth());
-  out.reading =
-      "The first validation sample, as inferred after the last iteration of the first seed. All x "
-      "share the grey scale of x*.";
+  out.reading = words("figure.pictures");
   return out;
-}
-
-// A figure of one problem; empty if no run has the requested data.
-Figure problem_figure(const Comparison& c, std::size_t p, const Panel& panel) {
-  if (panel.kind == "curve" || panel.kind == "series") return curve_figure(c, p, panel.quantity);
-  if (panel.kind == "scatter") return scatter_figure(c, p);
-  if (panel.kind == "decades") return decades_figure(c, p);
-  if (panel.kind == "path") return path_figure(c, p, panel.quantity);
-  return picture_figure(c, p);
 }
 
 using Sweep = std::vector<std::pair<Real, std::size_t>>;  // value of the option, problem
 
 Figure sweep_figure(const Comparison& c, const Sweep& sweep, const Panel& panel) {
-  Figure out{.x_label = panel.over,
-             .y_label = panel.divided_by.empty()
-                            ? "error in x, on the validation"
-                            : fmt::format("error in x / {}, on the validation", panel.divided_by),
-             .is_log_y = true,
-             .is_relative = !panel.divided_by.empty()};
+  const bool is_relative = !panel.divided_by.empty();
+  Figure out{
+      .x_label = panel.over,
+      .y_label = words(is_relative ? "figure.relative" : "figure.absolute", panel.divided_by),
+      .is_log_y = true,
+      .is_relative = is_relative};
   for (const auto& [value, problem] : sweep)
     out.places.emplace_back(problem_name(c.problems[problem]), value);
   for (std::size_t s = 0; s < c.optimizers.size(); ++s) {
@@ -231,16 +216,16 @@ Figure sweep_figure(const Comparison& c, const Sweep& sweep, const Panel& panel)
     }
     if (!line.x.empty()) out.lines.push_back(std::move(line));
   }
-  out.reading = fmt::format("From {0} = {1} to {0} = {2}. {3}", panel.over, figure(sweep[0].first),
-                            figure(sweep.back().first), ends_reading(c, out.lines));
+  out.reading = words("figure.sweep", panel.over, sweep[0].first, sweep.back().first,
+                      ends_reading(c, out.lines));
   return out;
 }
 
 const Component& component_of(const Comparison& c, std::size_t problem) {
   static const Component none;
-  for (const Cell& cell : c.cells[problem])
-    if (!cell.runs.empty()) return c.runs[cell.runs[0]].record->request.problem;
-  return none;
+  const auto run =
+      std::ranges::find_if(c.cells[problem], [](const Cell& cell) { return !cell.runs.empty(); });
+  return run == c.cells[problem].end() ? none : c.runs[run->runs[0]].record->request.problem;
 }
 
 // The problems of one name whose options a panel wants.
@@ -249,10 +234,10 @@ std::vector<std::size_t> wanted_problems(const Comparison& c, const std::string&
   std::vector<std::size_t> problems;
   for (std::size_t p = 0; p < c.problems.size(); ++p) {
     const Component& problem = component_of(c, p);
-    if (c.problems[p].name == name && problem.is_learned &&
-        std::ranges::all_of(panel.where, [&](const auto& wanted) {
-          return problem.options.number(wanted.first, std::nan("")) == wanted.second;
-        }))
+    const auto has = [&](const auto& wanted) {
+      return problem.options.number(wanted.first, std::nan("")) == wanted.second;
+    };
+    if (c.problems[p].name == name && problem.is_learned && std::ranges::all_of(panel.where, has))
       problems.push_back(p);
   }
   return problems;
@@ -300,69 +285,64 @@ std::vector<Figure> figures(const Comparison& c) {
           add(sweep_figure(c, sweep, panel), problem.name, panel);
       else
         for (const std::size_t p : wanted)
-          add(problem_figure(c, p, panel), problem_name(c.problems[p]), panel);
+          add(panel.kind == "scatter"    ? scatter_figure(c, p)
+              : panel.kind == "decades"  ? decades_figure(c, p)
+              : panel.kind == "path"     ? path_figure(c, p, panel.quantity)
+              : panel.kind == "pictures" ? picture_figure(c, p)
+                                         : curve_figure(c, p, panel.quantity),
+              problem_name(c.problems[p]), panel);
     }
   }
   return all;
 }
 
-// The window of a plot of lines: all medians, and not so much of the bands that these lie flat.
+// The published values, as marks in the papers' figures.
 
 namespace {
 
-struct Extent {
-  Real low = kNever, high = -kNever;
-  void take(Real value) {
-    if (!std::isfinite(value)) return;
-    low = std::min(low, value);
-    high = std::max(high, value);
-  }
-};
-
-Extent extent_of(const Plot& plot, std::vector<Real> PlotSeries::*values, bool is_logarithmic) {
-  Extent extent;
-  for (const auto* all : {&plot.series, &plot.published})
-    for (const PlotSeries& line : *all)
-      for (const Real value : line.*values)
-        if (value > 0 || !is_logarithmic) extent.take(value);
-  return extent;
+// The lines of a method.
+std::vector<std::size_t> optimizers_of(const Comparison& c, const Figure& figure,
+                                       const std::string& method) {
+  std::vector<std::size_t> optimizers;
+  for (const FigureLine& line : figure.lines)
+    if (c.optimizers[line.optimizer].method == method) optimizers.push_back(line.optimizer);
+  return optimizers;
 }
 
-Extent extent_of_y(const Plot& plot) {
-  Extent extent = extent_of(plot, &PlotSeries::y, plot.is_log_y);
-  const Extent medians = extent;
-  constexpr Real kFurther = 3;
-  const auto take_edge = [&](Real y) {
-    if (std::isnan(y) || medians.low > medians.high || (plot.is_log_y && !(y > 0))) return;
-    const Real span = medians.high - medians.low;
-    extent.take(plot.is_log_y ? std::clamp(y, medians.low / kFurther, kFurther * medians.high)
-                              : std::clamp(y, medians.low - span, medians.high + span));
-  };
-  for (const auto* all : {&plot.series, &plot.published})
-    for (const PlotSeries& line : *all) {
-      if (line.y.empty()) continue;
-      for (const Real y : line.low) take_edge(y);
-      for (const Real y : line.high) take_edge(y);
-    }
-  if (extent.low > extent.high) return {0.1, 1};
-  if (plot.is_log_y) return {extent.low / 1.15, 1.15 * extent.high};  // some air
-  // Figures that differ by rounding alone are drawn as one.
-  const Real span = extent.high - extent.low;
-  const Real size = std::max(std::abs(extent.low), std::abs(extent.high));
-  const Real air = span > 1e-9 * size ? 0.05 * span : size > 0 ? 0.5 * size : 0.5;
-  return {extent.low - air, extent.high + air};
+// Where a term of a claim stands across a figure; nothing where it is of another problem.
+std::optional<Real> place_in(const Figure& figure, const EvidenceTerm& term) {
+  const std::string problem = shown_spec(term.problem);
+  const bool is_relative = std::abs(term.scale - 1) > 1e-9;
+  if (figure.kind == "sweep" && is_relative == figure.is_relative)
+    for (const auto& [name, x] : figure.places)
+      if (name == problem) return x;
+  if (figure.kind != "curve" || figure.problem != problem || is_relative) return std::nullopt;
+  return term.read_at;
 }
 
 }  // namespace
 
-Window window_of(const Plot& plot) {
-  Extent x = extent_of(plot, &PlotSeries::x, plot.is_log_x);
-  if (!(x.high > x.low)) x = {0, std::max(1.0, 2 * x.low)};
-  const Extent y = extent_of_y(plot);
-  bool has_start = false;  // iteration 0 is drawn left of the first
-  for (const PlotSeries& line : plot.series)
-    has_start = has_start || (plot.is_log_x && !line.x.empty() && line.x.front() <= 0);
-  return {has_start ? x.low / 2 : x.low, x.high, y.low, y.high};
+void add_published(std::vector<Figure>& all, const Comparison& c,
+                   const std::vector<Judgement>& claims) {
+  for (Figure& figure : all)
+    for (const Judgement& claim : claims)
+      for (const EvidenceTerm& term : claim.evidence.terms) {
+        const Evidence& evidence = claim.evidence;
+        const auto x = place_in(figure, term);
+        if (!x && shown_spec(term.problem) != figure.problem) continue;
+        const std::vector<std::size_t> optimizers = optimizers_of(c, figure, term.method);
+        figure.of_the_paper.insert(optimizers.begin(), optimizers.end());
+        const bool is_level = evidence.kind == "value" && evidence.terms.size() == 1 &&
+                              claim.band && evidence.column.find("x_error") != std::string::npos;
+        if (!x || !is_level || optimizers.empty()) continue;
+        figure.published.push_back(
+            {.optimizer = optimizers[0],
+             .name = fmt::format("{}, published: {}", term.method, column_words(evidence.column)),
+             .x = *x,
+             .y = evidence.published,
+             .low = claim.band->low,
+             .high = claim.band->high});
+      }
 }
 
 }  // namespace isoline::reports

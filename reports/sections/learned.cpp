@@ -4,53 +4,35 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
-#include "reports/sections/evidence.h"
-#include "reports/sections/origins.h"
 #include "reports/sections/sections.h"
 #include "reports/sections/words.h"
 
 namespace isoline::reports {
 namespace {
 
-// Medians over seeds of the runs that made a step.
-Real median_per_run(const Comparison& c, const Cell& cell, Real (*value)(const Summary&)) {
-  const Rows rows =
-      c.where(cell.runs, [](const Run& run) { return run.record->summary.iterations > 0; });
-  return c.aggregate(rows, [&](const Run& run) { return value(run.record->summary); }).median;
-}
-
-// Methods in order of their error in x.
-std::string reading_of(const Comparison& c, std::size_t p, const std::vector<std::size_t>& order) {
-  const auto least =
-      std::ranges::min_element(order, {}, [&](std::size_t s) { return c.cell(p, s).loss.median; });
-  const Cell &lowest = c.cell(p, *least), &nearest = c.cell(p, order[0]);
-  const std::string first = setting_text(c, p, order[0]);
-  if (*least == order[0])
-    return fmt::format("{} has both the least error in x, {}, and the least loss, {}.", first,
-                       figure(nearest.x_error.median), figure(nearest.loss.median));
-  return fmt::format(
-      "Loss and error rank methods differently here: {} has the least loss, {}, at an error in x "
-      "of {}; {} has the least error in x, {}, at a loss of {}.",
-      setting_text(c, p, *least), figure(lowest.loss.median), figure(lowest.x_error.median), first,
-      figure(nearest.x_error.median), figure(nearest.loss.median));
-}
-
 Table learned_table(const Comparison& c, std::size_t p, const std::vector<std::size_t>& order) {
   const Sheet* sheet = c.problems[p].sheet;
-  Table table{.id = fmt::format("learned-{}", p),
-              .title = problem_name(c.problems[p]),
-              .reading = reading_of(c, p, order),
-              .caption = sheet == nullptr ? "" : sheet->note,
-              .columns = {"optimizer", "error in x", "loss in y", "iterations", "ms each", "runs",
-                          "failed"},
-              .topic = {.problem = p}};
+  Table table = worded_table("learned-table", problem_name(c.problems[p]));
+  table.id = fmt::format("learned-{}", p);
+  table.caption = sheet == nullptr ? "" : sheet->note;
+  table.topic = {.problem = p};
+  const std::size_t least =
+      *std::ranges::min_element(order, {}, [&](std::size_t s) { return c.cell(p, s).loss.median; });
+  const Cell &lowest = c.cell(p, least), &nearest = c.cell(p, order[0]);
+  table.reading = words(least == order[0] ? "learned-table.both" : "learned-table.differ",
+                        setting_text(c, p, least), lowest.loss.median, lowest.x_error.median,
+                        setting_text(c, p, order[0]), nearest.x_error.median, nearest.loss.median);
   for (const std::size_t s : order) {
     const Cell& cell = c.cell(p, s);
-    const Real iterations =
-        median_per_run(c, cell, [](const Summary& end) { return Real(end.iterations); });
-    const Real milliseconds_each = median_per_run(
-        c, cell, [](const Summary& end) { return 1e3 * end.wall_seconds / Real(end.iterations); });
+    const Rows steppers =
+        c.where(cell.runs, [](const Run& run) { return run.record->summary.iterations > 0; });
+    const auto count = [](const Run& run) { return Real(run.record->summary.iterations); };
+    const Real iterations = c.aggregate(steppers, count).median,
+               milliseconds_each = c.aggregate(steppers, [&](const Run&run) {
+                                      return 1e3 * run.record->summary.wall_seconds / count(run);
+                                    }).median;
     const Marks marks{.has_extra_information = !cell.privileges.empty(),
                       .is_imported = c.optimizers[s].is_imported};
     table.rows.push_back({setting_text(c, p, s) + marks_text(marks), figure(cell.x_error),
@@ -65,9 +47,7 @@ Table learned_table(const Comparison& c, std::size_t p, const std::vector<std::s
 }  // namespace
 
 Section learned_section(const Comparison& c) {
-  Section section{.id = "learned",
-                  .title = "Learned problems",
-                  .otherwise = "This report has no learned problems."};
+  Section section = worded_section("learned");
   for (std::size_t p = 0; p < c.problems.size(); ++p) {
     if (!c.problems[p].is_learned) continue;
     std::vector<std::size_t> order;
@@ -76,8 +56,6 @@ Section learned_section(const Comparison& c) {
     std::ranges::stable_sort(order, {}, [&](std::size_t s) { return c.cell(p, s).x_error.median; });
     if (!order.empty()) section.tables.push_back(learned_table(c, p, order));
   }
-  if (!section.tables.empty())
-    section.lead = "On the validation samples: medians over seeds and their range.";
   return section;
 }
 
@@ -87,17 +65,12 @@ Section learned_section(const Comparison& c) {
 
 namespace {
 
-constexpr Real kUnknown = std::numeric_limits<Real>::quiet_NaN();
-
 // One method that trained, or one that solved single instances, over its runs.
 struct Side {
-  std::size_t problem = 0, optimizer = 0;
+  std::size_t optimizer = 0;
+  const Cell* cell = nullptr;
+  std::string name;
   Spread seconds;  // of the processor: to the end, or to the error that is asked
-};
-
-struct Trained : Side {
-  Real x_error = kNever;      // the median over seeds, on the validation
-  Real inference = kUnknown;  // seconds an example
 };
 
 // Nothing where no run tells the options.
@@ -118,8 +91,10 @@ std::vector<std::size_t> instances_of(const Comparison& c, std::size_t learned) 
   return found;
 }
 
-Real inference_seconds(const Sheet* sheet, const std::string& spec) {
-  if (sheet == nullptr || sheet->spec != spec || !sheet->prices) return kUnknown;
+// Seconds of an example; not-a-number where it was not measured.
+Real inference_seconds(const ProblemAxis& problem) {
+  const Sheet* sheet = problem.sheet;
+  if (sheet == nullptr || sheet->spec != problem.spec || !sheet->prices) return kUnknown;
   const auto& rows = sheet->prices->oracles;
   const auto row = std::ranges::find(rows, kInference, &MeasuredPrice::oracle);
   return row == rows.end() ? kUnknown : row->price * sheet->prices->forward_seconds;
@@ -132,40 +107,38 @@ Side side_of(const Comparison& c, std::size_t problem, std::size_t optimizer, Se
   const auto seconds = [&](const Run& run) {
     return is_failure(run.record->status) ? kNever : seconds_of(*run.record);
   };
-  return {problem, optimizer, c.aggregate(cell.runs, seconds, cell.missing())};
+  return {optimizer, &cell,
+          setting_text(c, problem, optimizer) +
+              marks_text({.has_extra_information = !cell.privileges.empty()}),
+          c.aggregate(cell.runs, seconds, cell.missing())};
 }
 
 // The nearest to x first.
-std::vector<Trained> trained_on(const Comparison& c, std::size_t p) {
-  std::vector<Trained> all;
-  const Real inference = inference_seconds(c.problems[p].sheet, c.problems[p].spec);
-  for (std::size_t s = 0; s < c.optimizers.size(); ++s) {
-    const Cell& cell = c.cell(p, s);
-    if (!cell.is_measured() || !cell.x_error.is_solved()) continue;
-    const auto whole = [](const Record& record) { return record.summary.processor_seconds; };
-    all.push_back({side_of(c, p, s, whole), cell.x_error.median, inference});
-  }
-  std::ranges::stable_sort(all, {}, &Trained::x_error);
+std::vector<Side> trained_on(const Comparison& c, std::size_t p) {
+  std::vector<Side> all;
+  for (std::size_t s = 0; s < c.optimizers.size(); ++s)
+    if (c.cell(p, s).is_measured() && c.cell(p, s).x_error.is_solved())
+      all.push_back(
+          side_of(c, p, s, [](const Record& record) { return record.summary.processor_seconds; }));
+  std::ranges::stable_sort(all, {}, [](const Side& side) { return side.cell->x_error.median; });
   return all;
 }
 
-// When the run had that error, at its kept points; 0 where its start has it.
-Real seconds_to(const Record& record, Real x_error) {
-  const Curve& curve = record.curve;
-  for (std::size_t i = 0; i < curve.x_error.size(); ++i)
-    if (curve.x_error[i] <= x_error) return i == 0 ? 0 : curve.processor_seconds[i];
-  return kNever;
-}
-
-// The fastest first.
+// The fastest to that error first.
 std::vector<Side> singles_to(const Comparison& c, const std::vector<std::size_t>& instances,
                              Real x_error) {
+  // At the kept points of a run; 0 where its start has that error.
+  const auto seconds_to = [=](const Record& record) {
+    const Curve& curve = record.curve;
+    const auto at = std::ranges::find_if(curve.x_error, [=](Real x) { return x <= x_error; });
+    if (at == curve.x_error.end()) return kNever;
+    const auto i = static_cast<std::size_t>(at - curve.x_error.begin());
+    return i == 0 ? 0 : curve.processor_seconds[i];
+  };
   std::vector<Side> all;
   for (const std::size_t p : instances)
     for (std::size_t s = 0; s < c.optimizers.size(); ++s)
-      if (c.cell(p, s).is_measured())
-        all.push_back(
-            side_of(c, p, s, [&](const Record& record) { return seconds_to(record, x_error); }));
+      if (c.cell(p, s).is_measured()) all.push_back(side_of(c, p, s, seconds_to));
   std::ranges::stable_sort(all, {}, [](const Side& side) {
     return std::pair(side.seconds.median, side.seconds.unsolved);
   });
@@ -174,126 +147,75 @@ std::vector<Side> singles_to(const Comparison& c, const std::vector<std::size_t>
 
 // From how many instances on training has cost less; infinite where it never does, nothing known
 // where a time is.
-Real pays_from(const Trained& network, const Side& single) {
+Real pays_from(const Side& network, const Side& single, Real inference) {
   const Real training = network.seconds.median, each = single.seconds.median;
-  if (std::isnan(network.inference) || !network.seconds.is_solved()) return kUnknown;
+  if (std::isnan(inference) || !network.seconds.is_solved()) return kUnknown;
   if (each == kNever) return 1;
-  const Real saved = each - network.inference;
+  const Real saved = each - inference;
   return saved > 0 ? std::max(1.0, std::ceil(training / saved)) : kNever;
-}
-
-const Cell& cell_of(const Comparison& c, const Side& side) {
-  return c.cell(side.problem, side.optimizer);
-}
-
-std::string named(const Comparison& c, const Side& side) {
-  return setting_text(c, side.problem, side.optimizer) +
-         marks_text({.has_extra_information = !cell_of(c, side).privileges.empty()});
-}
-
-TableCell pays_cell(const Trained& network, const Side& single) {
-  const Real from = pays_from(network, single);
-  if (std::isnan(from)) return "";
-  if (!single.seconds.is_solved()) return "the solver has not reached it";
-  return {from == kNever ? "never" : figure(from), {{"pays_from", from}}};
 }
 
 // Three digits, as milliseconds have them.
 std::string in_seconds(Real seconds) { return milliseconds(1e-3 * seconds); }
 
-TableCell time_cell(const Comparison& c, const Side& side, std::string (*written)(Real)) {
+TableCell time_cell(const Side& side, std::string (*written)(Real)) {
   const Real seconds = side.seconds.median;
-  return {(cell_of(c, side).is_timed_alone || seconds == kNever ? "" : "≈ ") + written(seconds),
+  return {(side.cell->is_timed_alone || seconds == kNever ? "" : "≈ ") + written(seconds),
           {{"seconds", seconds}}};
 }
 
-std::vector<TableCell> amortized_row(const Comparison& c, const Trained& network,
-                                     const Side& single) {
+std::vector<TableCell> amortized_row(const Side& network, const Side& single, Real inference) {
   const Spread& times = single.seconds;
-  const TableCell inference =
-      std::isnan(network.inference)
-          ? TableCell("")
-          : TableCell(milliseconds(network.inference), {{"seconds", network.inference}});
-  return {named(c, network),
-          named(c, single),
-          {figure(network.x_error), {{"x_error", network.x_error}}},
-          time_cell(c, network, in_seconds),
-          inference,
-          time_cell(c, single, milliseconds),
+  const Real from = pays_from(network, single, inference);
+  TableCell pays = "", example = "";
+  if (!std::isnan(inference)) example = {milliseconds(inference), {{"seconds", inference}}};
+  if (!std::isnan(from) && !times.is_solved()) pays = words("amortized-table.open");
+  if (!std::isnan(from) && times.is_solved())
+    pays = {from == kNever ? "never" : figure(from), {{"pays_from", from}}};
+  return {network.name,
+          single.name,
+          number_cell("x_error", network.cell->x_error.median),
+          time_cell(network, in_seconds),
+          example,
+          time_cell(single, milliseconds),
           fmt::format("{}/{}", times.n - times.unsolved, times.n),
-          fmt::format("{}, {}", cell_of(c, network).failed, cell_of(c, single).failed),
-          pays_cell(network, single)};
+          fmt::format("{}, {}", network.cell->failed, single.cell->failed),
+          pays};
 }
 
-std::string reading_of(const Comparison& c, const Trained& network, const Side& single) {
-  if (!single.seconds.is_solved())
-    return fmt::format(
-        "No solver in this report reaches the error of the network of {}, {}, on half of its "
-        "instances.",
-        named(c, network), figure(network.x_error));
-  if (single.seconds.median == 0)
-    return fmt::format(
-        "The network of {} has the error {}, and {} starts with an error that small: the training "
-        "has not paid off yet.",
-        named(c, network), figure(network.x_error), named(c, single));
-  const std::string each = fmt::format(
-      "{} takes {} ms per instance to the error {} of the network of {}, whose training took {} s",
-      named(c, single), milliseconds(single.seconds.median), figure(network.x_error),
-      named(c, network), in_seconds(network.seconds.median));
-  const Real from = pays_from(network, single);
-  if (std::isnan(from)) return each + "; the time of the network was not measured.";
-  if (from == kNever) return each + ": training never pays off.";
-  return fmt::format("{} and which takes {} ms: training pays off from {} instances on.", each,
-                     milliseconds(network.inference), figure(from));
-}
-
-Table table_of(const Comparison& c, std::size_t p, const std::vector<Trained>& networks,
-               const std::vector<std::size_t>& instances) {
-  Table table{
-      .id = fmt::format("amortized-{}", p),
-      .title = shown_spec(c.problems[p].spec),
-      .reading = "",
-      .caption =
-          "Medians over seeds in processor time; each seed of a solver is another instance. "
-          "Errors of solvers are read at stored iterations, so their times are upper bounds, and "
-          "0 if the start has that error. The network is timed on a batch, divided by its size.",
-      .columns = {"network of", "solver", "error in x", "training, s", "per example, ms",
-                  "solver to that error, ms", "there", "failed", "pays off from"},
-      .topic = {.problem = p},
-      .align = "llrrrrrrr",
-      .names = 2};
-  for (const Trained& network : networks) {
-    const std::vector<Side> singles = singles_to(c, instances, network.x_error);
-    if (table.reading.empty()) table.reading = reading_of(c, network, singles.front());
-    for (std::size_t i = 0; i < std::min(singles.size(), kMostLines); ++i) {
-      table.rows.push_back(amortized_row(c, network, singles[i]));
-      table.row_topics.push_back({.optimizer = singles[i].optimizer});
-    }
-  }
-  return table;
+std::string reading_of(const Side& network, const Side& single, Real inference) {
+  const Real from = pays_from(network, single, inference);
+  const char* key = !single.seconds.is_solved()  ? "amortized-table.unreached"
+                    : single.seconds.median == 0 ? "amortized-table.start"
+                    : std::isnan(from)           ? "amortized-table.untimed"
+                    : from == kNever             ? "amortized-table.never"
+                                                 : "amortized-table.pays";
+  return words(key, single.name, milliseconds(single.seconds.median), network.cell->x_error.median,
+               network.name, in_seconds(network.seconds.median), milliseconds(inference), from);
 }
 
 }  // namespace
 
 Section amortized_section(const Comparison& c) {
-  Section section{.id = "amortized",
-                  .title = "Training once, or solving each",
-                  .otherwise =
-                      "No problem in this report was both learned and solved instance by "
-                      "instance."};
+  Section section = worded_section("amortized");
   for (std::size_t p = 0; p < c.problems.size(); ++p) {
     if (!c.problems[p].is_learned) continue;
-    const std::vector<Trained> networks = trained_on(c, p);
+    const Real inference = inference_seconds(c.problems[p]);
     const std::vector<std::size_t> instances = instances_of(c, p);
-    if (networks.empty() || instances.empty()) continue;
-    if (singles_to(c, instances, kNever).empty()) continue;
-    section.tables.push_back(table_of(c, p, networks, instances));
+    Table table = worded_table("amortized-table", shown_spec(c.problems[p].spec));
+    table.id = fmt::format("amortized-{}", p);
+    table.topic = {.problem = p};
+    table.names = 2;
+    for (const Side& network : trained_on(c, p)) {
+      const std::vector<Side> singles = singles_to(c, instances, network.cell->x_error.median);
+      for (const Side& single : std::span(singles).first(std::min(singles.size(), kMostLines))) {
+        if (table.reading.empty()) table.reading = reading_of(network, single, inference);
+        table.rows.push_back(amortized_row(network, single, inference));
+        table.row_topics.push_back({.optimizer = single.optimizer});
+      }
+    }
+    if (!table.rows.empty()) section.tables.push_back(std::move(table));
   }
-  if (!section.tables.empty())
-    section.lead =
-        "A network is trained once and then solves each instance in one pass; a solver begins "
-        "again with each. The table gives the number of instances from which training pays off, "
-        "at the error of the network.";
   return section;
 }
 

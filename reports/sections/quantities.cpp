@@ -1,20 +1,201 @@
-// Combines medians of figures, and resamples seeds.
-#include "reports/sections/quantities.h"
+// Figures of runs, columns of their curves and what their paths come to; the quantities made of
+// medians of them; and when these agree with what was published.
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <numbers>
 #include <numeric>
+#include <ranges>
 
 #include "core/json.h"
 #include "core/results/statistics.h"
-#include "core/results/tests.h"
-#include "reports/sections/claim_terms.h"
+#include "reports/sections/claims.h"
+#include "reports/sections/figures.h"
+#include "reports/sections/words.h"
 
 namespace isoline::reports {
+
+using Json = nlohmann::json;
+
 namespace {
 
 constexpr Real kAbsent = std::numeric_limits<Real>::quiet_NaN();
+constexpr std::string_view kSeries = "series: ";
+constexpr std::string_view kUntil = "until: ";  // then a column, and what it falls to
+
+// Running means begin with the first step: before it, what that saw.
+Real value_at(const std::vector<Real>& column, std::size_t index) {
+  const bool is_before_any = index == 0 && std::isnan(column[0]) && column.size() > 1;
+  return column.at(is_before_any ? 1 : index);
+}
+
+template <class Map, class Key>
+const std::vector<Real>* found_in(const Map& columns, const Key& key) {
+  const auto found = columns.find(key);
+  return found == columns.end() ? nullptr : &found->second;
+}
+
+const std::vector<Real>* column_of(const Record& record, const std::string& name) {
+  const Curve& curve = record.curve;
+  if (name == "x_error") return &curve.x_error;
+  if (name == "loss") return &curve.loss;
+  if (name == "gradient_norm") return &curve.gradient_norm;
+  if (name == "step_norm") return &curve.step_norm;
+  if (name.starts_with(kSeries)) return found_in(record.series, name.substr(kSeries.size()));
+  if (!name.starts_with("batch_")) return nullptr;
+  return found_in(name.starts_with("batch_x") ? curve.batch_x_error : curve.batch_loss,
+                  std::int64_t{std::stoi(name.substr(name.rfind('_') + 1))});
+}
+
+using Rows = std::vector<std::vector<Real>>;
+
+// Distances of coordinates from the printed ones: the largest, or the mean.
+Real deviation(const std::vector<PrintedRow>& rows, bool is_mean) {
+  Real largest = 0, sum = 0, count = 0;
+  for (const PrintedRow& row : rows)
+    for (std::size_t j = 0; j < row.printed.size(); ++j, ++count) {
+      const Real distance = std::abs(row.reached.at(j) - row.printed[j]);
+      largest = std::max(largest, distance);
+      sum += distance;
+    }
+  if (rows.empty()) return kAbsent;
+  return is_mean ? sum / count : largest;
+}
+
+// How far y leaves the ray through its start: largest relative change of y2 / y1.
+Real bend(const Rows& y, std::size_t row) {
+  Real largest = 0;
+  for (std::size_t i = 0; i <= row; ++i)
+    largest = std::max(largest, std::abs(y[i].at(1) / y[i].at(0) * y[0][0] / y[0][1] - 1));
+  return largest;
+}
+
+Real least_coordinate(const Rows& x, std::size_t row) {
+  Real least = kNever;
+  for (std::size_t i = 0; i <= row; ++i) least = std::min(least, std::ranges::min(x[i]));
+  return least;
+}
+
+// For the first step: its component along the diagonal toward the origin, at most √2; or its angle
+// with the straight way to 0, in degrees.
+Real first_step(const Rows& path, bool is_angle) {
+  const std::vector<Real>& from = path.at(0);
+  const Real d1 = from.at(0) - path.at(1).at(0), d2 = from.at(1) - path.at(1).at(1);
+  if (!is_angle) return (d1 + d2) / std::hypot(d1, d2);
+  const Real cross = from[0] * d2 - from[1] * d1, dot = from[0] * d1 + from[1] * d2;
+  return std::atan2(std::abs(cross), dot) * 180 / std::numbers::pi;
+}
+
+Real path_figure(const Record& record, const Place& place) {
+  const auto& [x, y] = *record.trajectory;
+  const std::string& column = place.column;
+  const std::size_t row = index_at(record.curve, place);
+  if (column.ends_with("deviation"))
+    return deviation(printed_rows(record, place), column == "mean_deviation");
+  if (column == "bend") return bend(y, row);
+  if (column == "least_coordinate") return least_coordinate(x, row);
+  if (column == "distance") return std::hypot(x.at(row).at(0), x.at(row).at(1));
+  if (row == 0) return kAbsent;  // the others are of the step that led to the row
+  if (column == "alignment") return first_step(x, false);
+  if (column == "turn") return first_step(y, true);
+  const Real before = x.at(row - 1).at(1), step = std::abs(x.at(row).at(1) - before);
+  if (column == "step_2") return step;
+  return column == "relative_step_2" ? step / std::abs(before) : kAbsent;
+}
+
+// How many times slower the logarithm of the error in x falls over the last third of the iterations
+// up to the place than over the first; 1 of an exponential, infinite where it falls no more.
+Real slowdown(const Curve& curve, std::size_t index) {
+  const std::int64_t all = curve.iteration[index];
+  const auto fall = [&](std::int64_t from, std::int64_t to) {
+    const std::size_t i = point_at(curve.iteration, from), j = point_at(curve.iteration, to);
+    const auto steps = static_cast<Real>(curve.iteration[j] - curve.iteration[i]);
+    return std::log(curve.x_error.at(i) / curve.x_error.at(j)) / steps;
+  };
+  const Real first = fall(0, all / 3), last = fall(2 * all / 3, all);
+  if (!(first > 0)) return kAbsent;
+  return last > 0 ? first / last : kNever;
+}
+
+// The cost, in the unit of the place, when the column was first at most a bound; infinite if it
+// never was.
+Real spent_until(const Record& record, const Place& place) {
+  const Curve& curve = record.curve;
+  const auto& [name, bound] = bound_of(place.column);
+  const std::vector<Real>* column = column_of(record, name);
+  if (column == nullptr) return kAbsent;
+  for (std::size_t i = 0; i <= index_at(curve, place); ++i) {
+    if (!(value_at(*column, i) <= bound)) continue;
+    if (place.seconds) return curve.processor_seconds.at(i);
+    return static_cast<Real>(place.work ? curve.work.at(i) : curve.iteration[i]);
+  }
+  return kNever;
+}
+
+}  // namespace
+
+std::pair<std::string, Real> bound_of(const std::string& column) {
+  const std::size_t last = column.rfind(' ');
+  return {column.substr(kUntil.size(), last - kUntil.size()), std::stod(column.substr(last))};
+}
+
+std::vector<PrintedRow> printed_rows(const Record& record, const Place& place) {
+  const Rows& path =
+      place.column == "output_deviation" ? record.trajectory->y : record.trajectory->x;
+  const std::size_t row = index_at(record.curve, place), count = place.table.size();
+  const std::size_t first = count == 1 ? row : 1;
+  const bool stands = row == 0;  // what has made no step stays at its start
+  std::vector<PrintedRow> rows;
+  if (!stands && first + count > path.size()) return rows;
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t at = stands ? 0 : first + i;
+    rows.push_back({record.curve.iteration.at(at), place.table[i], path.at(at)});
+  }
+  return rows;
+}
+
+std::size_t index_at(const Curve& curve, const Place& place) {
+  if (place.iteration) return point_at(curve.iteration, *place.iteration);
+  if (place.seconds) return point_at(curve.processor_seconds, *place.seconds);
+  if (place.work) return point_at(curve.work, *place.work);
+  return curve.iteration.size() - 1;
+}
+
+Real figure_of(const Record& record, const Place& place) {
+  const Curve& curve = record.curve;
+  const std::string& name = place.column;
+  if (name == "milliseconds")
+    return record.summary.iterations == 0
+               ? kAbsent
+               : 1e3 * record.summary.wall_seconds / static_cast<Real>(record.summary.iterations);
+  if (curve.iteration.empty()) return kAbsent;
+  const std::size_t index = index_at(curve, place);
+  if (name == "loss_peak") return std::ranges::max(curve.loss | std::views::take(index + 1));
+  if (name == "loss_drop") return curve.loss[0] - curve.loss[index];
+  if (name == "slowdown") return slowdown(curve, index);
+  if (name.starts_with(kUntil)) return spent_until(record, place);
+  if (const auto* column = column_of(record, name)) {
+    if (column->empty()) return kAbsent;
+    const Real value = value_at(*column, index);
+    const bool is_lost = std::isnan(value) && name.find("gradient") == std::string::npos;
+    return is_lost && !name.starts_with(kSeries) ? kNever : value;  // it diverged
+  }
+  return record.trajectory ? path_figure(record, place) : kAbsent;
+}
+
+std::string column_words(const std::string& column) {
+  if (column.starts_with(kSeries)) return column.substr(kSeries.size());
+  if (column.starts_with(kUntil)) {
+    const auto& [name, bound] = bound_of(column);
+    return words("column.until", column_words(name), bound);
+  }
+  const std::string key = "column." + column;
+  return all_sentences().contains(key) ? words(key) : column;
+}
+
+namespace {
 
 // Least squares of log m over log at.
 Real slope(const std::vector<Real>& m, const std::vector<Real>& at) {
@@ -68,34 +249,49 @@ Real position(const std::vector<Real>& m) {
   return 1 + static_cast<Real>(nearer) + static_cast<Real>(equal) / 2;
 }
 
-Chosen chosen_of(const Term& term, const std::vector<std::size_t>& seeds) {
+// The alternative whose value counts, by value(its figures).
+template <class Value>
+Chosen best_alternative(const Term& term, Value value) {
   std::optional<Chosen> chosen;
   for (std::size_t i = 0; i < term.figures.size(); ++i) {
-    std::vector<Real> values;
-    for (const std::size_t seed : seeds) values.push_back(term.figures[i].at(seed));
-    const bool is_absent = std::ranges::all_of(values, [](Real v) { return std::isnan(v); });
-    const Real median = is_absent ? kAbsent : term.scale * median_of(std::move(values));
-    if (!chosen || (term.is_worst ? median > chosen->level : median < chosen->level))
-      chosen = {i, median};
+    const Real found = value(term.figures[i]);
+    if (!chosen || (term.is_worst ? found > chosen->level : found < chosen->level))
+      chosen = {i, found};
   }
   return chosen.value_or(Chosen{0, kNever});
 }
 
-// The seeds of the alternative that counts, whose values reach the term's abscissa.
-Real share(const Term& term, const std::vector<std::size_t>& seeds) {
-  std::optional<Real> chosen;
-  for (const auto& alternative : term.figures) {
-    if (std::isnan(alternative.at(seeds[0]))) return kAbsent;
-    const auto reach = std::ranges::count_if(
-        seeds, [&](std::size_t seed) { return alternative.at(seed) >= term.at; });
-    const Real found = static_cast<Real>(reach) / static_cast<Real>(seeds.size());
-    if (!chosen || (term.is_worst ? found > *chosen : found < *chosen)) chosen = found;
-  }
-  return chosen.value_or(kAbsent);
+Chosen chosen_of(const Term& term, const Places& seeds) {
+  return best_alternative(term, [&](const std::vector<Real>& figures) {
+    std::vector<Real> values;
+    for (const std::size_t seed : seeds) values.push_back(figures.at(seed));
+    const bool is_absent = std::ranges::all_of(values, [](Real v) { return std::isnan(v); });
+    return is_absent ? kAbsent : term.scale * median_of(std::move(values));
+  });
 }
 
-Real quantity_over(const std::string& kind, const std::vector<Term>& terms,
-                   const std::vector<std::size_t>& seeds) {
+// The seeds of the alternative that counts, whose values reach the term's abscissa.
+Real share(const Term& term, const Places& seeds) {
+  if (std::ranges::any_of(term.figures,
+                          [&](const auto& one) { return std::isnan(one.at(seeds[0])); }))
+    return kAbsent;
+  return best_alternative(term,
+                          [&](const std::vector<Real>& figures) {
+                            const auto reach = std::ranges::count_if(seeds, [&](std::size_t seed) {
+                              return figures.at(seed) >= term.at;
+                            });
+                            return static_cast<Real>(reach) / static_cast<Real>(seeds.size());
+                          })
+      .level;
+}
+
+Places all_seeds(const Term& term) {
+  Places seeds(term.figures.at(0).size());
+  std::iota(seeds.begin(), seeds.end(), 0);
+  return seeds;
+}
+
+Real quantity_over(const std::string& kind, const std::vector<Term>& terms, const Places& seeds) {
   if (kind == "share") return share(terms.at(0), seeds);
   std::vector<Real> medians, at;
   for (const Term& term : terms) {
@@ -108,11 +304,7 @@ Real quantity_over(const std::string& kind, const std::vector<Term>& terms,
 
 }  // namespace
 
-Chosen chosen_of(const Term& term) {
-  Places seeds(term.figures.at(0).size());
-  std::iota(seeds.begin(), seeds.end(), 0);
-  return chosen_of(term, seeds);
-}
+Chosen chosen_of(const Term& term) { return chosen_of(term, all_seeds(term)); }
 
 Real quantity_of(const std::string& kind, const std::vector<Real>& medians,
                  const std::vector<Real>& at) {
@@ -136,15 +328,6 @@ std::optional<Real> neutral_of(const std::string& kind) {
 
 namespace {
 
-// The quantity of each seed by itself, where it is a number.
-std::vector<Real> values_of_seeds(const std::string& kind, const std::vector<Term>& terms) {
-  std::vector<Real> values;
-  for (std::size_t seed = 0; seed < terms.at(0).figures.at(0).size(); ++seed)
-    if (const Real value = quantity_over(kind, terms, {seed}); !std::isnan(value))
-      values.push_back(value);
-  return values;
-}
-
 // Where one further run lies: runs are normal in their logarithms.
 std::optional<Interval> prediction_of(const std::vector<Real>& values) {
   std::vector<Real> logarithms;
@@ -162,10 +345,11 @@ std::optional<Interval> prediction_of(const std::vector<Real>& values) {
 Measurement measure(const std::string& kind, const std::vector<Term>& terms,
                     const std::string& stream) {
   Measurement out{.low = kAbsent, .high = kAbsent, .n = terms.at(0).figures.at(0).size()};
-  Places seeds(out.n);
-  std::iota(seeds.begin(), seeds.end(), 0);
+  const Places seeds = all_seeds(terms[0]);
   out.value = quantity_over(kind, terms, seeds);
-  std::vector<Real> values = values_of_seeds(kind, terms);
+  std::vector<Real> values;  // the quantity of each seed by itself
+  for (const std::size_t seed : seeds) values.push_back(quantity_over(kind, terms, {seed}));
+  std::erase_if(values, [](Real value) { return std::isnan(value); });
   if (out.n < 2 || values.empty()) return out;
   if (kind == "value" || kind == "ratio" || kind == "greatest")
     out.predicted = prediction_of(values);
@@ -190,21 +374,10 @@ Measurement measure(const std::string& kind, const std::vector<Term>& terms,
 
 // Bands of what was published, and how an interval lies in them.
 
-using Json = nlohmann::json;
 namespace {
 
-// The error of a slope whose two ends were each read with relative error t.
-Real slope_error(Real t, const Json& terms) {
-  Real least = kNever, most = 0;
-  for (const Json& term : terms) {
-    least = std::min(least, term.at("at").get<Real>());
-    most = std::max(most, term.at("at").get<Real>());
-  }
-  return std::log((1 + t) / (1 - t)) / std::log(most / least);
-}
-
 Agreement around(Real value, const Json& claim) {
-  const Json& tolerance = claim.at("tolerance");
+  const Json &tolerance = claim.at("tolerance"), &quantity = claim.at("quantity");
   if (tolerance.contains("absolute")) {
     const Real error = real_of(tolerance["absolute"]);
     return {value - error, value + error};
@@ -215,9 +388,13 @@ Agreement around(Real value, const Json& claim) {
   }
   if (!tolerance.contains("relative")) return {value, value};
   const Real t = real_of(tolerance["relative"]);
-  const Json& quantity = claim.at("quantity");
-  if (quantity.at("kind") == "slope") {
-    const Real error = slope_error(t, quantity.at("terms"));
+  if (quantity.at("kind") == "slope") {  // its two ends were each read with relative error t
+    Real least = kNever, most = 0;
+    for (const Json& term : quantity.at("terms")) {
+      least = std::min(least, term.at("at").get<Real>());
+      most = std::max(most, term.at("at").get<Real>());
+    }
+    const Real error = std::log((1 + t) / (1 - t)) / std::log(most / least);
     return {value - error, value + error};
   }
   // A ratio of two values that were each read with error t.
@@ -241,24 +418,14 @@ int side_of(const Json& claim) {
   return value == *neutral ? 0 : value > *neutral ? 1 : -1;
 }
 
-// How far from a tie, in what adds up: logarithms of ratios.
-Real effect(const Json& claim, Real value) {
-  return claim.at("quantity").at("kind") == "ratio" ? std::log(value) : value;
-}
-
-constexpr Real kFewestThirds = 1.0 / 3, kMostThirds = 3;
-
+// The effect of a value as a share of what was published, in what adds up: logarithms of ratios.
 bool is_of_its_order(Real value, const Json& claim) {
+  constexpr Real kFewestThirds = 1.0 / 3, kMostThirds = 3;
   const Json& published = claim.at("published");
-  const Real share = effect(claim, value) / effect(claim, published_value(published));
-  const bool has_ceiling = published.contains("value");
-  return share >= kFewestThirds && (!has_ceiling || share <= kMostThirds);
-}
-
-// Beyond the band where the claim says that further is better.
-bool is_stronger(Real low, Real high, const Agreement& band, const Json& claim) {
-  const std::string better = claim.at("published").value("better", "");
-  return better == "less" ? high < band.low : better == "greater" && low > band.high;
+  const bool is_ratio = claim.at("quantity").at("kind") == "ratio";
+  const auto effect = [=](Real of) { return is_ratio ? std::log(of) : of; };
+  const Real share = effect(value) / effect(published_value(published));
+  return share >= kFewestThirds && (!published.contains("value") || share <= kMostThirds);
 }
 
 Verdict verdict_on_all(const Measurement& measured, const Json& claim) {
@@ -278,12 +445,20 @@ Verdict verdict_on_all(const Measurement& measured, const Json& claim) {
                              : band.holds(low) && band.holds(high);
   if (is_within) return Verdict::reproduced;
   if (reaches && is_on_side(measured.value)) return Verdict::consistent;
-  if (is_stronger(low, high, band, claim)) return Verdict::stronger;
+  const std::string better = claim.at("published").value("better", "");  // further than the band
+  if (better == "less" ? high < band.low : better == "greater" && low > band.high)
+    return Verdict::stronger;
   const bool is_partly = side != 0 && is_all_on_side && is_of_its_order(measured.value, claim);
   return is_partly ? Verdict::partly : Verdict::not_reproduced;
 }
 
 }  // namespace
+
+Real published_value(const Json& published) {
+  for (const char* key : {"value", "at_least", "at_most"})
+    if (published.contains(key)) return real_of(published[key]);
+  return 0;  // a table: no distance from it
+}
 
 Agreement agreement_of(const Json& claim) {
   const Json& published = claim.at("published");

@@ -1,5 +1,4 @@
-// The nouns of a report: sections of sentences, tables and plots, worded once. Every format lays
-// out these.
+// The nouns of a report, which every format lays out: sections of sentences, tables and plots.
 #pragma once
 
 #include <array>
@@ -47,8 +46,8 @@ struct Table {
   std::vector<Topic> row_topics = {}, column_topics = {};  // may be fewer, or none
   Topic topic = {};
   std::vector<std::string> meanings = {};  // of the columns, for a new reader
-  std::string align =
-      {};  // a letter a column: r figures, l words, p sentences, c commands; else lr…
+  // a letter a column: r figures, l words, p sentences, c commands, b ones to copy
+  std::string align = {};
   bool is_folded = false;  // behind its reading, where a format can fold
   std::size_t names = 1;   // columns that name the row, repeated in each part of a wide table
   std::vector<std::size_t> parts = {};  // how many others stand together where room is narrow
@@ -60,13 +59,13 @@ struct Table {
   bool is_wordy() const { return align.find_first_of("pc") != std::string::npos; }
 };
 
-// The part of one optimizer, or of one quantity. Steps: y(x) from each x on, with a band. Dots: x
-// with its interval in the row y. Bars: y in the row x.
-// Lines: y(x) from point to point, with a band.
+// The part of one optimizer, or of one quantity. Steps: y(x) from each x on, with a band. Lines:
+// y(x) from point to point, with a band. Dots: x in the row y. Bars: y in the row x.
 struct PlotSeries {
-  std::optional<std::size_t> optimizer;
-  std::string name;
-  std::vector<Real> x, y, low, high;  // low and high may be empty; not-a-number: nothing there
+  std::optional<std::size_t> optimizer = {};
+  std::string name = {};
+  // low and high may be empty; not-a-number: nothing there
+  std::vector<Real> x = {}, y = {}, low = {}, high = {};
 };
 
 struct PlotRow {

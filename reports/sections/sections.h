@@ -1,13 +1,16 @@
-// The sections of a report, one file a topic; sections.cpp puts them in order.
+// The sections of a report, one file a topic; overview.cpp puts them in order.
 #pragma once
 
+#include <array>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "core/records/audited.h"
+#include "core/records/sheet.h"
 #include "core/results/ranking.h"
-#include "reports/sections/evidence.h"
+#include "core/results/statistics.h"
+#include "reports/sections/claims.h"
 #include "reports/sections/figures.h"
 #include "reports/sections/section.h"
 
@@ -16,51 +19,21 @@ namespace isoline::reports {
 using namespace results;
 
 using Audits = std::vector<AuditedOptimizer>;
+using Plots = std::vector<Plot>;  // none where there is too little to show
 
 Section standings_section(const Comparison& comparison);
 Section problems_section(const Comparison& comparison);  // a sentence each, and the matrix
 Section learned_section(const Comparison& comparison);
 Section amortized_section(const Comparison& comparison);  // training once, or solving each
-Section claims_section(const std::vector<Judgement>& judgements);
-// A line a claim, the refuted first.
-Section claims_summary(const std::vector<Judgement>& judgements);
-Section claim_section(const Judgement& judgement);  // one of them whole, with its evidence
-// A table a paper: what it says, and the command, the time and the verdict of each claim.
-Section papers_section(const std::vector<Judgement>& judgements);
+Section sweeps_section(const Comparison& comparison);     // two options at a time, as heat maps
+Section spectra_section(const Comparison& comparison);    // of J, where runs kept them
 Section properties_section(const Audits& audits);
-Section tuning_section(
-    const Comparison& comparison);  // where rates came from, and what they bought
+Section tuning_section(const Comparison& comparison);  // the origin of rates, and their gain
 Section statistics_section(const Comparison& comparison);
-Section sweeps_section(const Comparison& comparison);   // two options at a time, as heat maps
-Section spectra_section(const Comparison& comparison);  // of J, where runs kept them
 Section failures_section(const Comparison& comparison);
 Section builds_section(const Comparison& comparison);
 
-// Sentences of them that others say too.
-std::vector<std::string> verdict(const Comparison& comparison);    // what the decision says
-std::string short_verdict(const Comparison& comparison);           // its first sentence
-std::vector<Reading> ranking_facts(const Comparison& comparison);  // the group, how robust, not run
-std::vector<std::string> learned_sentences(const Comparison& comparison);  // at equal work
-std::string profile_reading(const Comparison& comparison, std::size_t tolerance);
-std::string curve_reading(const Comparison& comparison, std::size_t problem);
-std::string claims_reading(const std::vector<Judgement>& judgements);  // how many of each verdict
-std::string verdict_text(const Judgement& judgement);                  // "partly on 3 seeds"
-std::string marked_verdict(const Judgement& judgement);                // "≈ partly on 3 seeds"
-std::vector<Reading> claim_notes(const Judgement& judgement);          // beside its figures
-std::string measured_text(const Judgement& judgement);                 // "23.4 (18.2–31), n = 3"
-// The distinguishing name of a term: its optimizer, its problem if they differ, its abscissa.
-std::vector<std::string> term_names(const Evidence& evidence);
-// One plot, or none where the figures have no curve and no abscissa.
-std::vector<Plot> claim_plots(const Evidence& evidence, const std::string& id);
-// A summary of this data, one sentence per property; the last on false declarations.
-std::vector<Reading> property_readings(const Audits& all);
-std::vector<Plot> property_plots(const Audits& all);  // of each property that is a number
-std::string headline(const Comparison& comparison);
-std::string missing_text(const Comparison& comparison);
-std::vector<std::string> remarks(const Comparison& comparison);
-
 // A report before it has a format: its sections in order, and what they were made from.
-
 struct Document {
   Comparison comparison;  // of a study that must outlive it
   std::vector<Judgement> claims;
@@ -74,8 +47,87 @@ struct Document {
 
   const Section& section(std::string_view id) const;
 };
-
 // Claims are those whose cells are among the runs.
 Document document_of(Comparison comparison, std::vector<Judgement> claims = {});
+
+// Sentences of them that others say too.
+std::string headline(const Comparison& comparison);
+std::string missing_text(const Comparison& comparison);
+std::vector<std::string> remarks(const Comparison& comparison);
+std::vector<std::string> verdict(const Comparison& comparison);    // what the decision says
+std::string short_verdict(const Comparison& comparison);           // its first sentence
+std::vector<Reading> ranking_facts(const Comparison& comparison);  // the group, how robust, not run
+// Which methods were run on some of the common settings only; empty where none was.
+std::string unranked_sentence(const Comparison& comparison);
+std::vector<std::string> learned_sentences(const Comparison& comparison);  // at equal work
+std::string profile_reading(const Comparison& comparison, std::size_t tolerance);
+std::string curve_reading(const Comparison& comparison, std::size_t problem);
+std::string choice_text(const Choice& choice);  // "to accuracy 1e-3", "without heat"
+// How many methods have rates of tables; empty where no run used one.
+std::string rates_text(const Comparison& comparison);
+// A summary of an audit, one sentence per property; the last on false declarations.
+std::vector<Reading> property_readings(const Audits& all);
+// The limits of so few problems, seeds or runs, one sentence each.
+std::vector<std::string> limits_of_evidence(const Comparison& comparison);
+
+// The statistics. A new one is a function here, in one of the two lists of statistics.cpp.
+Table profile_table(const Comparison& comparison);
+Table leader_table(const Comparison& comparison);
+Table choices_table(const Comparison& comparison);
+Table loss_without_x_table(const Comparison& comparison);
+Table data_profile_table(const Comparison& comparison);
+Table restart_table(const Comparison& comparison);
+Table calls_table(const Comparison& comparison);
+Table prices_table(const Comparison& comparison);
+Plots profile_plot(const Comparison& comparison);
+Plots data_profile_plot(const Comparison& comparison);
+Plots runtime_plot(const Comparison& comparison);
+
+// The common parts of their tables.
+inline constexpr std::size_t kMostTableRows = 40;  // the best optimizers
+inline constexpr std::size_t kMostLines = 8;       // of a plot, the best optimizers
+// Adds a row of the optimizer, which it names in its first cell and by topic.
+void add_row(Table& table, const Comparison& comparison, std::size_t optimizer,
+             std::vector<TableCell> cells);
+TableCell failed_cell(const Comparison& comparison, std::size_t optimizer);  // "2/80"
+TableCell count_cell(std::size_t count);
+TableCell number_cell(const char* name, Real value);  // as figure() writes it
+// The line with the greatest value above 0, with all ties.
+struct Leading {
+  Real value = 0;
+  std::vector<std::string> names = {};
+
+  void offer(Real mine, const std::string& name);
+  std::string text() const;  // "sip † and 2 more", "no method"
+};
+// The unit of costs of single runs: measured cost if rankings use work, else the same measure.
+Measure cost_measure(const Comparison& comparison);
+std::string cost_unit(const Comparison& comparison);
+// "equivalent forward solves at measured cost", …
+std::string priced_unit(const Comparison& comparison);
+Real in_units(Measure by, Real value);  // as tables and axes have it: times in ms
+
+// Two methods over the families of problems that both were run on and one of them solves.
+struct Pairing {
+  // log2(cost of a / cost of b) a family, the median over its settings: within ±log2 kProfileEnd,
+  // which is also what solving against not solving counts; 0 on a setting that neither solves.
+  std::vector<Real> doublings;
+  std::size_t wins = 0, losses = 0, ties = 0;  // of a, over families
+  std::size_t neither = 0;                     // families that neither solves
+
+  Real typical() const;  // what b costs as a multiple of what a costs: 2^(−median); 1 of nothing
+  std::array<Real, 2> interval() const;  // of it: 95 % of that median
+};
+using Families = std::vector<std::vector<std::size_t>>;  // rows of costs
+Pairing pairing_of(const Costs& costs, const Families& families, std::size_t a, std::size_t b);
+struct MethodPair {
+  std::size_t a = 0, b = 0;  // optimizers, a < b
+  Pairing pairing;
+};
+// At the tightest tolerance by what the yardstick counts, over the problems that are not learned.
+std::vector<MethodPair> all_pairs(const Comparison& comparison);
+
+// 95 % over families of each optimizer's score, or its range over few; infinite where not ranked.
+std::vector<Interval> score_intervals(const Comparison& comparison);
 
 }  // namespace isoline::reports

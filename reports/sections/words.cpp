@@ -1,4 +1,4 @@
-// Writes figures, counts and commands.
+// Writes sentences, figures, names and commands.
 #include "reports/sections/words.h"
 
 #include <fmt/format.h>
@@ -7,12 +7,131 @@
 #include <array>
 #include <cmath>
 #include <cstdlib>
+#include <sstream>
+#include <stdexcept>
 
 #include "core/results/statistics.h"
 #include "core/shell.h"
-#include "reports/sections/claim_terms.h"
+#include "core/spec.h"
 
 namespace isoline::reports {
+
+std::string_view embedded_words();  // reports/words/*.txt
+
+namespace {
+
+std::string trimmed(std::string_view text) {
+  const std::size_t first = text.find_first_not_of(' ');
+  if (first == std::string_view::npos) return "";
+  return std::string(text.substr(first, text.find_last_not_of(' ') + 1 - first));
+}
+
+std::vector<std::string> trimmed_parts(const std::string& text, char between) {
+  std::vector<std::string> parts;
+  std::istringstream rest(text);
+  for (std::string part; std::getline(rest, part, between);) parts.push_back(trimmed(part));
+  return parts;
+}
+
+[[noreturn]] void reject(std::string_view key, const std::string& why) {
+  throw std::logic_error(fmt::format("reports/words: {}: {}", key, why));
+}
+
+// The form after the name in a placeholder: "", ":.2f" or "|one|many".
+std::string written(const Value& value, const std::string& form) {
+  if (form.starts_with('|')) {
+    const std::size_t middle = form.find('|', 1);
+    const bool is_one = value == Value(std::int64_t{1});
+    return is_one ? form.substr(1, middle - 1) : form.substr(middle + 1);
+  }
+  if (const Real* real = std::get_if<Real>(&value); real != nullptr && form.empty())
+    return figure(*real);
+  return std::visit(
+      [&](const auto& one) { return fmt::format(fmt::runtime("{" + form + "}"), one); }, value);
+}
+
+// The part of a key, which may be absent.
+std::string part_of(std::string_view key, const char* part, const std::vector<Value>& values) {
+  const auto found = all_sentences().find(fmt::format("{}.{}", key, part));
+  if (found == all_sentences().end()) return "";
+  return filled(found->first, found->second.names.empty() ? std::vector<Value>() : values);
+}
+
+}  // namespace
+
+const std::map<std::string, Sentence, std::less<>>& all_sentences() {
+  static const auto all = [] {
+    std::map<std::string, Sentence, std::less<>> sentences;
+    std::istringstream lines{std::string(embedded_words())};
+    std::string above, key;
+    for (std::string line; std::getline(lines, line);) {
+      if (line.empty() || line[0] == '#') continue;
+      if (line[0] == ' ') {
+        sentences[key].text += " " + trimmed(line);
+        continue;
+      }
+      const std::size_t colon = line.find(':'), open = std::min(line.find('('), colon);
+      const bool is_part = line[0] == '.';
+      key = (is_part ? above : "") + line.substr(0, open);
+      Sentence sentence{is_part ? sentences[above].names : std::vector<std::string>(),
+                        trimmed(std::string_view(line).substr(colon + 1))};
+      if (open < colon)
+        sentence.names = trimmed_parts(line.substr(open + 1, colon - open - 2), ',');
+      if (!is_part) above = key;
+      if (!sentences.emplace(key, std::move(sentence)).second) reject(key, "stands there twice");
+    }
+    return sentences;
+  }();
+  return all;
+}
+
+std::string filled(std::string_view key, const std::vector<Value>& values) {
+  const auto found = all_sentences().find(key);
+  if (found == all_sentences().end()) reject(key, "there is no such key");
+  const auto& [names, text] = found->second;
+  if (names.size() != values.size())
+    reject(key, fmt::format("{} names and {} values", names.size(), values.size()));
+  std::string out;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t open = std::min(text.find('{', at), text.size());
+    out += text.substr(at, open - at);
+    if (open == text.size()) break;
+    const std::size_t close = text.find('}', open);
+    const std::string inner = text.substr(open + 1, close - open - 1);
+    const std::size_t end = std::min(inner.find_first_of(":|"), inner.size());
+    const auto name = std::ranges::find(names, inner.substr(0, end));
+    if (close == std::string::npos || name == names.end())
+      reject(key, fmt::format("\"{}\" is not one of its names", inner));
+    out += written(values[static_cast<std::size_t>(name - names.begin())], inner.substr(end));
+    at = close + 1;
+  }
+  return out;
+}
+
+Table table_filled(std::string_view key, const std::vector<Value>& values) {
+  return {.id = std::string(key),
+          .title = part_of(key, "title", values),
+          .caption = part_of(key, "caption", values),
+          .columns = trimmed_parts(part_of(key, "columns", values), '|'),
+          .meanings = trimmed_parts(part_of(key, "meanings", values), '|'),
+          .align = part_of(key, "align", values)};
+}
+
+Plot plot_filled(std::string_view key, const std::vector<Value>& values) {
+  return {.id = std::string(key),
+          .title = part_of(key, "title", values),
+          .caption = part_of(key, "caption", values),
+          .x_label = part_of(key, "x", values),
+          .y_label = part_of(key, "y", values)};
+}
+
+Section section_filled(std::string_view key, const std::vector<Value>& values) {
+  return {.id = std::string(key),
+          .title = part_of(key, "title", values),
+          .lead = part_of(key, "lead", values),
+          .otherwise = part_of(key, "otherwise", values)};
+}
+
 namespace {
 
 // "1.2e-05" -> "1.2e-5".
@@ -27,14 +146,9 @@ std::string without_idle_zeros(std::string text) {
 
 // Four significant digits, "1.200e-04" without the zeros that say nothing: "1.2e-04".
 std::string scientific(Real value) {
-  std::string text = fmt::format("{:.3e}", value);
-  std::size_t end = text.find('e');
-  while (text[end - 1] == '0' || text[end - 1] == '.') {
-    const bool was_point = text[end - 1] == '.';
-    text.erase(--end, 1);
-    if (was_point) break;
-  }
-  return text;
+  const std::string text = fmt::format("{:.3e}", value);
+  const std::size_t e = text.find('e'), last = text.find_last_not_of('0', e - 1);
+  return text.substr(0, last + (text[last] == '.' ? 0 : 1)) + text.substr(e);
 }
 
 }  // namespace
@@ -112,6 +226,12 @@ std::string joined(const std::vector<std::string>& words, std::string_view betwe
   return text;
 }
 
+std::string first_of(std::vector<std::string> names, std::size_t most) {
+  const std::size_t more = names.size() > most ? names.size() - most : 0;
+  names.resize(names.size() - more);
+  return more > 0 ? fmt::format("{} and {} more", joined(names), more) : joined(names);
+}
+
 std::string counted(std::size_t count, std::string_view noun) {
   return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
 }
@@ -160,40 +280,14 @@ Marks marks_shown(const Comparison& c) {
 std::string marks_legend(const Comparison& c) {
   const Marks shown = marks_shown(c);
   std::vector<std::string> all;
-  if (shown.has_extra_information) all.emplace_back("†: uses extra information.");
-  if (shown.is_foreign) all.emplace_back("‡: computed by another program.");
-  if (shown.is_imported) all.emplace_back("§: imported; its values are not verified.");
+  if (shown.has_extra_information) all.push_back(words("marks.extra"));
+  if (shown.is_foreign) all.push_back(words("marks.foreign"));
+  if (shown.is_imported) all.push_back(words("marks.imported"));
   return joined(all, " ");
 }
 
 std::string status_meaning(Status status) {
-  switch (status) {
-    case Status::converged:
-      return "stopped by the method's own test";
-    case Status::target:
-      return "reached the target loss of the run";
-    case Status::budget:
-      return "used up their work or iterations";
-    case Status::stalled:
-      return "stopped making progress";
-    case Status::diverged:
-      return "diverged: not finite, or 1e12 times the start";
-    case Status::inapplicable:
-      return "not applicable to the problem";
-    case Status::failed:
-      return "ended in an error";
-    case Status::crashed:
-      return "ended by a signal";
-    case Status::timeout:
-      return "were stopped at the time limit";
-    case Status::memory:
-      return "ran out of memory";
-    case Status::interrupted:
-      return "were interrupted";
-    case Status::running:
-      break;
-  }
-  return "did not end";
+  return words(fmt::format("status.{}", name_of(status)));
 }
 
 std::string status_text(const std::map<Status, std::size_t>& statuses) {
@@ -216,7 +310,8 @@ std::string matrix_text(const Comparison& c, const Cell& cell, std::size_t toler
   if (cell.runs.empty()) return "missing";
   if (!cell.is_measured()) return "n/a";
   const Real median = cell.headline[tolerance].median;
-  return amount(c, median) + std::string(median < kNever ? time_mark(c, cell) : "");
+  const bool is_shared = c.yardstick.by == Measure::time && !cell.is_timed_alone;
+  return amount(c, median) + (is_shared && median < kNever ? "≈" : "");
 }
 
 bool is_complete(const Cell& cell, std::size_t tolerance) {
@@ -240,6 +335,113 @@ std::string rerun_arguments(const Request& request) {
 
 std::string rerun_command(const Request& request) {
   return "./isoline run " + rerun_arguments(request);
+}
+
+// The yardstick.
+
+std::string tau_name(const Comparison& c) { return std::string(c.yardstick.tightest().name); }
+
+std::string_view counted_name(Measure by) {
+  constexpr std::array<std::string_view, kMeasures.size()> kNames = {"work", "measured cost",
+                                                                     "iterations", "wall time"};
+  return kNames[static_cast<std::size_t>(by)];
+}
+std::string_view counted_name(const Comparison& c) { return counted_name(c.yardstick.by); }
+
+std::string_view unit_name(Measure by) {
+  constexpr std::array<std::string_view, kMeasures.size()> kNames = {
+      "forward solves", "equivalent forward solves", "iterations", "ms"};
+  return kNames[static_cast<std::size_t>(by)];
+}
+std::string_view unit_name(const Comparison& c) { return unit_name(c.yardstick.by); }
+
+std::string counted_to_tau(const Comparison& c) {
+  const std::string text = fmt::format("{} to {}", counted_name(c), tau_name(c));
+  return counted_name(c) == unit_name(c) ? text : fmt::format("{}, in {}", text, unit_name(c));
+}
+
+std::string amount(Measure by, Real value) {
+  return by == Measure::time ? milliseconds(value) : reached_figure(value);
+}
+std::string amount(const Comparison& c, Real value) { return amount(c.yardstick.by, value); }
+
+std::string_view setting_noun(const Comparison& c) {
+  return c.problems.size() > c.names ? "setting" : "problem";
+}
+
+std::string_view common_noun(const Comparison& c) {
+  return names_of(c, c.order) == c.order.settings.size() ? "problem" : "setting";
+}
+
+std::string n_column(const Comparison& c) { return fmt::format("n {}s", setting_noun(c)); }
+
+std::string counted_settings(const Comparison& c, std::size_t count) {
+  return counted(count, setting_noun(c));
+}
+
+std::string success_text(const Comparison& c) {
+  const auto in_x = static_cast<std::size_t>(std::ranges::count_if(
+      c.problems, [](const ProblemAxis& problem) { return problem.aim == Aim::x; }));
+  const char* key = in_x == 0                   ? "success.loss"
+                    : in_x == c.problems.size() ? "success.x"
+                                                : "success.both";
+  return words(key, tau_name(c), counted_settings(c, in_x));
+}
+
+// Origins of rates, by the records that used them.
+
+namespace {
+
+const Request* request_of(const Comparison& c, std::size_t p, std::size_t s) {
+  const Cell& cell = c.cell(p, s);
+  return cell.runs.empty() ? nullptr : &c.runs[cell.runs.front()].record->request;
+}
+
+// "3.8e-5" of gd[rate=3.8e-5], "rate=1, momentum=0.9" where there are several, "default" of gd.
+std::string values_text(const Request& request) {
+  const Spec spec = parse_spec(request.optimizer.spec);
+  std::vector<std::string> shown;  // long numbers cut
+  for (const auto& [name, value] : spec.options)
+    shown.push_back(shown_spec(fmt::format("{}={}", name, value)));
+  if (shown.empty()) return "default";
+  return shown.size() > 1 ? joined(shown) : shown[0].substr(spec.options[0].first.size() + 1);
+}
+
+}  // namespace
+
+const TunedRate* rate_of(const Comparison& c, std::size_t p, std::size_t s) {
+  const Request* request = request_of(c, p, s);
+  if (request == nullptr || request->rates.empty()) return nullptr;
+  for (const TunedRate& rate : c.study->rates)
+    if (rate.problem == request->problem.spec && rate.optimizer == request->optimizer.name &&
+        rate.file == request->rates)
+      return &rate;
+  return nullptr;
+}
+
+Origin origin_of(const Comparison& c, std::size_t p, std::size_t s) {
+  const Request* request = request_of(c, p, s);
+  if (request == nullptr) return Origin::defaults;
+  if (request->rates.empty())
+    return request->optimizer.spec == request->optimizer.name ? Origin::defaults : Origin::given;
+  const TunedRate* rate = rate_of(c, p, s);
+  if (rate == nullptr) return Origin::table;
+  return rate->is_tuned() ? Origin::tuned : Origin::published;
+}
+
+std::string origin_text(const Comparison& c, std::size_t p, std::size_t s) {
+  constexpr std::array<std::string_view, 5> kNames = {"at its defaults", "as given", "tuned",
+                                                      "published", "from a table"};
+  const Origin origin = origin_of(c, p, s);
+  if (origin == Origin::defaults || origin == Origin::given) return "";
+  return fmt::format("{}, {}", values_text(*request_of(c, p, s)),
+                     kNames[static_cast<std::size_t>(origin)]);
+}
+
+std::string setting_text(const Comparison& c, std::size_t p, std::size_t s) {
+  const std::string origin = origin_text(c, p, s);
+  if (origin.empty()) return shown_spec(c.optimizers[s].label);
+  return fmt::format("{} ({})", c.optimizers[s].method, origin);
 }
 
 }  // namespace isoline::reports

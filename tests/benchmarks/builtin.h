@@ -1,12 +1,14 @@
-// What is built into the program: its catalog, one of its cells by its specs, and the cells of a
-// suite at its own rates.
+// What is built into the program: its catalog, one of its cells by its specs, the cells of a suite
+// at its own rates, and its schemas, for tests of what is held to them.
 #pragma once
 
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "benchmarks/plan/catalog.h"
 #include "benchmarks/plan/suite.h"
+#include "core/json.h"
 
 namespace isoline::benchmarks {
 
@@ -24,6 +26,10 @@ inline Request cell_of(const std::string& problem, const std::string& optimizer,
 
 inline std::vector<Request> cells_of(const std::string& suite) {
   return expand(catalog(), read_suite(suite), Rates::builtin());
+}
+
+inline Json schema(const std::string& name) {
+  return parse_json(std::string(builtin_schemas().at(name)), name);
 }
 
 }  // namespace isoline::benchmarks

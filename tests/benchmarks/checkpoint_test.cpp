@@ -1,23 +1,13 @@
 // A run that was stopped and gone on leaves the trace of one that was not, bit for bit.
-#include <gtest/gtest.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <csignal>
 #include <cstring>
-#include <fstream>
-#include <nlohmann/json.hpp>
 
-#include "benchmarks/plan/suite.h"
 #include "benchmarks/run/runner.h"
-#include "core/digest.h"
 #include "core/files.h"
-#include "core/json.h"
 #include "tests/benchmarks/builtin.h"
 #include "tests/benchmarks/pieces.h"
-#include "tests/deadline.h"
-#include "tests/temporary_folder.h"
 
 namespace isoline::benchmarks {
 namespace {
@@ -54,7 +44,7 @@ INSTANTIATE_TEST_SUITE_P(Methods, Stopped,
                                          "adahessian", "hessian-free", "kfac", "hig",
                                          "levenberg-marquardt"));
 
-TEST(Checkpoint, OfAnotherCellOrDamagedIsLeftAlone) {
+TEST(Checkpoint, OfAnotherCellOrDamagedOrUnreadableIsLeftAlone) {
   const TemporaryFolder folder;
   const fs::path file = folder.path() / "state";
   const Request request = request_of("exponential[mode=learn,batch=5]", "adam");
@@ -64,6 +54,9 @@ TEST(Checkpoint, OfAnotherCellOrDamagedIsLeftAlone) {
     write_text(file, text);
     EXPECT_EQ(trace_of(request, Checkpoint(file, "cell", 1e9)), whole) << text;
   }
+  fs::remove(file);
+  fs::create_directory(file);
+  EXPECT_EQ(trace_of(request, Checkpoint(file, "cell", 0)), whole);
 }
 
 // --- files with the right digest that hold something else
@@ -80,10 +73,6 @@ Kept kept_checkpoint(const Request& request, const fs::path& file) {
   const std::string text = read_text(file);
   const std::size_t end = text.find('\n') + 1;
   return {text.substr(0, end), text.substr(end + kDigits)};
-}
-
-void write_state(const fs::path& file, const Kept& kept, const std::string& state) {
-  write_text(file, kept.heading + digest(state) + state);
 }
 
 template <class Number>
@@ -108,136 +97,69 @@ TEST(Checkpoint, ThatCannotBeRestoredIsSetAsideAndTheRunStartsFromItsBeginning) 
       kept.state + "more",                                // it goes on
       with_number(kept.state, trace + offsetof(Trace, points), 1'000'000'000)};
   for (std::size_t i = 0; i < states.size(); ++i) {
-    write_state(file, kept, states[i]);
+    write_text(file, kept.heading + digest(states[i]) + states[i]);
     EXPECT_EQ(trace_of(request, Checkpoint(file, "cell", 1e9)), whole) << i;
     EXPECT_FALSE(fs::exists(file)) << i;
     EXPECT_EQ(read_text(damaged).substr(kept.heading.size() + 16), states[i]) << i;
   }
 }
 
-TEST(Checkpoint, ThatCannotBeReadCostsNothing) {
-  const TemporaryFolder folder;
-  const fs::path file = folder.path() / "state";
-  const Request request = request_of("exponential[mode=learn,batch=5]", "adam");
-  fs::create_directory(file);
-  EXPECT_EQ(trace_of(request, Checkpoint(file, "cell", 0)), trace_of(request, {}));
-}
+// --- Results do not depend on how the work was cut: jobs and repetitions leave the same records.
 
-// --- Results do not depend on how the work was cut: jobs, kills and repetitions leave the same
-// records.
-
-std::vector<Request> matrix(const Catalog& catalog) {
+std::vector<Request> matrix() {
   const Suite suite{.name = "test",
                     .title = "",
                     .blocks = {{.problems = {"square"},
                                 .optimizers = {"*"},
-                                .except_problems = {},
-                                .except_optimizers = {},
                                 .seeds = {0, 1, 2},
                                 .budget = {.iterations = 200, .work = 2000}}}};
-  return expand(catalog, suite, {});
+  return expand(catalog(), suite, {});
+}
+
+std::vector<std::string> records_in(const fs::path& folder) {
+  std::vector<std::string> names = names_in(folder / "runs");  // none where it is not there yet
+  std::erase_if(names, [](const std::string& name) { return !name.ends_with(".json"); });
+  return names;
 }
 
 // Every record of a folder, timings aside, by file name.
 std::map<std::string, Json> results(const fs::path& folder) {
   std::map<std::string, Json> all;
-  for (const auto& entry : fs::directory_iterator(folder / "runs")) {
-    if (entry.path().extension() != ".json") continue;
-    all[entry.path().filename()] = without_timings(read_json(entry.path()));
-  }
+  for (const std::string& name : records_in(folder))
+    all[name] = without_timings(read_json(folder / "runs" / name));
   return all;
-}
-
-std::size_t count_runs(const fs::path& folder) {
-  std::size_t count = 0;
-  std::error_code error;  // the folder may not be there yet
-  for (const auto& entry : fs::directory_iterator(folder / "runs", error))
-    count += entry.path().extension() == ".json";
-  return count;
 }
 
 class Resume : public testing::Test {
  protected:
   Outcome run(const fs::path& folder, int jobs) {
     Store store(folder);
-    return run_all(catalog, requests, store, {.jobs = jobs});
+    return run_all(catalog(), requests, store, {.jobs = jobs});
   }
-  Catalog catalog = builtin_catalog();
-  std::vector<Request> requests = matrix(catalog);
+  std::vector<Request> requests = matrix();
   TemporaryFolder first, second;
 };
 
-TEST_F(Resume, OneJobAndTwoJobsGiveTheSameRecords) {
+TEST_F(Resume, OneJobAndTwoJobsGiveTheSameRecordsAndDoneCellsAreNotRepeated) {
   run(first.path(), 1);
-  run(second.path(), 2);
+  const Outcome whole = run(second.path(), 2), again = run(second.path(), 2);
   EXPECT_EQ(results(first.path()), results(second.path()));
-}
-
-TEST_F(Resume, DoneCellsAreNotRepeated) {
-  const Outcome whole = run(first.path(), 2), again = run(first.path(), 2);
   EXPECT_EQ(whole.run, static_cast<std::int64_t>(requests.size()));
   EXPECT_EQ(again.run, 0);
   EXPECT_EQ(again.reused, whole.run);
   EXPECT_EQ(again.statuses, whole.statuses);
 }
 
-// Killed where so many records are there: the number makes a failure repeatable.
-TEST_F(Resume, AKilledRunGoesOnToTheSameRecords) {
-  run(first.path(), 2);
-  for (const std::size_t kill_after : {std::size_t{1}, requests.size() / 4, requests.size() / 2}) {
-    const TemporaryFolder killed;
-    const pid_t child = fork();
-    if (child == 0) {
-      run(killed.path(), 2);
-      _exit(0);
-    }
-    wait_until([&] {
-      return count_runs(killed.path()) >= kill_after || waitpid(child, nullptr, WNOHANG) != 0;
-    });
-    kill(child, SIGKILL);
-    waitpid(child, nullptr, 0);
-    const std::size_t kept = results(killed.path()).size();
-    const Outcome rest = run(killed.path(), 2);
-    EXPECT_GT(rest.reused, 0);
-    EXPECT_LE(static_cast<std::size_t>(rest.reused), kept);
-    EXPECT_EQ(results(first.path()), results(killed.path())) << "killed after " << kill_after;
-  }
-}
-
-TEST_F(Resume, ADamagedRecordIsRunAgain) {
-  run(first.path(), 2);
-  const auto before = results(first.path());
-  const fs::path victim = first.path() / "runs" / before.begin()->first;
-  fs::resize_file(victim, fs::file_size(victim) / 2);
-  EXPECT_EQ(run(first.path(), 1).run, 1);
-  EXPECT_EQ(results(first.path()), before);
-}
-
 TEST_F(Resume, RepetitionsAppendTheirTimings) {
   Store store(first.path());
   requests.resize(1);
-  run_all(catalog, requests, store, {.repeat = 2});
-  const Outcome outcome = run_all(catalog, requests, store, {.repeat = 5});
+  run_all(catalog(), requests, store, {.repeat = 2});
+  const Outcome outcome = run_all(catalog(), requests, store, {.repeat = 5});
   EXPECT_EQ(outcome.run, 3);
   EXPECT_TRUE(outcome.conflicts.empty());
   const auto record = store.find(requests[0]);
   EXPECT_EQ(record->repeat_wall_seconds.size(), 5U);
   EXPECT_TRUE(std::ranges::is_sorted(record->repeat_wall_seconds));
-}
-
-TEST_F(Resume, AnInterruptedRunKeepsWhatIsDoneAndGoesOn) {
-  const pid_t child = fork();
-  if (child == 0) {
-    run(first.path(), 1);
-    _exit(0);
-  }
-  wait_until(
-      [&] { return count_runs(first.path()) >= 2 || waitpid(child, nullptr, WNOHANG) != 0; });
-  kill(child, SIGINT);
-  waitpid(child, nullptr, 0);
-  run(first.path(), 2);
-  run(second.path(), 2);
-  EXPECT_EQ(results(first.path()), results(second.path()));
 }
 
 }  // namespace

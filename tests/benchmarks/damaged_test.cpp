@@ -1,10 +1,8 @@
 // Damage in a result folder costs the damaged file: it is named, kept aside, and its cell is run
-// again. What is somebody else's stays where it is.
+// again. What is somebody else's stays where it is. Several runs in one folder share the work, and
+// what vanishes under them is missed.
 #include <fmt/format.h>
-#include <gtest/gtest.h>
 #include <sys/stat.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <algorithm>
 
@@ -14,7 +12,6 @@
 #include "core/text.h"
 #include "tests/benchmarks/builtin.h"
 #include "tests/benchmarks/hostile.h"
-#include "tests/temporary_folder.h"
 
 namespace isoline::benchmarks {
 namespace {
@@ -60,31 +57,29 @@ std::vector<std::pair<std::string, std::string>> damages_of(const std::string& s
       {"nested", std::string(200'000, '[')}};
 }
 
-TEST(Damaged, RecordsAreNamedKeptAsideAndRunAgain) {
+TEST(Damaged, RecordsAndWhatStandsUnderTheirNamesAreNamedKeptAsideAndRunAgain) {
   const TemporaryFolder owned;
   run_in(owned.path());
   const fs::path file = only_record_of(owned.path(), requests()[0]);
   const std::string sound = read_text(file);
   std::size_t count = 0;
-  for (const auto& [what, text] : damages_of(sound)) {
-    write_text(file, text);
+  const auto expect_run_again = [&](const std::string& what) {
     const Outcome outcome = run_in(owned.path());
     EXPECT_EQ(outcome.run, 1) << what;
     EXPECT_EQ(outcome.reused, 1) << what;
     ASSERT_EQ(outcome.remarks.size(), 1U) << what;
     EXPECT_NE(outcome.remarks[0].find(file.string()), std::string::npos) << outcome.remarks[0];
+    EXPECT_EQ(fs::symlink_status(file).type(), fs::file_type::regular) << what;
     EXPECT_NO_THROW(read_record(file)) << what;
     EXPECT_EQ(names_in(owned.path() / "damaged").size(), ++count) << what;
+  };
+  for (const auto& [what, text] : damages_of(sound)) {
+    write_text(file, text);
+    expect_run_again(what);
   }
   EXPECT_EQ(read_text(owned.path() / "damaged" / file.filename()),
             sound.substr(0, sound.size() / 2))
       << "nothing there is overwritten";
-}
-
-TEST(Damaged, PipesFoldersAndLinksInACircleUnderTheNameOfARecordAreMovedAway) {
-  const TemporaryFolder owned;
-  run_in(owned.path());
-  const fs::path file = only_record_of(owned.path(), requests()[0]);
   const std::vector<std::function<void()>> oddities{
       [&] { ASSERT_EQ(mkfifo(file.c_str(), 0600), 0); }, [&] { fs::create_directory(file); },
       [&] { fs::create_symlink(file.filename(), file); },
@@ -92,13 +87,8 @@ TEST(Damaged, PipesFoldersAndLinksInACircleUnderTheNameOfARecordAreMovedAway) {
   for (const auto& put : oddities) {
     fs::remove(file);
     put();
-    const Outcome outcome = run_in(owned.path());
-    EXPECT_EQ(outcome.run, 1);
-    ASSERT_EQ(outcome.remarks.size(), 1U);
-    EXPECT_EQ(fs::symlink_status(file).type(), fs::file_type::regular);
-    EXPECT_NO_THROW(read_record(file));
+    expect_run_again("an oddity");
   }
-  EXPECT_EQ(names_in(owned.path() / "damaged").size(), oddities.size());
 }
 
 TEST(Damaged, APlanIsNamedKeptAsideAndWrittenAnew) {
@@ -134,9 +124,8 @@ TEST(Damaged, SheetsAndRatesAreKeptAsideToo) {
 // A folder, removed without a warning by whoever looked for temporaries below it.
 TEST(Store, NothingIsRemovedThatIsNotItsOwn) {
   const TemporaryFolder owned;
-  const pid_t gone = fork();
-  if (gone == 0) _exit(0);
-  waitpid(gone, nullptr, 0);
+  const pid_t gone = forked([] {});
+  status_of(gone);
   const std::vector<std::string> others{
       "thesis.tmp",
       "chapters/thesis.tmp",
@@ -155,13 +144,10 @@ TEST(Store, NothingIsRemovedThatIsNotItsOwn) {
 TEST(Store, WhatAKilledRunLeftHalfWrittenIsRemoved) {
   const TemporaryFolder owned;
   fs::create_directories(owned.path() / "runs");
-  const pid_t killed = fork();
-  if (killed == 0) {
-    write_text(temporary_of(owned.path() / "runs" / "a.json"), "half");
-    write_text(temporary_of(owned.path() / "plan.json"), "half");
-    _exit(0);
-  }
-  waitpid(killed, nullptr, 0);
+  status_of(forked([&] {
+    for (const char* name : {"runs/a.json", "plan.json"})
+      write_text(temporary_of(owned.path() / name), "half");
+  }));
   EXPECT_EQ(names_in(owned.path() / "runs").size(), 1U);
   const Store store(owned.path());
   EXPECT_TRUE(names_in(owned.path() / "runs").empty());
@@ -180,14 +166,10 @@ struct Babbler {
   Status step(Meter& f, Vector& theta, State&) const {
     Linearization at;
     f.linearize(theta, at);
-    if (message == "bytes") throw std::runtime_error("no text: \xff\xfe");
-    if (message == "cut") throw std::runtime_error("x" + repeated("θ", 2000));  // cut within one
-    throw std::runtime_error("\x1b[2J\x1b]0;owned\x07");
-  }
-  static std::string repeated(const std::string& part, int times) {
-    std::string text;
-    for (int i = 0; i < times; ++i) text += part;
-    return text;
+    std::string text = message == "bytes" ? "no text: \xff\xfe" : "\x1b[2J\x1b]0;owned\x07";
+    if (message == "cut") text = "x";  // cut within a letter
+    for (int i = 0; message == "cut" && i < 2000; ++i) text += "θ";
+    throw std::runtime_error(text);
   }
 };
 
@@ -195,18 +177,10 @@ void fields(Babbler& o, auto& field) {
   field("message", o.message, Choices{"bytes", "cut", "escapes"}, "what it says");
 }
 
-Catalog with_babbler() {
-  Catalog catalog = builtin_catalog();
-  catalog.optimizers.add(stepper_entry<Babbler>({.name = "babbler",
-                                                 .title = "Says anything",
-                                                 .formula = "none",
-                                                 .source = "here",
-                                                 .needs = {Oracle::forward, Oracle::pullback}}));
-  return catalog;
-}
-
 TEST(ForeignText, OfAComponentEndsNoRunAndNoResume) {
-  const Catalog catalog = with_babbler();
+  Catalog catalog = builtin_catalog();
+  catalog.optimizers.add(
+      stepper_entry<Babbler>({.name = "babbler", .needs = {Oracle::forward, Oracle::pullback}}));
   const TemporaryFolder folder;
   std::vector<Request> requests{request_for(catalog, "square", {}, "gd", {})};
   for (const char* message : {"bytes", "cut", "escapes"})
@@ -228,6 +202,102 @@ TEST(ForeignText, OfAComponentEndsNoRunAndNoResume) {
     EXPECT_LT(message.size(), 1024U);
   }
   EXPECT_EQ(cut_short, 1U);
+}
+
+// --- folders that several runs share
+
+// Tells how often it ran.
+struct Counting {
+  struct State {};
+  State init(Meter&, const Vector&) const {
+    ++told();
+    return {};
+  }
+  Status step(Meter&, Vector&, State&) const {
+    usleep(2000);
+    return Status::running;
+  }
+};
+void fields(Counting&, auto&) {}
+
+class SharedFolder : public testing::Test {
+ protected:
+  SharedFolder() {
+    catalog.optimizers.add(stepper_entry<Counting>({.name = "counting"}));
+    told() = 0;
+    for (std::uint64_t seed = 0; seed < 30; ++seed) {
+      Request request = request_for(catalog, "rosenbrock", {}, "counting", {});
+      request.seed = seed;
+      request.budget.iterations = 5;
+      requests.push_back(named(std::move(request)));
+    }
+  }
+  Outcome run_here() {
+    Store store(folder.path());
+    return run_all(catalog, requests, store, {.jobs = 2});
+  }
+  pid_t run_elsewhere() {
+    return forked([&] { run_here(); });
+  }
+
+  Catalog catalog = hostile_catalog();
+  TemporaryFolder folder;
+  std::vector<Request> requests;
+};
+
+TEST_F(SharedFolder, ThreeRunsAtOnceDoEachCellOnce) {
+  const pid_t others[] = {run_elsewhere(), run_elsewhere()};
+  const Outcome outcome = run_here();
+  for (const pid_t other : others) status_of(other);
+  EXPECT_EQ(told(), static_cast<int>(requests.size()));
+  EXPECT_EQ(outcome.run + outcome.reused, static_cast<std::int64_t>(requests.size()));
+  EXPECT_TRUE(outcome.missing.empty());
+  EXPECT_EQ(outcome.statuses.at(Status::budget), static_cast<std::int64_t>(requests.size()));
+}
+
+TEST_F(SharedFolder, CellsOfARunThatWasKilledAreTakenOver) {
+  const pid_t other = run_elsewhere();
+  wait_until([&] { return told() >= 3; });
+  kill(other, SIGKILL);
+  status_of(other);
+  const Outcome outcome = run_here();
+  EXPECT_EQ(outcome.statuses.at(Status::budget), static_cast<std::int64_t>(requests.size()));
+  EXPECT_LE(told(),
+            static_cast<int>(requests.size()) + 3);  // those that its three workers had in hand
+}
+
+TEST_F(SharedFolder, ACellThatAnotherProcessHoldsIsWaitedFor) {
+  requests.resize(1);
+  Store store(folder.path());
+  const pid_t other = forked([&] {
+    Holds holds(store.folder());
+    told() = holds.take(Store::name_of(requests[0])) ? 1 : -1;
+    usleep(500'000);
+  });
+  wait_until([] { return told() != 0; });
+  ASSERT_EQ(told(), 1);
+  EXPECT_FALSE(Holds(store.folder()).take(Store::name_of(requests[0])));
+  const Outcome outcome = run_all(catalog, requests, store, {});
+  EXPECT_EQ(waitpid(other, nullptr, WNOHANG), other) << "it ran before the other had let go";
+  EXPECT_EQ(outcome.run, 1);
+}
+
+TEST_F(SharedFolder, RecordsThatVanishWhileItRunsAreMissed) {
+  const fs::path out = folder.path() / "out";
+  const pid_t remover = forked([&] {
+    alarm(120);
+    std::error_code error;
+    while (std::distance(fs::directory_iterator(out / "runs", error), {}) < 5) usleep(200);
+    // It ends at a file that is renamed meanwhile, and leaves the rest.
+    while (fs::remove_all(out, error), error) usleep(200);
+  });
+  const Outcome outcome = run_plan(catalog, "test", requests, out, {.jobs = 2});
+  status_of(remover);
+  EXPECT_GE(outcome.missing.size(), 4U);
+  EXPECT_EQ(plan_from_text(read_text(out / "plan.json"), "plan").cells.size(), requests.size());
+  const Outcome again = run_plan(catalog, "test", requests, out, {.jobs = 2});
+  EXPECT_TRUE(again.missing.empty());
+  EXPECT_EQ(again.run, static_cast<std::int64_t>(outcome.missing.size()));
 }
 
 }  // namespace

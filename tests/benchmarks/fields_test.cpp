@@ -1,13 +1,9 @@
 // Fields of a run stand beside its record, change nothing of it, and stay with it where it goes.
-#include <nlohmann/json.hpp>
 
 #include "benchmarks/merge/merge.h"
-#include "benchmarks/merge/record_union.h"
-#include "benchmarks/run/same_result.h"
 #include "core/decompose.h"
 #include "core/errors.h"
 #include "core/files.h"
-#include "core/json.h"
 #include "core/records/npy.h"
 #include "tests/benchmarks/builtin.h"
 #include "tests/benchmarks/matrix.h"
@@ -20,40 +16,42 @@ namespace fs = std::filesystem;
 
 std::vector<Request> requests_of(const std::string& problem, const std::string& optimizer,
                                  std::uint64_t seeds = 1, std::int64_t iterations = 40) {
-  MatrixBlock block{.problems = {problem},
-                    .optimizers = {optimizer},
-                    .budget = {.iterations = iterations, .target = 0}};
-  block.seeds = parse_seeds(std::to_string(seeds), 100);
-  const Suite suite{.name = "mine", .title = "", .blocks = {block}};
-  return expand(catalog(), suite, {});
+  std::vector<Request> requests;
+  for (std::uint64_t seed = 0; seed < seeds; ++seed) {
+    Request request = cell_of(problem, optimizer, {.iterations = iterations, .target = 0});
+    request.seed = seed;
+    requests.push_back(named(std::move(request)));
+  }
+  return requests;
 }
 
-fs::path path_in(const fs::path& folder, const Record& record) {
-  return folder / "runs" / record.file_name();
-}
-
-// The fields of a record with their numbers.
+// The fields of a record in a folder, with their numbers.
 FieldFrames fields_in(const fs::path& folder, const Record& record) {
   FieldFrames fields = record.fields.value();
-  read_field_numbers(fields, field_path(path_in(folder, record)));
+  read_field_numbers(fields, field_path(folder / "runs" / record.file_name()));
   return fields;
 }
 
 // A run of these requests in a folder of its own.
 class Folder {
  public:
+  Folder() = default;
   explicit Folder(const std::vector<Request>& requests, const RunOptions& options = {.jobs = 2}) {
     run(requests, options);
   }
-  void run(const std::vector<Request>& requests, const RunOptions& options) {
+  const Record& run(const std::vector<Request>& requests, const RunOptions& options) {
     Store store(path());
-    run_all(catalog(), requests, store, options);
+    outcome = run_all(catalog(), requests, store, options);
     records.clear();
     for (const Request& request : requests) records.push_back(store.find(request).value());
+    return records[0];
   }
   const fs::path& path() const { return folder_.path(); }
-  fs::path file(std::size_t i = 0) const { return field_path(path_in(path(), records[i])); }
+  fs::path record_file(std::size_t i = 0) const { return path() / "runs" / records[i].file_name(); }
+  fs::path file(std::size_t i = 0) const { return field_path(record_file(i)); }
+  FieldFrames fields(std::size_t i = 0) const { return fields_in(path(), records[i]); }
 
+  Outcome outcome;
   std::vector<Record> records;
 
  private:
@@ -64,7 +62,7 @@ TEST(Fields, OfAGridProblemStandBesideItsRecord) {
   const std::vector<Request> requests = requests_of("poisson[N=8]", "gd[rate=0.1]");
   const Folder done(requests);
   const Record& record = done.records[0];
-  const FieldFrames fields = fields_in(done.path(), record);
+  const FieldFrames fields = done.fields();
   EXPECT_EQ(fields.shape, (std::vector<Index>{8, 8, 8}));
   EXPECT_EQ(fields.iterations.size(), 6U);
   EXPECT_EQ(fields.iterations.front(), 0);
@@ -88,7 +86,7 @@ TEST(Fields, AreTheXThatTheCurveJudges) {
   for (const char* problem : {"poisson[N=8]", "heat[N=16]"}) {
     const Folder done(requests_of(problem, "adam[rate=0.1]"));
     const Record& record = done.records[0];
-    const FieldFrames fields = fields_in(done.path(), record);
+    const FieldFrames fields = done.fields();
     for (std::size_t f = 0; f < fields.iterations.size(); ++f) {
       Real sum = 0;
       for (std::size_t i = 0; i < fields.truth().size(); ++i)
@@ -105,7 +103,7 @@ TEST(Fields, OfALearnedProblemAreOfTheFirstSampleOfItsValidation) {
   const std::vector<Request> requests =
       requests_of("poisson[mode=learn,N=16,batch=2]", "adam", 1, 3);
   const Folder done(requests);
-  const FieldFrames fields = fields_in(done.path(), done.records[0]);
+  const FieldFrames fields = done.fields();
   EXPECT_EQ(fields.iterations, (std::vector<std::int64_t>{0, 1, 2, 3}));
   EXPECT_FALSE(done.records[0].exhibit) << "one place for one thing";
   const Problem problem = make_problem(catalog(), requests[0].problem, 0);
@@ -136,15 +134,6 @@ TEST(Fields, OfALargeGridOrOfNoGridAreNone) {
 // --- they change nothing
 
 // x ↦ 2x on 2×2 cells, declared as a field or not.
-class Twice final : public problems::Physics {
- public:
-  Index inputs() const override { return 4; }
-  Index outputs() const override { return 4; }
-  void forward(BatchRef x, BatchRef, BatchOut y, Workspace&) const override { y = 2 * x; }
-  void pushforward(BatchRef v, BatchOut Jv, Workspace&) const override { Jv = 2 * v; }
-  void pullback(BatchRef u, BatchOut JTu, Workspace&) const override { JTu = 2 * u; }
-};
-
 TEST(Fields, ThatAreKeptLeaveTheTraceAsItIsWithoutThem) {
   std::vector<Json> records;
   for (const bool is_field : {false, true}) {
@@ -154,7 +143,11 @@ TEST(Fields, ThatAreKeptLeaveTheTraceAsItIsWithoutThem) {
                        .formula = "2x",
                        .source = "a test",
                        .make = [is_field](const OptionValues&, const problems::Draw&) {
-                         problems::ProblemParts parts{.physics = std::make_unique<Twice>(),
+                         const auto twice = [](VectorRef x) -> Vector { return 2 * x; };
+                         const auto J = [](VectorRef) -> Matrix {
+                           return 2 * Matrix::Identity(4, 4);
+                         };
+                         problems::ProblemParts parts{.physics = physics_of(4, 4, twice, J),
                                                       .start = Vector(Vector::LinSpaced(4, 1, 2)),
                                                       .target = Matrix::Constant(4, 1, 0.3),
                                                       .minimum = 0};
@@ -172,51 +165,41 @@ TEST(Fields, ThatAreKeptLeaveTheTraceAsItIsWithoutThem) {
   EXPECT_EQ(records[0], records[1]);
 }
 
-TEST(Fields, OfARunThatWasStoppedAndGoneOnAreThoseOfOneThatWasNot) {
-  const Request request = requests_of("poisson[mode=learn,N=16,batch=2]", "adam", 1, 12).at(0);
-  const auto whole = executed(catalog(), request).fields;
-  ASSERT_TRUE(whole);
-  EXPECT_EQ(executed_in_pieces(catalog(), request).fields, whole);
-}
-
 // --- they stay with their record
 
-TEST(Fields, OfARecordThatIsTimedAgainWithoutThemAreKept) {
+TEST(Fields, OfARecordAreKeptWhereItIsTimedAgainWithoutThemAndGoneWhereItIsMadeAgain) {
   const std::vector<Request> requests = requests_of("heat[N=8]", "gd", 2);
   Folder folder(requests, {.jobs = 2, .keeps_fields = true});
   folder.run(requests, {.jobs = 2, .repeat = 2});
   EXPECT_EQ(folder.records[1].repeat_wall_seconds.size(), 2U);
-  EXPECT_EQ(fields_in(folder.path(), folder.records[1]).shape[1], 8);
-}
-
-TEST(Fields, OfARecordThatIsMadeAnewWithoutThemAreGone) {
-  const std::vector<Request> requests = requests_of("heat[N=8]", "gd", 2);
-  Folder folder(requests, {.jobs = 2, .keeps_fields = true});
+  EXPECT_EQ(folder.fields(1).shape[1], 8);
   ASSERT_TRUE(fs::exists(folder.file(1)));
   folder.run(requests, {.jobs = 2, .force = true});
   EXPECT_FALSE(folder.records[1].fields);
   EXPECT_FALSE(fs::exists(folder.file(1)));
 }
 
-TEST(Fields, AreMergedWithTheRecordThatHasThem) {
-  const std::vector<Request> requests = requests_of("heat[N=8]", "gd", 2);
-  const Folder few(requests), all(requests, {.jobs = 2, .keeps_fields = true});
+TEST(Fields, AndSpectraAreMergedWithTheRecordThatHasThem) {
+  const std::vector<Request> requests = requests_of("heat[N=8]", "gd", 2, 5);
+  const Folder few(requests),
+      all(requests, {.jobs = 2, .keeps_fields = true, .keeps_spectra = true});
   const TemporaryFolder place;
   for (const auto& [name, folders] : std::map<std::string, std::vector<fs::path>>{
            {"a", {few.path(), all.path()}}, {"b", {all.path(), few.path()}}}) {
     const MergeOutcome outcome = merge_folders(folders, place.path() / name);
     EXPECT_TRUE(outcome.conflicts.empty()) << name;
     for (const Record& record : all.records) {
-      const fs::path path = path_in(place.path() / name, record);
+      const fs::path path = place.path() / name / "runs" / record.file_name();
       EXPECT_EQ(fields_in(place.path() / name, read_record(path)), *record.fields);
       EXPECT_EQ(fields_violation(read_json(path), path), "");
+      EXPECT_FALSE(read_record(path).spectrum.value().sigma.empty());
     }
   }
 }
 
 TEST(Fields, ThatAreMissingOrDamagedAreNamedByTheirRecord) {
   const Folder done(requests_of("heat[N=8]", "gd"));
-  const fs::path path = path_in(done.path(), done.records[0]);
+  const fs::path path = done.record_file();
   EXPECT_EQ(fields_violation(read_json(path), path), "");
   write_text(done.file(), "damaged");
   EXPECT_NE(fields_violation(read_json(path), path).find("is not the file of fields"),
@@ -242,11 +225,6 @@ TEST(Fields, ThatDifferMakeResultsDiffer) {
 // --- Singular values of J along a run: those of the J that its steps see, kept where they are
 // asked for, and no part of its result.
 
-Request request_of(const std::string& problem, const std::string& optimizer,
-                   std::int64_t iterations) {
-  return cell_of(problem, optimizer, {.iterations = iterations, .target = 0});
-}
-
 // Of the J of the batch at θ, by the thin SVD.
 std::vector<Real> singular_values_at(const Problem& problem, const Vector& theta) {
   problems::Point at;
@@ -258,37 +236,30 @@ std::vector<Real> singular_values_at(const Problem& problem, const Vector& theta
   return {svd.sigma.begin(), svd.sigma.end()};
 }
 
-class Spectra : public testing::Test {
- protected:
-  Record run(const Request& request, const RunOptions& options) {
-    Store store(folder_.path());
-    outcome = run_all(catalog(), {request}, store, options);
-    return store.find(request).value();
+;
+
+const RunOptions kKeeping{.jobs = 1, .keeps_spectra = true};
+
+TEST(Spectra, AreThoseOfTheJacobianOfTheStepAtPowersOfTwoAndTheLast) {
+  for (const auto& [requests, iterations] :
+       {std::pair(requests_of("rosenbrock", "gd[rate=1e-4]", 1, 11),
+                  std::vector<std::int64_t>{0, 1, 2, 4, 8, 11}),
+        {requests_of("linear-chain[mode=learn,batch=2]", "adam", 1, 3), {0, 1, 2, 3}}}) {
+    const Spectrum spectrum = Folder().run(requests, kKeeping).spectrum.value();
+    EXPECT_EQ(spectrum.iterations, iterations);
+    const Problem problem = make_problem(catalog(), requests[0].problem, 0);
+    const std::vector<Real> first = singular_values_at(problem, problem.start());
+    ASSERT_EQ(spectrum.sigma.front().size(), first.size());
+    for (std::size_t i = 0; i < first.size(); ++i)
+      EXPECT_NEAR(spectrum.sigma.front()[i], first[i], 1e-13 * first[0]);
+    EXPECT_NE(spectrum.sigma.front(), spectrum.sigma.back()) << "J is not constant";
   }
-
-  Outcome outcome;
-
- private:
-  TemporaryFolder folder_;
-};
-
-TEST_F(Spectra, AreThoseOfTheJacobianAtPowersOfTwoAndTheLast) {
-  const Request request = request_of("rosenbrock", "gd[rate=1e-4]", 11);
-  const Record record = run(request, {.jobs = 1, .keeps_spectra = true});
-  ASSERT_TRUE(record.spectrum);
-  EXPECT_EQ(record.spectrum->iterations, (std::vector<std::int64_t>{0, 1, 2, 4, 8, 11}));
-  const Problem problem = make_problem(catalog(), request.problem, 0);
-  const std::vector<Real> first = singular_values_at(problem, problem.start());
-  ASSERT_EQ(record.spectrum->sigma.front().size(), first.size());
-  for (std::size_t i = 0; i < first.size(); ++i)
-    EXPECT_NEAR(record.spectrum->sigma.front()[i], first[i], 1e-13 * first[0]);
-  EXPECT_NE(record.spectrum->sigma.front(), record.spectrum->sigma.back()) << "J is not constant";
 }
 
 // After 100 iterations only some are kept; none is kept for its spectrum alone.
-TEST_F(Spectra, OfLongRunsStandAtKeptIterations) {
-  const Record record =
-      run(request_of("rosenbrock", "gd[rate=1e-4]", 300), {.jobs = 1, .keeps_spectra = true});
+TEST(Spectra, OfLongRunsStandAtKeptIterations) {
+  const Folder done(requests_of("rosenbrock", "gd[rate=1e-4]", 1, 300), kKeeping);
+  const Record& record = done.records[0];
   const std::vector<std::int64_t>& at = record.spectrum.value().iterations;
   for (const std::int64_t iteration : at)
     EXPECT_EQ(std::ranges::count(record.curve.iteration, iteration), 1) << iteration;
@@ -296,66 +267,41 @@ TEST_F(Spectra, OfLongRunsStandAtKeptIterations) {
   EXPECT_GE(at.at(8), 128);
 }
 
-TEST_F(Spectra, OfALearnedProblemAreOfTheBatchOfTheStep) {
-  const Request request = request_of("linear-chain[mode=learn,batch=2]", "adam", 3);
-  const Record record = run(request, {.jobs = 1, .keeps_spectra = true});
-  const Problem problem = make_problem(catalog(), request.problem, 0);
-  const std::vector<Real> first = singular_values_at(problem, problem.start());
-  const Spectrum& spectrum = record.spectrum.value();
-  EXPECT_EQ(spectrum.iterations, (std::vector<std::int64_t>{0, 1, 2, 3}));
-  for (std::size_t i = 0; i < first.size(); ++i)
-    EXPECT_NEAR(spectrum.sigma.front().at(i), first[i], 1e-13 * first[0]);
-}
-
-TEST_F(Spectra, AreNoPartOfTheResult) {
-  const Request request = request_of("linear-chain[mode=learn,batch=2]", "adam", 20);
-  const Record without = run(request, {.jobs = 1});
+TEST(Spectra, AreNoPartOfTheResultAndAreMadeOnce) {
+  const auto requests = requests_of("linear-chain[mode=learn,batch=2]", "adam", 1, 20);
+  Folder folder(requests, {.jobs = 1});
+  const Record without = folder.records[0], with = folder.run(requests, kKeeping);
   EXPECT_FALSE(without.spectrum);
-  const Record with = run(request, {.jobs = 1, .keeps_spectra = true});
   ASSERT_TRUE(with.spectrum) << "a record without them is made anew";
   EXPECT_TRUE(same_result(without, with));
   Record other = with;
   other.spectrum->sigma[1][0] *= 1 + 1e-15;
   EXPECT_FALSE(same_result(with, other)) << "of two that both keep them they are compared";
-}
-
-TEST_F(Spectra, OfARecordThatHasThemAreNotMadeAgain) {
-  const Request request = request_of("rosenbrock", "gd[rate=1e-4]", 5);
-  run(request, {.jobs = 1, .keeps_spectra = true});
-  run(request, {.jobs = 1, .keeps_spectra = true});
-  EXPECT_EQ(outcome.reused, 1);
-  EXPECT_TRUE(run(request, {.jobs = 1, .repeat = 2}).spectrum) << "timed again without them";
-}
-
-TEST_F(Spectra, AreMergedWithTheRecordThatHasThem) {
-  const Request request = request_of("rosenbrock", "gd[rate=1e-4]", 5);
-  const TemporaryFolder a, b, place;
-  for (const auto& [folder, keeps] : {std::pair(&a, false), {&b, true}}) {
-    Store store(folder->path());
-    run_all(catalog(), {request}, store, {.jobs = 1, .keeps_spectra = keeps});
-  }
-  const auto name = Store(b.path()).find(request).value().file_name();
-  for (const auto& folders : {std::vector{a.path(), b.path()}, {b.path(), a.path()}}) {
-    const auto out = place.path() / folders[0].filename();
-    EXPECT_TRUE(merge_folders(folders, out).conflicts.empty());
-    EXPECT_TRUE(read_record(out / "runs" / name).spectrum);
-  }
+  folder.run(requests, kKeeping);
+  EXPECT_EQ(folder.outcome.reused, 1);
+  EXPECT_TRUE(folder.run(requests, {.jobs = 1, .repeat = 2}).spectrum)
+      << "timed again without them";
 }
 
 // There is nothing to keep, and the cell counts as done.
-TEST_F(Spectra, OfAJacobianThatIsTooLargeAreNone) {
-  const Request request = request_of("heat[N=64]", "gd", 2);
-  ASSERT_GT(make_problem(catalog(), request.problem, 0).residuals(), Trace::Spectra::kValues);
-  EXPECT_TRUE(run(request, {.jobs = 1, .keeps_spectra = true}).spectrum.value().iterations.empty());
-  run(request, {.jobs = 1, .keeps_spectra = true});
-  EXPECT_EQ(outcome.reused, 1);
+TEST(Spectra, OfAJacobianThatIsTooLargeAreNone) {
+  const auto requests = requests_of("heat[N=64]", "gd", 1, 2);
+  ASSERT_GT(make_problem(catalog(), requests[0].problem, 0).residuals(), Trace::Spectra::kValues);
+  Folder folder(requests, kKeeping);
+  EXPECT_TRUE(folder.records[0].spectrum.value().iterations.empty());
+  folder.run(requests, kKeeping);
+  EXPECT_EQ(folder.outcome.reused, 1);
 }
 
-TEST_F(Spectra, OfARunThatWasStoppedAndGoneOnAreThoseOfOneThatWasNot) {
-  const Request request = request_of("linear-chain[mode=learn,batch=2]", "adam", 9);
-  const auto whole = executed(catalog(), request, {}, true).spectrum;
-  ASSERT_EQ(whole.value().iterations, (std::vector<std::int64_t>{0, 1, 2, 4, 8, 9}));
-  EXPECT_EQ(executed_in_pieces(catalog(), request, true).spectrum, whole);
+TEST(Pieces, OfARunThatWasStoppedAndGoneOnHaveTheFieldsAndSpectraOfOneThatWasNot) {
+  const Request grid = requests_of("poisson[mode=learn,N=16,batch=2]", "adam", 1, 12).at(0);
+  const auto fields = executed(catalog(), grid).fields;
+  ASSERT_TRUE(fields);
+  EXPECT_EQ(executed_in_pieces(catalog(), grid).fields, fields);
+  const Request chain = requests_of("linear-chain[mode=learn,batch=2]", "adam", 1, 9).at(0);
+  const auto spectrum = executed(catalog(), chain, {}, true).spectrum;
+  ASSERT_EQ(spectrum.value().iterations, (std::vector<std::int64_t>{0, 1, 2, 4, 8, 9}));
+  EXPECT_EQ(executed_in_pieces(catalog(), chain, true).spectrum, spectrum);
 }
 
 }  // namespace

@@ -3,14 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
-#include <nlohmann/json.hpp>
 
-#include "benchmarks/plan/build_parts.h"
 #include "benchmarks/plan/catalog.h"
 #include "benchmarks/run/process_group.h"
 #include "benchmarks/run/run_plan.h"
 #include "core/json.h"
-#include "core/records/schema.h"
+#include "core/records/json_view.h"
 #include "tests/benchmarks/builtin.h"
 #include "tests/clients/programs.h"
 #include "tests/temporary_folder.h"
@@ -28,15 +26,18 @@ class ForeignCells : public testing::Test {
   }
   Record record_of(const Request& request) {
     run_all(catalog(), {request}, store, options);
-    for (const auto& entry : std::filesystem::directory_iterator(folder.path() / "runs"))
-      if (entry.path().filename().string().starts_with(request.cell) &&
-          entry.path().extension() == ".json")
-        return read_record(entry.path());
+    for (const std::string& name : names_in(folder.path() / "runs"))
+      if (name.starts_with(request.cell) && name.ends_with(".json"))
+        return read_record(folder.path() / "runs" / name);
     ADD_FAILURE() << "there is no record";
     return {};
   }
-  Record record_after(const std::string& misdeed) {
-    return record_of(request_of(process_of(misbehaving("misbehaving.py " + misdeed)), "gd"));
+  Record record_after(const std::string& misdeed, const std::string& method = "gd") {
+    return record_of(request_of(process_of(misbehaving("misbehaving.py " + misdeed)), method));
+  }
+  Record record_of_method(const std::string& word, const Budget& budget = {.iterations = 50}) {
+    return record_of(
+        request_of("rosenbrock", process_of(misbehaving("idle_optimizers.py " + word)), budget));
   }
   void expect_failed(const std::string& misdeed, const std::string& part) {
     const Record record = record_after(misdeed);
@@ -69,7 +70,9 @@ TEST_F(ForeignCells, OfOneThatPrintsAGigabyteKeepItsBeginning) {
   EXPECT_NE(record.output.find("bytes more"), std::string::npos);
 }
 
-TEST_F(ForeignCells, OfOneThatAnswersTooLateAreTimedOut) {
+TEST_F(ForeignCells, OfOneThatAnswersTooLateAreTimedOutAndNoFiniteNumberDiverges) {
+  const Record record = record_after("is-not-finite", "gd[rate=1]");
+  EXPECT_EQ(record.status, Status::diverged) << record.message;
   options.limits.hard_seconds = 0.4;  // of processor time; five times that on the wall
   EXPECT_EQ(record_after("hangs").status, Status::timeout);
 }
@@ -83,12 +86,6 @@ TEST_F(ForeignCells, TakeWhatTheirProgramStartedWithThem) {
   ASSERT_GT(process, 0);
   const auto figures = figures_of(process);
   EXPECT_FALSE(figures && figures->resident_bytes > 0);
-}
-
-TEST_F(ForeignCells, WhereSomethingIsNotFiniteEndAsAnyOthers) {
-  const Record record =
-      record_of(request_of(process_of(misbehaving("misbehaving.py is-not-finite")), "gd[rate=1]"));
-  EXPECT_EQ(record.status, Status::diverged) << record.message;
 }
 
 TEST_F(ForeignCells, WithoutAProductAreInapplicableWithTheReason) {
@@ -141,8 +138,7 @@ TEST_F(ForeignCells, SayWhoComputedThem) {
   EXPECT_TRUE(record.foreign.problem->interpreter.find("Python 3.") != std::string::npos);
   EXPECT_EQ(record.foreign.optimizer->label, "descent-python");
   const Json json = to_json(record);
-  const Json schema = parse_json(std::string(builtin_schemas().at("run")), "run");
-  EXPECT_EQ(schema_violations(json, schema), std::vector<std::string>{});
+  EXPECT_EQ(schema_violations(json, schema("run")), std::vector<std::string>{});
   EXPECT_EQ(to_json(record_from_text(json_text(json), "it")), json);
   EXPECT_FALSE(to_json(record_of(request_of("rosenbrock", "gd"))).contains("foreign"));
 }
@@ -177,20 +173,12 @@ TEST_F(ForeignCells, OfAnOptimizerAreCountedAndTraced) {
   EXPECT_EQ(record.curve.iteration.size(), 31U);
 }
 
-TEST_F(ForeignCells, OfAnOptimizerKeepWhatItClaimsAndPrints) {
-  const Record record =
-      record_of(request_of("rosenbrock", process_of(misbehaving("idle_optimizers.py talks"))));
+TEST_F(ForeignCells, OfAnOptimizerKeepWhatItClaimsAndPrintsAndFailWithWhatItDid) {
+  const Record record = record_of_method("talks");
   EXPECT_EQ(record.status, Status::converged) << record.message;
   EXPECT_EQ(record.claimed, "a small loss, I believe");
   EXPECT_EQ(record.output, "what I think of it\n");
   EXPECT_EQ(record.counts[0], 1) << "it asked nothing, and finished where nobody had been";
-}
-
-TEST_F(ForeignCells, OfAnOptimizerFailWithWhatItDid) {
-  const auto record_of_method = [&](const std::string& word) {
-    return record_of(
-        request_of("rosenbrock", process_of(misbehaving("idle_optimizers.py " + word))));
-  };
   const Record refused = record_of_method("asks-what-it-did-not-declare");
   EXPECT_EQ(refused.status, Status::failed);
   EXPECT_EQ(refused.message,
@@ -198,13 +186,9 @@ TEST_F(ForeignCells, OfAnOptimizerFailWithWhatItDid) {
   EXPECT_NE(record_of_method("raises").message.find("ValueError: the step is no number"),
             std::string::npos);
   EXPECT_NE(record_of_method("leaves").message.find("it exited with code 4"), std::string::npos);
-}
-
-TEST_F(ForeignCells, OfAnOptimizerThatDoesNotStopEndAllTheSame) {
-  const Record record = record_of(request_of(
-      "rosenbrock", process_of(misbehaving("idle_optimizers.py never-stops")), {.work = 40}));
-  EXPECT_EQ(record.status, Status::budget) << record.message;
-  EXPECT_LE(record.summary.work, 42);
+  const Record endless = record_of_method("never-stops", {.work = 40});
+  EXPECT_EQ(endless.status, Status::budget) << endless.message;
+  EXPECT_LE(endless.summary.work, 42);
 }
 
 TEST_F(ForeignCells, OfAProblemFromOutsideHaveTheTraceOfTheTreesOwn) {

@@ -1,8 +1,11 @@
-// Optimizers and problems that misbehave, each in its own way after two good steps.
+// Optimizers and problems that misbehave, each in its own way after two good steps, and their
+// cells, run into a folder of their own under limits that are soon reached.
 #pragma once
 
+#include <gtest/gtest.h>
 #include <sys/mman.h>
 #include <sys/prctl.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <atomic>
@@ -12,9 +15,12 @@
 #include <new>
 
 #include "benchmarks/plan/catalog.h"
+#include "benchmarks/run/process_group.h"
+#include "benchmarks/run/runner.h"
 #include "optimizers/optimizer.h"
 #include "problems/problem.h"
 #include "tests/deadline.h"
+#include "tests/temporary_folder.h"
 
 namespace isoline::benchmarks {
 
@@ -30,6 +36,21 @@ inline std::atomic<int>& told() {
   static auto* const number = new (mmap(nullptr, sizeof(std::atomic<int>), PROT_READ | PROT_WRITE,
                                         MAP_SHARED | MAP_ANONYMOUS, -1, 0)) std::atomic<int>(0);
   return *number;
+}
+
+// A process that does this and ends.
+inline pid_t forked(const std::function<void()>& work) {
+  const pid_t child = fork();
+  if (child != 0) return child;
+  work();
+  _exit(0);
+}
+
+// How it ended, or that it was stopped.
+inline int status_of(pid_t child) {
+  int status = 0;
+  EXPECT_EQ(waitpid(child, &status, WUNTRACED), child);
+  return status;
 }
 
 // The child of a child, in a session of its own, whose parent has ended: it tells its number, then
@@ -158,14 +179,9 @@ inline ProblemParts make_broken(const BrokenOptions& o, const Draw&) {
 
 inline Catalog hostile_catalog() {
   Catalog catalog = builtin_catalog();
-  catalog.optimizers.add(stepper_entry<Hostile>({.name = "hostile",
-                                                 .title = "Misbehaves",
-                                                 .formula = "none",
-                                                 .source = "here",
-                                                 .needs = {Oracle::forward, Oracle::pullback}}));
-  catalog.problems.add(problem_entry(
-      {.name = "broken", .title = "Cannot be made", .formula = "none", .source = "here"},
-      make_broken));
+  catalog.optimizers.add(
+      stepper_entry<Hostile>({.name = "hostile", .needs = {Oracle::forward, Oracle::pullback}}));
+  catalog.problems.add(problem_entry({.name = "broken"}, make_broken));
   return catalog;
 }
 
@@ -176,5 +192,55 @@ inline Request request_for(const Catalog& catalog, const std::string& problem,
                 .optimizer = complete_optimizer(catalog, optimizer, options),
                 .budget = {.iterations = 50}});
 }
+
+// A process that has ended, and is reaped by nobody, has no memory.
+inline bool lives(pid_t process) {
+  const auto figures = figures_of(process);
+  return figures && figures->resident_bytes > 0;
+}
+
+// A worker that has done this, or was ended.
+inline std::unique_ptr<Worker> ended_worker(const std::function<void(Trace&)>& work,
+                                            const Limits& limits = {}) {
+  auto worker = std::make_unique<Worker>();
+  worker->start(work, limits, 1);
+  wait_until([&] { return worker->poll(); });
+  return worker;
+}
+
+class HostileCells : public testing::Test {
+ protected:
+  HostileCells() { told() = 0; }
+
+  Request hostile(const std::string& misdeed) const {
+    return request_for(catalog, "square", {}, "hostile", {{"misdeed", misdeed}});
+  }
+  Record record_after(const std::string& misdeed) {
+    const Request request = hostile(misdeed);
+    ran = run_all(catalog, {request}, store, options);
+    return record_of(request);
+  }
+  // In a process of its own, which a test may interrupt, or a cell stop.
+  pid_t run_apart(const std::vector<Request>& requests) {
+    return forked([&] { run_all(catalog, requests, store, options); });
+  }
+  // Also of a run that is to be run again.
+  Record record_of(const Request& request) const {
+    for (const std::string& name : names_in(folder.path() / "runs"))
+      if (name.starts_with(request.cell) && name.ends_with(".json"))
+        return read_record(folder.path() / "runs" / name);
+    ADD_FAILURE() << request.optimizer.spec << " has no record";
+    return {};
+  }
+
+  Catalog catalog = hostile_catalog();
+  TemporaryFolder folder;
+  Store store{folder.path()};
+  RunOptions options{.limits = {.startup_seconds = 0.5,
+                                .hard_seconds = 0.5,
+                                .idle_seconds = 2,
+                                .memory_bytes = std::int64_t{512} << 20}};
+  Outcome ran;
+};
 
 }  // namespace isoline::benchmarks

@@ -1,68 +1,52 @@
-// A cell that misbehaves costs that cell alone, and its record says what happened.
-#include <gtest/gtest.h>
+// A cell that misbehaves costs that cell alone, and its record says what happened. What it wrote
+// over the memory that it shares is not read unless it can be.
 
-#include <nlohmann/json.hpp>
+#include <cstring>
 
-#include "benchmarks/run/isolate.h"
+#include "benchmarks/run/execute.h"
 #include "benchmarks/run/run_plan.h"
-#include "tests/benchmarks/hostile_cells.h"
-#include "tests/deadline.h"
+#include "tests/benchmarks/builtin.h"
+#include "tests/benchmarks/hostile.h"
 
 namespace isoline::benchmarks {
 namespace {
 
 class Isolation : public HostileCells {};
 
-TEST_F(Isolation, AnExceptionIsAFailureWithItsText) {
-  const Record record = record_after("throw");
-  EXPECT_EQ(record.status, Status::failed);
-  EXPECT_EQ(record.message, "thrown on purpose");
-}
-
-TEST_F(Isolation, AnythingThrownIsAFailure) {
-  EXPECT_EQ(record_after("throw-int").status, Status::failed);
-}
-
-TEST_F(Isolation, ASegmentationFaultIsACrashAndItsTraceIsKept) {
-  const Record record = record_after("segfault");
-  EXPECT_EQ(record.status, Status::crashed);
-  EXPECT_EQ(record.curve.iteration, (std::vector<std::int64_t>{0, 1, 2}));
-  EXPECT_LT(record.curve.loss[2], record.curve.loss[0]);
-  EXPECT_EQ(record.verified.at("1e-1"), std::optional(false));
-}
-
-TEST_F(Isolation, AnAbortIsACrash) {
-  const Record record = record_after("abort");
-  EXPECT_EQ(record.status, Status::crashed);
-  EXPECT_EQ(record.curve.iteration.size(), 3U);
-}
-
-TEST_F(Isolation, LeavingWithoutAVerdictIsACrash) {
-  EXPECT_EQ(record_after("exit").status, Status::crashed);
-}
-
-TEST_F(Isolation, NotANumberDiverges) {
-  const Record record = record_after("nan");
-  EXPECT_EQ(record.status, Status::diverged);
-  EXPECT_TRUE(std::isnan(record.summary.loss));
-}
-
-TEST_F(Isolation, AskingForAnOracleNotDeclaredIsAFailure) {
-  const Record record = record_after("overask");
-  EXPECT_EQ(record.status, Status::failed);
-  EXPECT_NE(record.message.find("jacobian"), std::string::npos);
-}
-
-TEST_F(Isolation, AnEndlessLoopIsKilledAndItsTraceIsKept) {
-  const Record record = record_after("spin");
-  EXPECT_EQ(record.status, Status::timeout);
-  EXPECT_EQ(record.curve.iteration.size(), 3U);
-  EXPECT_TRUE(record.is_nondeterministic);
-}
-
-TEST_F(Isolation, ARunawayAllocationIsOutOfMemory) {
-  options.limits.hard_seconds = 30;  // touching half a gigabyte may take a while on a busy machine
-  EXPECT_EQ(record_after("hoard").status, Status::memory);
+TEST_F(Isolation, EachMisdeedEndsAsWhatItIsAndItsTraceIsKept) {
+  const struct {
+    const char* misdeed;
+    Status status;
+    std::string message;  // a part of it
+    std::size_t points;   // of its curve; 0: any
+  } ends[] = {{"throw", Status::failed, "thrown on purpose", 0},
+              {"throw-int", Status::failed, "", 0},
+              {"segfault", Status::crashed, "signal 11", 3},
+              {"complain", Status::crashed, "", 3},  // and aborts
+              {"exit", Status::crashed, "", 0},      // leaving without a verdict
+              {"nan", Status::diverged, "", 0},
+              {"overask", Status::failed, "jacobian", 0},               // an oracle not declared
+              {"spin", Status::timeout, "0.5 s of processor time", 3},  // an endless loop
+              {"sleep", Status::timeout, "less than 1 %", 3},
+              {"resize", Status::failed, "from 2 to 1002", 0},  // would be read past its end
+              {"hoard", Status::memory, "", 0}};
+  for (const auto& end : ends) {
+    // Touching half a gigabyte may take a while on a busy machine.
+    options.limits.hard_seconds = end.status == Status::memory ? 30 : 0.5;
+    const Record record = record_after(end.misdeed);
+    EXPECT_EQ(record.status, end.status) << end.misdeed << ": " << record.message;
+    EXPECT_NE(record.message.find(end.message), std::string::npos) << record.message;
+    EXPECT_NE(record.verified.at("1e-1"), std::optional(true)) << end.misdeed;
+    EXPECT_EQ(record.is_nondeterministic,
+              end.status == Status::timeout || end.status == Status::memory)
+        << end.misdeed;
+    EXPECT_EQ(std::isnan(record.summary.loss), end.status == Status::diverged) << end.misdeed;
+    EXPECT_EQ(record.output, end.misdeed == std::string("complain") ? "the grid is too coarse" : "")
+        << "the last words of a crash";
+    if (end.points == 0) continue;
+    EXPECT_EQ(record.curve.iteration, (std::vector<std::int64_t>{0, 1, 2})) << end.misdeed;
+    EXPECT_LT(record.curve.loss[2], record.curve.loss[0]) << end.misdeed;
+  }
 }
 
 TEST_F(Isolation, AProblemThatHangsBeforeItsFirstOracleIsKilled) {
@@ -73,13 +57,16 @@ TEST_F(Isolation, AProblemThatHangsBeforeItsFirstOracleIsKilled) {
   EXPECT_NE(record.message.find("without an oracle call"), std::string::npos);
 }
 
-TEST_F(Isolation, AProblemThatCrashesCostsItsCellAlone) {
-  const Request broken = request_for(catalog, "broken", {{"misdeed", "segfault"}}, "gd", {});
+TEST_F(Isolation, AProblemThatCrashesOrLeavesWhileItIsMadeCostsItsCellAlone) {
   const Request sound = request_for(catalog, "square", {}, "gd", {});
-  const Outcome outcome = run_all(catalog, {broken, sound}, store, options);
-  EXPECT_EQ(outcome.failures.size(), 1U);
-  EXPECT_EQ(record_of(broken).status, Status::crashed);
-  EXPECT_EQ(record_of(sound).status, Status::budget);
+  options.force = true;
+  for (const char* misdeed : {"segfault", "exit"}) {
+    const Request broken = request_for(catalog, "broken", {{"misdeed", misdeed}}, "gd", {});
+    const Outcome outcome = run_plan(catalog, "both", {broken, sound}, folder.path(), options);
+    EXPECT_EQ(outcome.failures.size(), 1U) << misdeed;
+    EXPECT_EQ(record_of(broken).status, Status::crashed) << misdeed;
+    EXPECT_EQ(record_of(sound).status, Status::budget) << misdeed;
+  }
 }
 
 TEST_F(Isolation, OtherCellsAreUntouchedByTheirNeighbours) {
@@ -87,30 +74,12 @@ TEST_F(Isolation, OtherCellsAreUntouchedByTheirNeighbours) {
   run_all(catalog, {sound}, store, options);
   const Json alone = without_timings(to_json(record_of(sound)));
   std::vector<Request> all;
-  for (const char* misdeed : {"segfault", "throw", "nan", "abort"})
-    all.push_back(request_for(catalog, "square", {}, "hostile", {{"misdeed", misdeed}}));
+  for (const char* misdeed : {"segfault", "throw", "nan", "abort"}) all.push_back(hostile(misdeed));
   all.push_back(sound);
   options.jobs = 2;
   options.force = true;
-  const Outcome outcome = run_all(catalog, all, store, options);
-  EXPECT_EQ(outcome.run, 5);
+  EXPECT_EQ(run_all(catalog, all, store, options).run, 5);
   EXPECT_EQ(without_timings(to_json(record_of(sound))), alone);
-}
-
-// Three numbers written over two would be read past their end.
-TEST_F(Isolation, AMethodThatChangesTheNumberOfUnknownsFails) {
-  const Record record = record_after("resize");
-  EXPECT_EQ(record.status, Status::failed);
-  EXPECT_NE(record.message.find("from 2 to 1002"), std::string::npos) << record.message;
-  EXPECT_EQ(record.verified.at("1e-1"), std::optional(false));
-}
-
-TEST_F(Isolation, AProblemThatLeavesWhileItIsMadeCostsItsCellAlone) {
-  const Request broken = request_for(catalog, "broken", {{"misdeed", "exit"}}, "gd", {});
-  const Request sound = request_for(catalog, "square", {}, "gd", {});
-  run_plan(catalog, "both", {broken, sound}, folder.path(), options);
-  EXPECT_EQ(record_of(broken).status, Status::crashed);
-  EXPECT_EQ(record_of(sound).status, Status::budget);
 }
 
 // --- What a cell prints: caught, bounded, kept where that is asked for.
@@ -120,28 +89,19 @@ class Output : public HostileCells {
   Output() { options.limits.hard_seconds = 30; }
 };
 
-TEST_F(Output, OfACellReachesNoTerminalAndNoRecord) {
+TEST_F(Output, OfACellReachesNoTerminalAndItsRecordOnRequestUpToItsBound) {
   testing::internal::CaptureStdout();
-  const Record record = record_after("chatter");  // 20,000 lines with escape sequences
+  const Record quiet = record_after("chatter");  // 20,000 lines with escape sequences
   EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
-  EXPECT_EQ(record.status, Status::budget) << record.message;
-  EXPECT_EQ(record.output, "");
-}
-
-TEST_F(Output, IsKeptOnRequestUpToItsBound) {
-  options.keeps_output = true;
+  EXPECT_EQ(quiet.status, Status::budget) << quiet.message;
+  EXPECT_EQ(quiet.output, "");
+  options.keeps_output = options.force = true;
   const Record record = record_after("chatter");
   EXPECT_TRUE(record.output.starts_with("\x1b[31mI write what nobody asked for\n"));
   EXPECT_GE(record.output.size(), CapturedOutput::kMost);
   EXPECT_LT(record.output.size(), CapturedOutput::kMost + 100);
   EXPECT_NE(record.output.find("bytes more"), std::string::npos) << "it says what was left out";
   EXPECT_FALSE(without_timings(to_json(record)).contains("output")) << "it is no result";
-}
-
-TEST_F(Output, OfACrashGivesItsLastWords) {
-  const Record record = record_after("complain");
-  EXPECT_EQ(record.status, Status::crashed);
-  EXPECT_EQ(record.output, "the grid is too coarse");
 }
 
 // Whoever writes more than a pipe holds waits for nobody.
@@ -155,25 +115,185 @@ TEST_F(Output, WithoutEndHoldsNobodyUp) {
   EXPECT_LT(worker->output().text().size(), CapturedOutput::kMost + 100);
 }
 
-TEST_F(Output, IsWhatWasWrittenInTheRightOrder) {
+TEST_F(Output, IsWhatWasWrittenInTheRightOrderAsText) {
   const auto worker = ended_worker([](Trace& trace) {
     std::printf("first\n");
     std::fprintf(stderr, "second\n");
-    std::printf("third, without an end");
-    trace.status = Status::budget;
+    std::printf("third\xff, without an end");
+    trace.status = getchar() == EOF ? Status::budget : Status::failed;
   });
-  EXPECT_EQ(worker->output().text(), "first\nsecond\nthird, without an end");
+  EXPECT_EQ(worker->output().text(), "first\nsecond\nthird\uFFFD, without an end");
+  EXPECT_EQ(worker->trace().status, Status::budget) << "its input is empty";
 }
 
-TEST_F(Output, ThatIsNoTextBecomesText) {
-  const auto worker = ended_worker([](Trace&) { std::printf("a\xff z"); });
-  EXPECT_EQ(worker->output().text(), "a\uFFFD z");
+// --- A text from another process: whole, or none and the reason.
+
+TEST(IsolatedText, IsTheTextWholeAndNothingElseReachesTheTerminal) {
+  testing::internal::CaptureStdout();
+  for (const std::string& text : {std::string(), std::string("whole"), std::string(3 << 20, 'x')}) {
+    const auto work = [&] {
+      std::printf("\x1b[31m");
+      std::fflush(stdout);
+      return text;
+    };
+    const IsolatedText found = isolated_text(work, 10);
+    EXPECT_EQ(found.text, text);
+    EXPECT_EQ(found.failure, "");
+  }
+  EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
 }
 
-TEST_F(Output, InputIsEmpty) {
+TEST(IsolatedText, OfAProcessThatDoesNotEndWellIsNoneButAReason) {
+  const struct {
+    std::function<std::string()> work;
+    double seconds;
+    std::string reason;
+  } ends[] = {
+      {[]() -> std::string { throw std::runtime_error("for a reason"); }, 10, "for a reason"},
+      {[]() -> std::string { throw 7; }, 10, "not a std::exception"},
+      {[]() -> std::string { throw std::bad_alloc(); }, 10, "memory"},
+      {[]() -> std::string { return std::raise(SIGKILL) == 0 ? "x" : "y"; }, 10, "signal 9"},
+      {[]() -> std::string { _exit(3); }, 10, "exited with code 3"},
+      {[]() -> std::string { _exit(0); }, 10, "without an answer"},
+      {[]() -> std::string { std::exit(0); }, 10, "without an answer"},
+      {[]() -> std::string {
+         std::fprintf(stderr, "the grid is too coarse\n");
+         std::abort();
+       },
+       10, "it last wrote: the grid is too coarse"},
+      {[]() -> std::string { throw std::runtime_error("no text: \xff"); }, 10, "no text: \uFFFD"},
+      {[]() -> std::string {
+         for (;;) pause();
+       },
+       0.2, "more than 0.2 s"},
+      {[]() -> std::string {
+         for (volatile bool go_on = true; go_on;) {
+         }
+         return "";
+       },
+       0.2, "took more than 0.2 s"},
+      {[]() -> std::string {  // as a script that never answers
+         fork();
+         for (;;) pause();
+       },
+       0.2, "idle for more than"}};
+  for (const auto& [work, seconds, reason] : ends) {
+    const IsolatedText found = isolated_text(work, seconds);
+    EXPECT_FALSE(found.text.has_value()) << reason;
+    EXPECT_NE(found.failure.find(reason), std::string::npos) << found.failure;
+  }
+}
+
+TEST(IsolatedText, IsNotWaitedForOnADescendantThatLives) {
+  told() = 0;
+  const IsolatedText found = isolated_text(
+      [] {
+        leave_a_daemon_behind();
+        return std::string("whole");
+      },
+      600);
+  EXPECT_EQ(found.text, "whole");
+  ASSERT_GT(told(), 0);
+  EXPECT_NE(kill(told(), 0), 0) << "the daemon lives";
+}
+
+// --- traces that a cell has overwritten
+
+// Of a cell that ran as it should, and then wrote to its trace.
+Record record_after(const std::function<void(Trace&)>& wild_write, const Limits& limits = {}) {
+  const Request request = cell_of("square", "gd", {.iterations = 20});
   const auto worker = ended_worker(
-      [](Trace& trace) { trace.status = getchar() == EOF ? Status::budget : Status::failed; });
-  EXPECT_EQ(worker->trace().status, Status::budget);
+      [&](Trace& trace) {
+        execute(benchmarks::catalog(), request, trace);
+        wild_write(trace);
+      },
+      limits);
+  return record_of(request, worker->trace());
+}
+
+TEST(BadTrace, OfAnyKindIsACrashThatSaysSo) {
+  const std::vector<std::function<void(Trace&)>> writes = {
+      [](Trace& trace) { trace.points = 1'000'000'000; },
+      [](Trace& trace) { trace.points = -1; },
+      [](Trace& trace) { trace.shown_x.rows = trace.shown_x.columns = 1 << 30; },
+      [](Trace& trace) { trace.shown_x.rows = -(trace.shown_x.columns = -7); },
+      [](Trace& trace) { trace.frames.rows = trace.frames.columns = 1 << 20; },
+      [](Trace& trace) { std::memset(&trace.frames.has_truth, 0x5a, 1); },
+      [](Trace& trace) { trace.frames.iteration[3] = trace.frames.iteration[4] = 7; },
+      [](Trace& trace) { trace.spectra.values = 1 << 30; },
+      [](Trace& trace) { trace.spectra.taken = -1; },
+      [](Trace& trace) { std::memset(&trace.spectra.are_wanted, 0x5a, 1); },
+      [](Trace& trace) { trace.path_inputs = 1 << 30; },
+      [](Trace& trace) { trace.path_outputs = -1; },
+      [](Trace& trace) { trace.status = static_cast<Status>(77); },
+      [](Trace& trace) { trace.aim = static_cast<Aim>(-1); },
+      [](Trace& trace) { std::memset(trace.message, 'x', sizeof trace.message); },
+      [](Trace& trace) { std::memset(trace.privileges, 'x', sizeof trace.privileges); },
+      [](Trace& trace) { std::memset(trace.claimed, 'x', sizeof trace.claimed); },
+      [](Trace& trace) { std::memset(trace.series_names, '\n', 900); },
+      [](Trace& trace) { set_text(trace.series_names, "a\na"); },
+      [](Trace& trace) { trace.point[3].iteration = 1; },
+      [](Trace& trace) { trace.point[3].counts[0] = -4; },
+      [](Trace& trace) { trace.point[3].wall_seconds = -1; },
+      [](Trace& trace) {
+        trace.hit[0].iteration = std::int64_t{1} << 40;
+        trace.hit[1].iteration = 5;
+      },
+      [](Trace& trace) { trace.rejected_steps = -1; },
+      [](Trace& trace) { std::memset(&trace.is_learned, 0x5a, 1); },
+      [](Trace& trace) { std::memset(static_cast<void*>(&trace.point), 0x5a, sizeof trace.point); },
+      [](Trace& trace) { std::memset(static_cast<void*>(&trace), 0xff, sizeof trace); }};
+  const Record sound = record_after([](Trace&) {});
+  EXPECT_EQ(sound.status, Status::budget) << sound.message;
+  EXPECT_EQ(sound.curve.iteration.size(), 21U);
+  for (std::size_t i = 0; i < writes.size(); ++i) {
+    const Record record = record_after(writes[i]);
+    EXPECT_EQ(record.status, Status::crashed) << i;
+    EXPECT_NE(record.message.find("overwrote the trace"), std::string::npos) << record.message;
+    EXPECT_TRUE(record.curve.iteration.empty()) << i;
+  }
+}
+
+TEST(BadTrace, OfARunThatWasKilledIsNotReadEither) {
+  const auto write_and_spin = [](Trace& trace) {
+    trace.points = 1'000'000'000;
+    for (volatile bool go_on = true; go_on;) {
+    }
+  };
+  const Record record = record_after(write_and_spin, {.hard_seconds = 0.2});
+  EXPECT_EQ(record.status, Status::timeout) << record.message;
+  EXPECT_TRUE(record.curve.iteration.empty());
+}
+
+TEST(BadTrace, OfOneCellDoesNotReachTheMemoryOfAnother) {
+  const auto first = ended_worker([](Trace& trace) { trace.status = Status::budget; });
+  const Trace& other = first->trace();
+  const auto second = ended_worker([&](Trace&) {
+    std::memset(static_cast<void*>(const_cast<Trace*>(&other)), 0x5a, sizeof(Trace));
+  });
+  EXPECT_EQ(second->trace().status, Status::crashed) << second->trace().message;
+  EXPECT_EQ(first->trace().status, Status::budget);
+}
+
+TEST(BadTrace, OfASizeThatCannotBeReturnsNothing) {
+  Worker worker;
+  const auto sizes_after = [&](std::int64_t size) {
+    worker.start(
+        [&](Trace& trace) {
+          worker.keep_returned(std::vector<Real>(3, 7));
+          const_cast<Returned*>(reinterpret_cast<const Returned*>(worker.returned() - 1))->size =
+              size;
+          trace.status = Status::budget;
+        },
+        {}, 1);
+    wait_until([&] { return worker.poll(); });
+    return worker.returned_size();
+  };
+  static_assert(offsetof(Returned, theta) == sizeof(double));
+  EXPECT_EQ(sizes_after(3), 3);
+  EXPECT_EQ(worker.returned()[2], 7);
+  EXPECT_EQ(sizes_after(-3), 0);
+  EXPECT_EQ(sizes_after(std::int64_t{1} << 40), 0);
 }
 
 }  // namespace

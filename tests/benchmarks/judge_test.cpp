@@ -1,20 +1,10 @@
 // A point is worth what a fresh problem says of it, whatever its cell has done to its own.
 #include "benchmarks/run/judge.h"
 
-#include <gtest/gtest.h>
-#include <sys/mman.h>
-
-#include <csignal>
-
-#include "benchmarks/run/runner.h"
-#include "problems/dense_physics.h"
 #include "tests/benchmarks/hostile.h"
-#include "tests/deadline.h"
-#include "tests/temporary_folder.h"
+#include "tests/benchmarks/pieces.h"
 
 namespace isoline::benchmarks {
-
-using problems::DensePhysics;
 namespace {
 
 // Stays where it started, and makes a solution of it by changing what is asked.
@@ -34,14 +24,9 @@ void fields(Cheat& o, auto& field) {
   field("deed", o.deed, Choices{"nothing", "target"}, "what it does to its problem");
 }
 
-// How often the trap has been made, and has failed, in whatever process.
-int* shared_counts() {
-  static auto* const shared = static_cast<int*>(
-      mmap(nullptr, 2 * sizeof(int), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0));
-  return shared;
-}
-int& times_made() { return shared_counts()[0]; }
-int& times_failed() { return shared_counts()[1]; }
+// How often the trap has been made, in whatever process, and has failed in this one.
+std::atomic<int>& times_made() { return told(); }
+int times_failed = 0;
 
 // y = x, made well for its cell, which comes first, and ill for the judges after it.
 struct TrapOptions {
@@ -51,18 +36,6 @@ void fields(TrapOptions& o, auto& field) {
   field("deed", o.deed, Choices{"crash-once", "crash", "hang", "throw", "fail-once", "killed"},
         "what befalls a judge");
 }
-class Trap final : public DensePhysics {
- public:
-  explicit Trap(bool fails_once) : DensePhysics(1, 1), fails_once_(fails_once) {}
-  void value(VectorRef x, VectorOut y) const override {
-    if (fails_once_ && x[0] == 2 && ++times_failed() == 1) throw std::runtime_error("no value");
-    y = x;
-  }
-  void derivative(VectorRef, BatchOut J) const override { J(0, 0) = 1; }
-
- private:
-  bool fails_once_;
-};
 ProblemParts make_trap(const TrapOptions& o, const Draw&) {
   const int times = ++times_made();
   if (o.deed == "crash-once" && times == 2) std::raise(SIGSEGV);
@@ -70,7 +43,11 @@ ProblemParts make_trap(const TrapOptions& o, const Draw&) {
   if (o.deed == "killed" && times > 1) std::raise(SIGKILL);
   if (o.deed == "throw" && times > 1) throw std::runtime_error("no second instance");
   while (o.deed == "hang" && times > 1) pause();
-  return {.physics = std::make_unique<Trap>(o.deed == "fail-once"),
+  const auto value = [fails_once = o.deed == "fail-once"](VectorRef x) -> Vector {
+    if (fails_once && x[0] == 2 && ++times_failed == 1) throw std::runtime_error("no value");
+    return x;
+  };
+  return {.physics = physics_of(1, 1, value, [](VectorRef) { return Matrix::Ones(1, 1).eval(); }),
           .start = Vector::Ones(1),
           .target = Vector::Zero(1),
           .minimum = 0};
@@ -78,13 +55,8 @@ ProblemParts make_trap(const TrapOptions& o, const Draw&) {
 
 Catalog catalog_of_judges() {
   Catalog catalog = hostile_catalog();
-  catalog.optimizers.add(stepper_entry<Cheat>({.name = "cheat",
-                                               .title = "Changes what is asked",
-                                               .formula = "none",
-                                               .source = "here",
-                                               .needs = {Oracle::forward}}));
-  catalog.problems.add(problem_entry(
-      {.name = "trap", .title = "Made once", .formula = "none", .source = "here"}, make_trap));
+  catalog.optimizers.add(stepper_entry<Cheat>({.name = "cheat", .needs = {Oracle::forward}}));
+  catalog.problems.add(problem_entry({.name = "trap"}, make_trap));
   return catalog;
 }
 
@@ -104,13 +76,14 @@ class Judging : public testing::Test {
   }
 
   // On points of one trap, in order.
-  std::vector<Verdict> verdicts_on(const std::vector<Real>& points, const std::string& deed) {
+  std::vector<Verdict> verdicts_on(const std::vector<Real>& points, const std::string& deed,
+                                   const Limits& limits = {}) {
     std::vector<Worker> workers(points.size());
     Judges judges(catalog, workers);
     const Request request = asked("trap", {{"deed", deed}}, "gd", {});
     for (std::size_t slot = 0; slot < workers.size(); ++slot) {
       workers[slot].keep_returned(std::vector<Real>{points[slot]});
-      judges.ask(slot, request, {});
+      judges.ask(slot, request, limits);
     }
     std::vector<Verdict> all;
     wait_until([&] {
@@ -143,39 +116,28 @@ TEST_F(Judging, AJudgeThatDiesOnceIsReplacedAndAskedAgain) {
   EXPECT_EQ(times_made(), 3);
 }
 
-TEST_F(Judging, AJudgeThatDiesOfAProblemCostsItsCellAlone) {
-  times_made() = 0;
-  const Request trap = asked("trap", {{"deed", "crash"}}, "gd", {{"rate", 1.0}});
+TEST_F(Judging, AJudgeThatDiesOfAProblemOrCannotMakeItCostsItsCellAlone) {
   const Request sound = asked("square", {}, "gd", {});
-  const Outcome outcome = run_all(catalog, {trap, sound}, store, {.jobs = 2});
-  EXPECT_EQ(outcome.failures.size(), 1U);
-  const Record record = store.find(trap).value_or(Record{});
-  EXPECT_EQ(record.status, Status::failed);
-  EXPECT_NE(record.message.find("signal 11"), std::string::npos) << record.message;
-  EXPECT_EQ(store.find(sound).value_or(Record{}).status, Status::budget);
-}
-
-TEST_F(Judging, WhyAJudgeCouldNotMakeTheProblemIsSaid) {
-  const Record record = record_of_trap("throw");
-  EXPECT_EQ(record.status, Status::failed);
-  EXPECT_NE(record.message.find("no second instance"), std::string::npos) << record.message;
+  for (const auto& [deed, reason] : std::map<std::string, std::string>{
+           {"crash", "signal 11"}, {"throw", "no second instance"}}) {
+    times_made() = 0;
+    const Request trap = asked("trap", {{"deed", deed}}, "gd", {{"rate", 1.0}});
+    const Outcome outcome = run_all(catalog, {trap, sound}, store, {.jobs = 2, .force = true});
+    EXPECT_EQ(outcome.failures.size(), 1U);
+    const Record record = store.find(trap).value_or(Record{});
+    EXPECT_EQ(record.status, Status::failed);
+    EXPECT_NE(record.message.find(reason), std::string::npos) << record.message;
+    EXPECT_EQ(store.find(sound).value_or(Record{}).status, Status::budget);
+  }
 }
 
 TEST_F(Judging, AJudgeThatHangsIsGivenUp) {
   constexpr double kPatience = 0.2;
   times_made() = 1;
-  std::vector<Worker> workers(1);
-  workers[0].keep_returned(std::vector<Real>{1});
-  Judges judges(catalog, workers);
-  const Request request = asked("trap", {{"deed", "hang"}}, "gd", {});
-  judges.ask(0, request, {.startup_seconds = kPatience, .hard_seconds = kPatience});
-  std::vector<Verdict> verdicts;
-  wait_until([&] {
-    verdicts = judges.collect();
-    return !verdicts.empty();
-  });
-  EXPECT_FALSE(verdicts[0].judged.has_value());
-  EXPECT_EQ(verdicts[0].failure, "it took more than 0.2 s");
+  const Verdict verdict =
+      verdicts_on({1}, "hang", {.startup_seconds = kPatience, .hard_seconds = kPatience}).at(0);
+  EXPECT_FALSE(verdict.judged.has_value());
+  EXPECT_EQ(verdict.failure, "it took more than 0.2 s");
 }
 
 TEST_F(Judging, ManyPointsOfOneProblemAreJudgedByOneProcess) {
@@ -191,7 +153,6 @@ TEST_F(Judging, ManyPointsOfOneProblemAreJudgedByOneProcess) {
 
 // The second would be told the loss at the start, where the first was left.
 TEST_F(Judging, AnInstanceThatFailedAnswersNobodyElse) {
-  times_failed() = 0;
   for (const Verdict& verdict : verdicts_on({2, 2}, "fail-once")) {
     ASSERT_TRUE(verdict.judged.has_value()) << verdict.failure;
     EXPECT_EQ(verdict.judged->loss, 2);

@@ -1,7 +1,6 @@
 // A kill that this program did not send is an interruption: nothing is lost, and the cell runs
 // again.
 #include <fmt/format.h>
-#include <sys/wait.h>
 
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -12,8 +11,7 @@
 #include "core/files.h"
 #include "core/json.h"
 #include "core/status.h"
-#include "tests/benchmarks/hostile_cells.h"
-#include "tests/deadline.h"
+#include "tests/benchmarks/hostile.h"
 
 namespace isoline::benchmarks {
 namespace {
@@ -23,10 +21,6 @@ namespace fs = std::filesystem;
 class Kills : public HostileCells {
  protected:
   Kills() { options.limits.hard_seconds = 60; }
-
-  bool has_checkpoint(const Request& request) const {
-    return fs::exists(store.checkpoint_path(request));
-  }
 };
 
 TEST_F(Kills, OfACellByOthersIsAnInterruptionAndItRunsAgain) {
@@ -39,7 +33,7 @@ TEST_F(Kills, OfACellByOthersIsAnInterruptionAndItRunsAgain) {
   EXPECT_EQ(run_all(catalog, {hostile("kill")}, store, options).run, 1) << "it runs again";
 }
 
-TEST_F(Kills, OfACellThatIsRunningFromOutside) {
+TEST_F(Kills, FromOutsideInterruptACellAndByAFaultOfItsOwnCrashIt) {
   for (const int signal : {SIGKILL, SIGTERM, SIGINT, SIGHUP, SIGXCPU}) {
     Worker worker;
     worker.start(
@@ -55,14 +49,9 @@ TEST_F(Kills, OfACellThatIsRunningFromOutside) {
     wait_until([&] { return worker.poll(); });
     EXPECT_EQ(worker.trace().status, Status::interrupted) << signal;
   }
-}
-
-TEST_F(Kills, ByAFaultOfItsOwnAreCrashes) {
   for (const int signal : {SIGSEGV, SIGABRT, SIGBUS, SIGFPE, SIGILL}) {
-    Worker worker;
-    worker.start([=](Trace&) { std::raise(signal); }, {}, 1);
-    wait_until([&] { return worker.poll(); });
-    EXPECT_EQ(worker.trace().status, Status::crashed) << signal;
+    const auto worker = ended_worker([=](Trace&) { std::raise(signal); });
+    EXPECT_EQ(worker->trace().status, Status::crashed) << signal;
   }
 }
 
@@ -71,18 +60,15 @@ TEST_F(Kills, ThatAreTerminationsKeepTheCheckpointAndGoOnThere) {
   const Request request = hostile("terminate");
   const Record stopped = record_after("terminate");
   EXPECT_EQ(stopped.status, Status::interrupted) << stopped.message;
-  EXPECT_TRUE(has_checkpoint(request));
+  EXPECT_TRUE(fs::exists(store.checkpoint_path(request)));
   const Record whole = record_after("terminate");
   EXPECT_EQ(whole.status, Status::budget) << whole.message;
   EXPECT_EQ(whole.curve.iteration.size(), 51U);
-  EXPECT_FALSE(has_checkpoint(request));
-  EXPECT_EQ(whole.counts, record_after("none").counts) << "as if nobody had stopped it";
-}
-
-TEST_F(Kills, LeaveNoRecordThatIsRunning) {
+  EXPECT_FALSE(fs::exists(store.checkpoint_path(request)));
   const auto trace = std::make_unique<Trace>();
-  ASSERT_EQ(trace->status, Status::running);
-  EXPECT_EQ(benchmarks::record_of(hostile("none"), *trace).status, Status::interrupted);
+  ASSERT_EQ(trace->status, Status::running);  // of which there is no record
+  EXPECT_EQ(benchmarks::record_of(request, *trace).status, Status::interrupted);
+  EXPECT_EQ(whole.counts, record_after("none").counts) << "as if nobody had stopped it";
 }
 
 // --- the program, killed
@@ -91,18 +77,15 @@ TEST_F(Kills, LeaveNoRecordThatIsRunning) {
 // be repeated.
 std::size_t count_files(const fs::path& folder) {
   std::size_t count = 0;
-  std::error_code error;
-  for (fs::recursive_directory_iterator at(folder, error), end; !error && at != end;
-       at.increment(error))
-    ++count;
+  for (const char* part : {"", "runs", "components", "checkpoints"})
+    count += names_in(folder / part).size();
   return count;
 }
 
 std::map<std::string, std::string> files_of(const fs::path& folder) {
   std::map<std::string, std::string> all;
-  std::error_code missing;
-  for (const auto& entry : fs::directory_iterator(folder / "runs", missing))
-    if (entry.path().extension() == ".json") all[entry.path().filename()] = read_text(entry.path());
+  for (const std::string& name : names_in(folder / "runs"))
+    if (name.ends_with(".json")) all[name] = read_text(folder / "runs" / name);
   return all;
 }
 
@@ -119,12 +102,7 @@ class KilledRuns : public testing::Test {
   }
   Outcome run(const fs::path& out) { return run_plan(catalog, "test", requests, out, {.jobs = 2}); }
   pid_t run_apart() {
-    const pid_t child = fork();
-    if (child == 0) {
-      run(folder.path());
-      _exit(0);
-    }
-    return child;
+    return forked([&] { run(folder.path()); });
   }
   void wait_for(pid_t child, std::size_t files) {
     wait_until([&] {
@@ -135,10 +113,8 @@ class KilledRuns : public testing::Test {
   }
   static std::map<std::string, Json> results_of(const fs::path& folder) {
     std::map<std::string, Json> results;
-    for (const auto& [name, text] : files_of(folder)) {
-      Json record = without_timings(parse_json(text, name));
-      results[name] = std::move(record);
-    }
+    for (const auto& [name, text] : files_of(folder))
+      results[name] = without_timings(parse_json(text, name));
     return results;
   }
 
@@ -149,8 +125,7 @@ class KilledRuns : public testing::Test {
 
 TEST_F(KilledRuns, LeaveProcessesThatTheNextRunEnds) {
   told() = 0;
-  const pid_t runner = fork();
-  if (runner == 0) {
+  const pid_t runner = forked([] {
     Worker worker;
     worker.start(
         [](Trace&) {
@@ -159,10 +134,10 @@ TEST_F(KilledRuns, LeaveProcessesThatTheNextRunEnds) {
         },
         {}, 1);
     for (;;) pause();
-  }
+  });
   wait_until([] { return told() != 0; });
   kill(runner, SIGKILL);
-  waitpid(runner, nullptr, 0);
+  status_of(runner);
   EXPECT_TRUE(lives(told())) << "nobody was there to end it";
   requests.resize(1);
   run(folder.path());
@@ -179,7 +154,7 @@ TEST_F(KilledRuns, AtFiftyMomentsLoseNothing) {
     const pid_t runner = run_apart();
     wait_for(runner, moment);
     kill(runner, SIGKILL);
-    waitpid(runner, nullptr, 0);
+    status_of(runner);
     const auto after = files_of(folder.path());
     for (const auto& [name, text] : before)
       EXPECT_EQ(after.contains(name) ? after.at(name) : "", text)
@@ -190,19 +165,19 @@ TEST_F(KilledRuns, AtFiftyMomentsLoseNothing) {
   EXPECT_EQ(results_of(folder.path()), results_of(undisturbed.path()));
 }
 
-// What a scheduler sends to all processes of a job at once, half a minute before it kills them.
-TEST_F(KilledRuns, ByASchedulersTerminationGoOnWhereTheyWere) {
+// What a scheduler sends to all processes of a job at once, half a minute before it kills them; and
+// a Ctrl-C.
+TEST_F(KilledRuns, ByASchedulersTerminationOrAnInterruptGoOnWhereTheyWere) {
   run(undisturbed.path());
-  const pid_t runner = run_apart();
-  wait_for(runner, 40);
-  const std::vector<pid_t> cells = children_of(runner);
-  kill(runner, SIGTERM);
-  for (const pid_t cell : cells) kill(cell, SIGTERM);
-  int status = 0;
-  waitpid(runner, &status, 0);
-  EXPECT_TRUE(WIFEXITED(status)) << "it ends in order";
-  const auto kept = files_of(folder.path());
-  EXPECT_LT(kept.size(), requests.size());
+  for (const int signal : {SIGINT, SIGTERM}) {
+    const pid_t runner = run_apart();
+    wait_for(runner, signal == SIGINT ? 8 : 40);
+    const std::vector<pid_t> cells = children_of(runner);
+    kill(runner, signal);
+    for (const pid_t cell : cells) kill(cell, signal);
+    EXPECT_TRUE(WIFEXITED(status_of(runner))) << "it ends in order";
+    EXPECT_LT(files_of(folder.path()).size(), requests.size());
+  }
   run(folder.path());
   EXPECT_EQ(results_of(folder.path()), results_of(undisturbed.path()));
 }
@@ -213,8 +188,11 @@ TEST_F(KilledRuns, ByASchedulersTerminationGoOnWhereTheyWere) {
 class Interrupts : public HostileCells {
  protected:
   Interrupts() { options.limits = {.hard_seconds = 600, .idle_seconds = 600}; }
-  void wait_until_told() const {
+  // Of these cells, once the first has told that it runs.
+  pid_t runner_of(const std::vector<Request>& requests) {
+    const pid_t runner = run_apart(requests);
     wait_until([] { return told() != 0; });
+    return runner;
   }
   // And waits until it is heard: of two that come together one is lost.
   static void press_ctrl_c(pid_t runner) {
@@ -230,32 +208,20 @@ class Interrupts : public HostileCells {
     };
     wait_until([&] { return !is_pending(); });
   }
-  static int status_of(pid_t runner) {
-    int status = 0;
-    EXPECT_EQ(waitpid(runner, &status, 0), runner);
-    return status;
-  }
-  bool has_record(const Request& request) const {
-    for (const auto& entry : fs::directory_iterator(folder.path() / "runs"))
-      if (entry.path().filename().string().starts_with(request.cell)) return true;
-    return false;
-  }
 };
 
 TEST_F(Interrupts, ByOneCtrlCFinishWhatRunsAndStartNoMore) {
   const Request running = hostile("linger"), next = hostile("none");
-  const pid_t runner = run_apart({running, next});
-  wait_until_told();
+  const pid_t runner = runner_of({running, next});
   press_ctrl_c(runner);
   EXPECT_TRUE(WIFEXITED(status_of(runner)));
   EXPECT_EQ(record_of(running).status, Status::budget);
-  EXPECT_FALSE(has_record(next));
+  EXPECT_FALSE(store.has(next));
 }
 
 TEST_F(Interrupts, ByTwoStopWhatRunsAndKeepItsState) {
   const Request running = hostile("sleep");
-  const pid_t runner = run_apart({running});
-  wait_until_told();
+  const pid_t runner = runner_of({running});
   press_ctrl_c(runner);
   press_ctrl_c(runner);
   EXPECT_TRUE(WIFEXITED(status_of(runner)));
@@ -266,8 +232,7 @@ TEST_F(Interrupts, ByTwoStopWhatRunsAndKeepItsState) {
 
 TEST_F(Interrupts, ByThreeEndAllAtOnce) {
   const Request running = hostile("spin");  // hears nothing
-  const pid_t runner = run_apart({running});
-  wait_until_told();
+  const pid_t runner = runner_of({running});
   const pid_t cell = children_of(runner).at(0);
   for (int i = 0; i < 3; ++i) press_ctrl_c(runner);
   const int status = status_of(runner);
@@ -282,8 +247,7 @@ TEST_F(Interrupts, ByASchedulerStopWhatRunsAndItGoesOnThere) {
     const Request running = hostile("linger");
     fs::remove_all(folder.path() / "runs");
     fs::create_directory(folder.path() / "runs");
-    const pid_t runner = run_apart({running});
-    wait_until_told();
+    const pid_t runner = runner_of({running});
     kill(runner, signal);
     EXPECT_TRUE(WIFEXITED(status_of(runner))) << signal;
     EXPECT_EQ(record_of(running).status, Status::interrupted) << signal;
@@ -295,12 +259,9 @@ TEST_F(Interrupts, ByASchedulerStopWhatRunsAndItGoesOnThere) {
 
 TEST_F(Interrupts, ByCtrlZStopTheCellsTooUntilAllGoOn) {
   const Request running = hostile("linger");
-  const pid_t runner = run_apart({running});
-  wait_until_told();
+  const pid_t runner = runner_of({running});
   kill(runner, SIGTSTP);
-  int status = 0;
-  ASSERT_EQ(waitpid(runner, &status, WUNTRACED), runner);
-  ASSERT_TRUE(WIFSTOPPED(status));
+  ASSERT_TRUE(WIFSTOPPED(status_of(runner)));
   const auto seconds_of_cell = [&] {
     return figures_of(children_of(runner).at(0))->processor_seconds;
   };

@@ -1,12 +1,6 @@
 // When a cell is ended: what it used counts, what others used does not.
-#include "benchmarks/run/limits.h"
-
-#include <sys/wait.h>
-
-#include "benchmarks/run/isolate.h"
 #include "benchmarks/run/run_plan.h"
-#include "tests/benchmarks/hostile_cells.h"
-#include "tests/deadline.h"
+#include "tests/benchmarks/hostile.h"
 
 namespace isoline::benchmarks {
 namespace {
@@ -31,20 +25,14 @@ bool names(const std::string& message, const std::string& what) {
   return message.find(what) != std::string::npos;
 }
 
-TEST(Limits, AreOfProcessorTimeSoThatABusyMachineKillsNoHealthyCell) {
+TEST(Limits, AreOfProcessorTimePerThreadSoThatABusyMachineKillsNoHealthyCell) {
   const LimitWatch watch({}, 1, 0);
   EXPECT_EQ(watched(watch, 0.25, 200), "") << "it had 50 s of a core in 200";
   EXPECT_TRUE(names(watched(watch, 1, 61), "60 s of processor time"));
   EXPECT_TRUE(names(watched(watch, 0.15, 301), "300 s of wall time")) << "there is an end to it";
-}
-
-TEST(Limits, AreDividedByTheThreadsThatWereAskedFor) {
   EXPECT_EQ(watched(LimitWatch({}, 4, 0), 4, 59), "");
-  EXPECT_TRUE(names(watched(LimitWatch({}, 1, 0), 4, 16), "60 s of processor time"));
-}
-
-TEST(Limits, NameTheOptionThatRaisesThem) {
-  const LimitWatch watch({}, 1, 0);
+  EXPECT_TRUE(names(watched(watch, 4, 16), "60 s of processor time"));
+  // They name the option that raises them.
   EXPECT_TRUE(names(watched(watch, 1, 61), "--time"));
   EXPECT_TRUE(names(watched(watch, 0.15, 301), "--time"));
   EXPECT_TRUE(names(watched(watch, 1, 31, false), "without an oracle call; a longer --time"));
@@ -62,13 +50,10 @@ TEST(Limits, EndWhoIsIdleButNotWhoWaitsForAnotherProcess) {
                     "less than 1 %"))
       << "what is examined waits for nobody";
   EXPECT_EQ(watched(watch, 0.02, 100), "");
-}
-
-TEST(Limits, DoNotCountTheTimeInWhichNobodyLooked) {
-  LimitWatch watch({.idle_seconds = 1000}, 1, 0);
+  LimitWatch seldom({.idle_seconds = 1000}, 1, 0);
   for (int i = 1; i < 100; ++i)  // stopped for an hour between any two looks
     EXPECT_FALSE(
-        watch.check({.processes = 1, .processor_seconds = 0.5 * i}, true, i * 3600 * kSecond));
+        seldom.check({.processes = 1, .processor_seconds = 0.5 * i}, true, i * 3600 * kSecond));
 }
 
 TEST(Limits, FollowTheBudgetTheSuiteAndThePrediction) {
@@ -103,23 +88,8 @@ TEST(Limits, OfACellGrowWithItsDeclaredWork) {
   EXPECT_GE(with.of(request), 2 * 50) << "50 iterations, each a forward solve at least";
 }
 
-class LimitsOfCells : public HostileCells {};
-
-TEST_F(LimitsOfCells, EndWhoSleepsAsIdle) {
-  const Record record = record_after("sleep");
-  EXPECT_EQ(record.status, Status::timeout);
-  EXPECT_TRUE(names(record.message, "less than 1 %")) << record.message;
-  EXPECT_EQ(record.curve.iteration.size(), 3U);
-}
-
-TEST_F(LimitsOfCells, EndWhoSpinsByItsProcessorTime) {
-  const Record record = record_after("spin");
-  EXPECT_EQ(record.status, Status::timeout);
-  EXPECT_TRUE(names(record.message, "0.5 s of processor time")) << record.message;
-}
-
 // Three seconds of wall time, of which it computes in none, as on a machine with much else to do.
-TEST_F(LimitsOfCells, LeaveWhoWaitsForAProcessorAlone) {
+TEST(Limits, LeaveWhoWaitsForAProcessorAlone) {
   const auto worker = ended_worker(
       [](Trace& trace) {
         trace.first_oracle_nanoseconds = 1;
@@ -130,47 +100,39 @@ TEST_F(LimitsOfCells, LeaveWhoWaitsForAProcessorAlone) {
   EXPECT_EQ(worker->trace().status, Status::budget) << worker->trace().message;
 }
 
-class Parents : public HostileCells {};
+class Parents : public HostileCells {
+ protected:
+  Parents() { options.limits.hard_seconds = 30; }
+};
 
-TEST_F(Parents, ThatAreStoppedByACellGoOnWhenContinued) {
-  options.jobs = 2;
-  options.limits.hard_seconds = 30;
-  const std::vector<Request> requests = {hostile("stop-parent"),
-                                         request_for(catalog, "square", {}, "gd", {})};
-  const pid_t runner = run_apart(requests);
-  int status = 0;
-  ASSERT_EQ(waitpid(runner, &status, WUNTRACED), runner);
-  ASSERT_TRUE(WIFSTOPPED(status));
-  usleep(300'000);
-  kill(runner, SIGCONT);
-  ASSERT_EQ(waitpid(runner, &status, 0), runner);
-  EXPECT_TRUE(WIFEXITED(status));
-  for (const Request& request : requests) EXPECT_EQ(record_of(request).status, Status::budget);
+TEST_F(Parents, AreNotEndedByACellAndGoOnWhenContinuedWhereTheyWereStopped) {
+  for (const char* misdeed : {"stop-parent", "end-parent"}) {
+    options.jobs = options.jobs == 1 ? 2 : 1;
+    options.force = true;
+    const std::vector<Request> requests = {hostile(misdeed),
+                                           request_for(catalog, "square", {}, "gd", {})};
+    const pid_t runner = run_apart(requests);
+    int status = status_of(runner);
+    if (misdeed == std::string("stop-parent")) {
+      ASSERT_TRUE(WIFSTOPPED(status));
+      usleep(300'000);
+      kill(runner, SIGCONT);
+      status = status_of(runner);
+    }
+    EXPECT_TRUE(WIFEXITED(status)) << misdeed;
+    for (const Request& request : requests)
+      EXPECT_EQ(record_of(request).status, Status::budget) << misdeed;
+  }
 }
 
 TEST_F(Parents, AreNotEndedByAProblemThatAsksThemToWhileItsSheetIsMade) {
   const Request broken = request_for(catalog, "broken", {{"misdeed", "end-parent"}}, "gd", {});
-  const pid_t runner = fork();
-  if (runner == 0) {
-    const Outcome outcome = run_plan(catalog, "broken", {broken}, folder.path(), options);
-    _exit(outcome.is_interrupted ? 1 : 0);
-  }
-  int status = 0;
-  ASSERT_EQ(waitpid(runner, &status, 0), runner);
+  const int status = status_of(forked([&] {
+    if (run_plan(catalog, "broken", {broken}, folder.path(), options).is_interrupted) _exit(1);
+  }));
   ASSERT_TRUE(WIFEXITED(status)) << "ended by signal " << WTERMSIG(status);
   EXPECT_EQ(WEXITSTATUS(status), 0);
   EXPECT_EQ(record_of(broken).status, Status::failed);
-}
-
-TEST_F(Parents, AreNotEndedByACellThatAsksThemTo) {
-  options.limits.hard_seconds = 30;
-  const std::vector<Request> requests = {hostile("end-parent"),
-                                         request_for(catalog, "square", {}, "gd", {})};
-  const pid_t runner = run_apart(requests);
-  int status = 0;
-  ASSERT_EQ(waitpid(runner, &status, 0), runner);
-  EXPECT_TRUE(WIFEXITED(status));
-  for (const Request& request : requests) EXPECT_EQ(record_of(request).status, Status::budget);
 }
 
 // --- What a cell starts is part of the cell: it counts, and it ends with it.
@@ -184,9 +146,10 @@ class Descendants : public HostileCells {
       return children_of(getpid()).empty();
     });
   }
-  static void expect_good_end(Worker& worker) {
-    wait_until([&] { return worker.poll(); });
-    EXPECT_EQ(worker.trace().status, Status::budget) << worker.trace().message;
+  static void expect_good_end(const std::function<void(Trace&)>& work, const Limits& limits = {}) {
+    const auto worker = ended_worker(work, limits);
+    EXPECT_EQ(worker->trace().status, Status::budget) << worker->trace().message;
+    EXPECT_TRUE(children_of(getpid()).empty());
   }
 };
 
@@ -223,9 +186,8 @@ TEST_F(Descendants, CountForTheMemoryOfTheirCell) {
 
 // A page that many share is one page.
 TEST_F(Descendants, DoNotCountWhatTheyShareTwice) {
-  Worker worker;
   constexpr std::size_t kSize = std::size_t{200} << 20;
-  worker.start(
+  expect_good_end(
       [](Trace& trace) {
         const std::vector<char> shared(kSize, 1);
         for (int i = 0; i < 3; ++i)
@@ -235,62 +197,49 @@ TEST_F(Descendants, DoNotCountWhatTheyShareTwice) {
         trace.status = Status::budget;
         usleep(500'000);
       },
-      {.memory_bytes = std::int64_t{512} << 20}, 1);
-  expect_good_end(worker);
-  EXPECT_TRUE(children_of(getpid()).empty());
+      {.memory_bytes = std::int64_t{512} << 20});
 }
 
 // Four processes in a row, each the child of the one before and in a session of its own.
 TEST_F(Descendants, OfDescendantsEndToo) {
-  Worker worker;
-  worker.start(
-      [](Trace& trace) {
-        for (int i = 0; i < 4; ++i) {
-          if (fork() == 0) {
-            setsid();
-            ++told();
-            continue;
-          }
-          if (i > 0)
-            for (;;) pause();
-          wait_until([] { return told() >= 4; });
-          trace.status = Status::budget;
-          return;
-        }
+  expect_good_end([](Trace& trace) {
+    for (int i = 0; i < 4; ++i) {
+      if (fork() == 0) {
+        setsid();
+        ++told();
+        continue;
+      }
+      if (i > 0)
         for (;;) pause();
-      },
-      {}, 1);
-  expect_good_end(worker);
-  EXPECT_TRUE(children_of(getpid()).empty());
+      wait_until([] { return told() >= 4; });
+      trace.status = Status::budget;
+      return;
+    }
+    for (;;) pause();
+  });
 }
 
 // A comet: every process starts the next in a session of its own, and ends.
 TEST_F(Descendants, ThatNeverStandStillEndToo) {
-  Worker worker;
-  worker.start(
-      [](Trace& trace) {
-        if (fork() == 0) {
-          setsid();
-          for (;;) {
-            if (fork() != 0) _exit(0);
-            setsid();
-            ++told();
-          }
-        }
-        wait_until([] { return told() >= 100; });
-        trace.status = Status::budget;
-      },
-      {}, 1);
-  expect_good_end(worker);
+  expect_good_end([](Trace& trace) {
+    if (fork() == 0) {
+      setsid();
+      for (;;) {
+        if (fork() != 0) _exit(0);
+        setsid();
+        ++told();
+      }
+    }
+    wait_until([] { return told() >= 100; });
+    trace.status = Status::budget;
+  });
   const int last = told();
   usleep(100'000);
   EXPECT_EQ(told(), last) << "it flies on";
-  EXPECT_TRUE(children_of(getpid()).empty());
 }
 
 TEST_F(Descendants, SpendTheProcessorTimeOfTheirCell) {
-  Worker worker;
-  worker.start(
+  const auto worker = ended_worker(
       [](Trace& trace) {
         trace.first_oracle_nanoseconds = 1;
         if (fork() == 0)
@@ -298,11 +247,9 @@ TEST_F(Descendants, SpendTheProcessorTimeOfTheirCell) {
           }
         for (;;) pause();
       },
-      {.hard_seconds = 0.3}, 1);
-  wait_until([&] { return worker.poll(); });
-  EXPECT_EQ(worker.trace().status, Status::timeout) << worker.trace().message;
-  EXPECT_NE(std::string(worker.trace().message).find("processor time"), std::string::npos)
-      << worker.trace().message;
+      {.hard_seconds = 0.3});
+  EXPECT_EQ(worker->trace().status, Status::timeout) << worker->trace().message;
+  EXPECT_TRUE(names(worker->trace().message, "processor time")) << worker->trace().message;
 }
 
 }  // namespace

@@ -1,8 +1,12 @@
 // The union of result folders does not depend on their order, and never chooses between results.
+// Whatever others put into one costs its own file, and no more.
 #include "benchmarks/merge/merge.h"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
+#include <algorithm>
+#include <csignal>
 #include <map>
 #include <nlohmann/json.hpp>
 
@@ -10,7 +14,7 @@
 #include "core/files.h"
 #include "core/json.h"
 #include "core/random.h"
-#include "core/records/audited.h"
+#include "core/records/sheet.h"
 #include "tests/reports/fixture.h"
 #include "tests/temporary_folder.h"
 
@@ -23,30 +27,36 @@ namespace {
 
 namespace fs = std::filesystem;
 
-using Contents = std::map<std::string, std::string>;  // text by path within the folder
-
-Contents contents_of(const fs::path& folder) {
-  Contents all;
+// Text by path within the folder.
+std::map<std::string, std::string> contents_of(const fs::path& folder) {
+  std::map<std::string, std::string> all;
   for (const auto& entry : fs::recursive_directory_iterator(folder))
     if (entry.is_regular_file())
       all[fs::relative(entry.path(), folder).string()] = read_text(entry.path());
   return all;
 }
 
-// Merges into new folders that live as long as this.
-class Merger {
- public:
-  fs::path operator()(const std::vector<fs::path>& folders) {
-    const fs::path out = owned_.path() / std::to_string(count_++);
-    last = merge_folders(folders, out);
-    return out;
+class Merge : public testing::Test {
+ protected:
+  // Into a new folder that lives as long as this.
+  const MergeOutcome& merge(const std::vector<fs::path>& folders) {
+    out = owned.path() / std::to_string(count_++);
+    return outcome = merge_folders(folders, out);
   }
-  MergeOutcome last;
+  const MergeOutcome& merge() { return merge({a.path(), b.path()}); }
+  Record merged(const Record& record) const {
+    return read_unchecked_record(out / "runs" / record.file_name());
+  }
+
+  const ResultFolder a, b, c;
+  const TemporaryFolder owned;
+  fs::path out;
+  MergeOutcome outcome;
 
  private:
-  TemporaryFolder owned_;
   int count_ = 0;
 };
+using HostileFolders = Merge;
 
 AuditedOptimizer audit_of(const std::string& name, Real angle) {
   return {.name = name, .spec = name, .linear_angle = angle};
@@ -103,119 +113,185 @@ void fill(const ResultFolder& folder, std::uint64_t number) {
                    .options_text = "[]"});
 }
 
-TEST(Merge, DoesNotDependOnTheOrderOfTheFoldersOrOnHowOftenOneIsGiven) {
+TEST_F(Merge, DoesNotDependOnTheOrderOfTheFoldersOrOnHowOftenOneIsGiven) {
   std::size_t united = 0;
   for (std::uint64_t trial = 0; trial < 8; ++trial) {
-    const ResultFolder a, b, c;
-    fill(a, 3 * trial);
-    fill(b, 3 * trial + 1);
-    fill(c, 3 * trial + 2);
-    Merger merged;
-    const fs::path abc = merged({a.path(), b.path(), c.path()});
-    const Contents all = contents_of(abc);
-    united += merged.last.united;
-    EXPECT_TRUE(merged.last.conflicts.empty());
-    EXPECT_TRUE(contents_of(merged({c.path(), a.path(), b.path(), a.path()})) == all) << trial;
-    Contents twice = contents_of(merged({abc, b.path()})), once = all;
-    std::erase_if(twice, [](const auto& file) { return file.first.starts_with("components"); });
-    std::erase_if(once, [](const auto& file) { return file.first.starts_with("components"); });
+    const ResultFolder one, two, three;
+    fill(one, 3 * trial);
+    fill(two, 3 * trial + 1);
+    fill(three, 3 * trial + 2);
+    united += merge({one.path(), two.path(), three.path()}).united;
+    EXPECT_TRUE(outcome.conflicts.empty());
+    const fs::path all = out;
+    auto once = contents_of(all);
+    merge({three.path(), one.path(), two.path(), one.path()});
+    EXPECT_TRUE(contents_of(out) == once) << trial;
+    merge({all, two.path()});
+    auto twice = contents_of(out);
+    for (auto* some : {&once, &twice})
+      std::erase_if(*some, [](const auto& file) { return file.first.starts_with("components"); });
     EXPECT_TRUE(twice == once) << trial;
   }
   EXPECT_GE(united, 20U);
 }
 
 // {1, 1, 2} and {1, 3}: 1 twice, as in the folder that has it most often.
-TEST(Merge, TimingsAreUnitedAndSorted) {
+TEST_F(Merge, TimingsAreUnitedAndSorted) {
   Record record = record_of({});
-  const ResultFolder a, b;
   record.repeat_wall_seconds = {1, 1, 2};
   a.add(record);
   record.repeat_wall_seconds = {1, 3};
   b.add(record);
-  Merger merged;
-  const fs::path out = merged({a.path(), b.path()});
-  EXPECT_EQ(record_from_text(json_text(read_json(out / "runs" / record.file_name())), "it")
-                .repeat_wall_seconds,
-            (std::vector<Real>{1, 1, 2, 3}));
-  EXPECT_EQ(merged.last.united, 1U);
-  EXPECT_TRUE(merged.last.conflicts.empty());
+  EXPECT_EQ(merge().united, 1U);
+  EXPECT_EQ(merged(record).repeat_wall_seconds, (std::vector<Real>{1, 1, 2, 3}));
+  EXPECT_TRUE(outcome.conflicts.empty());
 }
 
-TEST(Merge, AConflictNamesTheCellAndNothingIsWritten) {
+TEST_F(Merge, AConflictNamesTheCellAndNothingIsWritten) {
   Record record = record_of({.problem = "heat[N=8]", .seed = 4});
-  const ResultFolder a, b;
   a.add(record);
   record.summary.loss *= 1.05;
   b.add(record);
   b.add(record_of({.seed = 5}));
-  Merger merged;
-  const fs::path out = merged({a.path(), b.path()});
-  ASSERT_EQ(merged.last.conflicts.size(), 1U);
+  ASSERT_EQ(merge().conflicts.size(), 1U);
   for (const char* part : {"heat[N=8] × gd, seed 4", "/summary/loss", "differ"})
-    EXPECT_NE(merged.last.conflicts[0].sentence.find(part), std::string::npos)
-        << merged.last.conflicts[0].sentence;
-  EXPECT_EQ(merged.last.conflicts[0].optimizer, "gd");
+    EXPECT_NE(outcome.conflicts[0].sentence.find(part), std::string::npos)
+        << outcome.conflicts[0].sentence;
+  EXPECT_EQ(outcome.conflicts[0].optimizer, "gd");
   EXPECT_FALSE(fs::exists(out));
 }
 
-TEST(Merge, OtherBuildsOfACellStandBesideEachOther) {
-  const ResultFolder a, b;
+TEST_F(Merge, OtherBuildsOfACellStandBesideEachOther) {
   a.add(record_of({.work_per_hit = 2, .build = "b0"}));
   b.add(record_of({.work_per_hit = 3, .build = "b1"}));
-  Merger merged;
-  merged({a.path(), b.path()});
-  EXPECT_EQ(merged.last.records, 2U);
-  EXPECT_TRUE(merged.last.conflicts.empty());
+  EXPECT_EQ(merge().records, 2U);
+  EXPECT_TRUE(outcome.conflicts.empty());
 }
 
-TEST(Merge, ARunThatEndedByItselfStandsBeforeOneThatTheClockEnded) {
-  Record whole = record_of({.started = "2026-01-01T00:00:00Z"});
+TEST_F(Merge, ARunThatEndedByItselfStandsBeforeOneThatTheClockEnded) {
+  const Record whole = record_of({.started = "2026-01-01T00:00:00Z"});
   Record cut = record_of({.hits = 5, .status = Status::budget, .started = "2026-02-01T00:00:00Z"});
   cut.is_nondeterministic = true;
-  const ResultFolder a, b;
-  a.add(whole);
-  b.add(cut);
-  Merger merged;
-  const fs::path out = merged({b.path(), a.path()});
-  EXPECT_TRUE(merged.last.conflicts.empty());
-  EXPECT_EQ(record_from_text(json_text(read_json(out / "runs" / whole.file_name())), "it").status,
-            Status::target);
+  a.add(cut);
+  b.add(whole);
+  EXPECT_TRUE(merge().conflicts.empty());
+  EXPECT_EQ(merged(whole).status, Status::target);
 }
 
-TEST(Merge, ADamagedFileIsNamedAndLeftOut) {
-  const ResultFolder a;
-  a.add(record_of({}));
-  a.add_file("runs/torn.json", R"({"schema": "isoline.run/1", "cell": "a)");
-  Merger merged;
-  const fs::path out = merged({a.path()});
-  ASSERT_EQ(merged.last.unreadable.size(), 1U);
-  EXPECT_NE(merged.last.unreadable[0].find("torn.json"), std::string::npos);
-  EXPECT_FALSE(fs::exists(out / "runs" / "torn.json"));
-}
-
-TEST(Merge, UnitesAuditsAndRefusesWhatWasMeasuredDifferently) {
-  const ResultFolder a, b, c;
+TEST_F(Merge, UnitesAuditsAndRefusesWhatWasMeasuredDifferently) {
   const auto text = [](const std::vector<AuditedOptimizer>& all) {
     return audit_to_json(all).dump(1) + "\n";
   };
   a.add_file("audit.json", text({audit_of("adam", 1), audit_of("gd", 2)}));
   b.add_file("audit.json", text({audit_of("gd", 2), audit_of("sip", 0)}));
   c.add_file("audit.json", text({audit_of("gd", 3)}));
-  Merger merged;
-  const fs::path out = merged({a.path(), b.path()});
-  EXPECT_EQ(audit_from_json(read_json(out / "audit.json")).size(), 3U);
-  merged({a.path(), c.path()});
-  ASSERT_EQ(merged.last.conflicts.size(), 1U);
-  EXPECT_EQ(merged.last.conflicts[0].optimizer, "gd");
-  EXPECT_NE(merged.last.conflicts[0].sentence.find("its audit"), std::string::npos);
+  merge();
+  EXPECT_EQ(audit_from_text(read_text(out / "audit.json"), "it").size(), 3U);
+  ASSERT_EQ(merge({a.path(), c.path()}).conflicts.size(), 1U);
+  EXPECT_EQ(outcome.conflicts[0].optimizer, "gd");
+  EXPECT_NE(outcome.conflicts[0].sentence.find("its audit"), std::string::npos);
 }
 
-TEST(Merge, NeverWritesIntoAFolderThatHoldsSomething) {
-  const ResultFolder a, b;
+TEST_F(Merge, NeverWritesIntoAFolderThatHoldsSomething) {
   a.add(record_of({}));
   EXPECT_THROW(merge_folders({a.path()}, b.path()), UsageError);
   EXPECT_THROW(merge_folders({a.path() / "none"}, a.path() / "new"), UsageError);
   EXPECT_FALSE(fs::exists(a.path() / "new"));
+}
+
+TEST_F(Merge, ConflictsAreNamedByOptimizerWorstFirst) {
+  const auto disagree = [&](const char* optimizer, std::uint64_t seeds) {
+    for (std::uint64_t seed = 0; seed < seeds; ++seed) {
+      Record record = record_of({.optimizer = optimizer, .seed = seed});
+      a.add(record);
+      record.summary.loss += 1;
+      b.add(record);
+    }
+  };
+  disagree("adam", 2);
+  disagree("sip", 7);
+  const std::string text = conflicts_text(merge().conflicts);
+  const std::size_t sip = text.find("sip: 7 conflicts\n"), adam = text.find("adam: 2 conflicts\n");
+  EXPECT_LT(sip, adam) << text;
+  EXPECT_NE(adam, std::string::npos) << text;
+  EXPECT_NE(text.find("… and 4 more"), std::string::npos) << text;
+  EXPECT_EQ(std::ranges::count(text, '\n'), 2 + 4 + 2) << text;
+  EXPECT_TRUE(names_in(owned.path()).empty()) << "nothing is written";
+}
+
+// The listener, which is told of the first file, kills in the middle of the work.
+TEST_F(Merge, ThatIsAskedToEndLeavesNothingBehind) {
+  for (std::uint64_t seed = 0; seed < 100; ++seed) a.add(record_of({.seed = seed}));
+  const auto killed = [](std::size_t, std::size_t) { std::raise(SIGTERM); };
+  EXPECT_TRUE(merge_folders({a.path()}, owned.path() / "out", killed).is_interrupted);
+  EXPECT_TRUE(names_in(owned.path()).empty());
+}
+
+// --- what others put there
+
+bool is_named(const std::vector<std::string>& sentences, const std::string& part) {
+  return std::ranges::any_of(sentences, [&](const std::string& sentence) {
+    return sentence.find(part) != std::string::npos;
+  });
+}
+
+std::string nested(std::size_t levels) {
+  std::string text;
+  for (std::size_t i = 0; i < levels; ++i) text += "{\"a\":";
+  return text + "1" + std::string(levels, '}');
+}
+
+TEST_F(HostileFolders, WhatIsNoRecordUnderTheNameOfOneIsNamedAndLeftOut) {
+  a.add(record_of({}));
+  a.add_file("runs/deep.json", nested(200'000));
+  b.add_file("runs/deep.json", nested(200'001));
+  a.add_file("components/deep.json", nested(200'000));
+  b.add_file("plan.json", nested(200'000));
+  b.add_file("runs/torn.json", R"({"schema": "isoline.run/1", "cell": "a)");
+  ASSERT_EQ(mkfifo((a.path() / "runs" / "pipe.json").c_str(), 0600), 0);
+  fs::create_directory(a.path() / "runs" / "folder.json");
+  fs::create_symlink("circle.json", a.path() / "runs" / "circle.json");
+  ASSERT_EQ(mkfifo((a.path() / "plan.json").c_str(), 0600), 0);
+  EXPECT_EQ(merge().records, 1U);
+  EXPECT_EQ(outcome.unreadable.size(), 9U);
+  for (const char* name : {"runs/deep.json", "components/deep.json", "pipe.json", "folder.json",
+                           "circle.json", "torn.json", "plan.json"})
+    EXPECT_TRUE(is_named(outcome.unreadable, name)) << name;
+  EXPECT_FALSE(is_there(out / "runs" / "torn.json"));
+}
+
+// Levels that one parser takes, and that the copies of a tree, or a comparison, might not.
+TEST_F(HostileFolders, RecordsThatDifferAndAreNoneAreAConflict) {
+  a.add_file("runs/odd.json", nested(900));
+  b.add_file("runs/odd.json", nested(901));
+  ASSERT_EQ(merge().conflicts.size(), 1U);
+  EXPECT_NE(outcome.conflicts[0].sentence.find("are not records"), std::string::npos);
+}
+
+TEST_F(HostileFolders, NoLinkIsFollowedIntoAMergedFolder) {
+  const fs::path secret = owned.path() / "secret";
+  write_text(secret, "{}");
+  const Record record = record_of({});
+  a.add(record);
+  for (const char* name : {"runs/evil.npy", "runs/evil.json", "components/evil.json", "rates.json"})
+    fs::create_symlink(secret, a.path() / name);
+  fs::remove(b.path() / "runs");
+  fs::create_symlink(a.path() / "runs", b.path() / "runs");
+  EXPECT_EQ(merge().unreadable.size(), 5U);
+  EXPECT_TRUE(is_named(outcome.unreadable, "evil.npy: it is a symbolic link"));
+  EXPECT_EQ(names_in(out / "runs"), std::vector<std::string>{record.file_name()});
+  EXPECT_TRUE(names_in(out / "components").empty());
+  EXPECT_FALSE(is_there(out / "rates.json"));
+}
+
+// Two plans that are none, and one that is: the order of the folders decides nothing.
+TEST_F(HostileFolders, APlanThatIsNoneCostsItselfAlone) {
+  a.add_file("plan.json", R"({"schema": "isoline.plan/1"})");
+  a.add_file("rates.json", R"({"rows": [{}]})");
+  b.add(plan_of({record_of({})}));
+  c.add_file("plan.json", "[]");
+  EXPECT_EQ(merge({a.path(), b.path(), c.path()}).unreadable.size(), 3U);
+  EXPECT_EQ(plan_from_text(read_text(out / "plan.json"), "it").cells.size(), 1U);
 }
 
 }  // namespace

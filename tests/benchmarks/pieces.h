@@ -1,4 +1,5 @@
-// A run that is stopped after every step and gone on with, until it has ended by itself.
+// Physics by functions; and a run that is stopped after every step and gone on with, until it has
+// ended by itself.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -6,9 +7,27 @@
 #include <csignal>
 
 #include "benchmarks/run/execute.h"
+#include "problems/dense_physics.h"
 #include "tests/temporary_folder.h"
 
 namespace isoline::benchmarks {
+
+// y = P(x), (k) -> (m), with its Jacobian (m, k).
+template <class Value, class Derivative>
+std::unique_ptr<problems::Physics> physics_of(Index k, Index m, Value value, Derivative J) {
+  class Plain final : public problems::DensePhysics {
+   public:
+    Plain(Index inputs, Index outputs, Value of_x, Derivative slopes)
+        : DensePhysics(inputs, outputs), value_(of_x), slopes_(slopes) {}
+    void value(VectorRef x, VectorOut y) const override { y = value_(x); }
+    void derivative(VectorRef x, BatchOut out) const override { out = slopes_(x); }
+
+   private:
+    Value value_;
+    Derivative slopes_;
+  };
+  return std::make_unique<Plain>(k, m, value, J);
+}
 
 inline Record executed(const Catalog& catalog, const Request& request, Checkpoint checkpoint = {},
                        bool keeps_spectra = false) {

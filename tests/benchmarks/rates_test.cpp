@@ -1,13 +1,9 @@
 // The rates of the tree: what they promise of themselves.
 #include "benchmarks/plan/rates.h"
 
-#include <gtest/gtest.h>
-
 #include <algorithm>
-#include <nlohmann/json.hpp>
 #include <set>
 
-#include "benchmarks/plan/build_parts.h"
 #include "benchmarks/plan/catalog.h"
 #include "benchmarks/plan/suite.h"
 #include "benchmarks/run/execute.h"
@@ -15,12 +11,12 @@
 #include "core/errors.h"
 #include "core/json.h"
 #include "core/options.h"
-#include "core/records/schema.h"
+#include "core/records/json_view.h"
 #include "core/spec.h"
 #include "optimizers/optimizer.h"
 #include "problems/problem.h"
 #include "tests/benchmarks/builtin.h"
-#include "tests/benchmarks/builtin_schema.h"
+#include "tests/benchmarks/pieces.h"
 
 namespace isoline::benchmarks {
 
@@ -145,9 +141,6 @@ TEST(Best, KeepsTheLesserOfTwoBySeedAndBySetOfOptions) {
   const BestLosses read = BestLosses::from_json(best.to_json(), "here");
   EXPECT_EQ(read.to_json(), best.to_json());
   EXPECT_EQ(read.find(problem("brown-dennis[m=11]"), 0), 9);
-}
-
-TEST(Best, WhatIsNoTableOfThemIsAUsageError) {
   EXPECT_THROW(BestLosses::from_json({{"schema", "isoline.best/1"}}, "here"), UsageError);
   EXPECT_THROW(BestLosses::from_json({{"schema", "isoline.rates/1"}, {"rows", Json::array()}}, "x"),
                UsageError);
@@ -170,9 +163,7 @@ TEST(Best, AreFLOfTheProblemsThatDeclareNone) {
 TEST(Best, GiveRunsWithoutADeclaredMinimumHitsThatAreExact) {
   const Request request =
       cell_of("exponential[mode=learn]", "sip", {.iterations = 200, .target = 0});
-  const auto trace = std::make_unique<Trace>();
-  execute(catalog(), request, *trace);
-  const Record record = isoline::benchmarks::record_of(request, *trace);
+  const Record record = executed(catalog(), request);
   ASSERT_TRUE(record.hits.has_value());
   EXPECT_EQ(record.minimum, BestLosses::builtin().find(request.problem, 0));
   Batch validation;

@@ -1,29 +1,23 @@
-// Sheets of problems: how ill-conditioned each is, where that can be told.
+// Sheets of components, plans, and the prices of oracles.
 #include "benchmarks/run/sheets.h"
 
 #include <gtest/gtest.h>
 
 #include <array>
 #include <cmath>
-#include <csignal>
-#include <cstdlib>
-#include <nlohmann/json.hpp>
 #include <numbers>
 
-#include "benchmarks/plan/catalog.h"
 #include "benchmarks/run/run_plan.h"
 #include "core/files.h"
 #include "core/json.h"
-#include "core/records/schema.h"
+#include "core/records/json_view.h"
 #include "optimizers/optimizer.h"
-#include "problems/dense_physics.h"
 #include "problems/problem.h"
 #include "tests/benchmarks/builtin.h"
-#include "tests/temporary_folder.h"
+#include "tests/benchmarks/pieces.h"
 
 namespace isoline::benchmarks {
 
-using problems::DensePhysics;
 using problems::Draw;
 using problems::Problem;
 using problems::problem_entry;
@@ -31,62 +25,30 @@ using problems::ProblemParts;
 namespace {
 
 Sheet sheet_of(const std::string& problem, const OptionValues& options) {
-  static const Catalog catalog = builtin_catalog();
-  return problem_sheet(catalog, complete_problem(catalog, problem, options));
+  return problem_sheet(catalog(), complete_problem(catalog(), problem, options));
 }
 
-TEST(Sheets, OfADirectProblemTellTheConditionNumberOfItsJacobian) {
-  const Sheet scaling = sheet_of("scaling", {{"alpha", 0.02}});
+TEST(Sheets, OfADirectProblemTellTheConditionNumbersOfItsJacobian) {
+  const Sheet scaling = sheet_of("scaling", {{"alpha", 0.02}}), square = sheet_of("square", {});
   EXPECT_NEAR(scaling.condition.value(), 50, 50e-12);
+  EXPECT_NEAR(scaling.start_condition.value(), 50, 50e-12);
   EXPECT_EQ(sheet_from_json(to_json(scaling)).condition, scaling.condition);
   // λ_pq = −4 [sin²(πp/2(N+1)) + sin²(πq/2(N+1))]: their extremes are those of one direction.
-  const Real angle = std::numbers::pi / 18;
-  const Real poisson = std::pow(std::tan(angle), -2);
+  const Real poisson = std::pow(std::tan(std::numbers::pi / 18), -2);
   EXPECT_NEAR(sheet_of("poisson", {{"N", 8}}).condition.value(), poisson, 1e-10 * poisson);
-}
-
-// J of (x₁, x₂²) is diag(1, 2x₂), and `square` starts at (3, 3).
-TEST(Sheets, OfADirectProblemTellTheConditionNumberAtTheStartBesidesThatAtTheSolution) {
-  const Sheet square = sheet_of("square", {});
+  // J of (x₁, x₂²) is diag(1, 2x₂), `square` starts at (3, 3), and J lacks rank at its solution 0.
   EXPECT_NEAR(square.start_condition.value(), 6, 1e-14);
   EXPECT_EQ(sheet_from_json(to_json(square)).start_condition, square.start_condition);
-  EXPECT_NEAR(sheet_of("scaling", {{"alpha", 0.02}}).start_condition.value(), 50, 50e-12);
+  EXPECT_TRUE(std::isinf(square.condition.value()));
   const Sheet brown_dennis = sheet_of("brown-dennis", {});
   EXPECT_TRUE(brown_dennis.start_condition);
   EXPECT_EQ(brown_dennis.condition.has_value(), !brown_dennis.truth.empty());
-}
-
-// At the solution (0, 0) of `square`, x₂² has no slope: J lacks rank there.
-TEST(Sheets, OfAProblemThatLacksRankAtItsSolutionSaySo) {
-  EXPECT_TRUE(std::isinf(sheet_of("square", {}).condition.value()));
-}
-
-TEST(Sheets, TellNoConditionNumberOfWhatIsLearnedOrTooLarge) {
-  for (const Sheet& sheet :
-       {sheet_of("sine", {{"mode", "learn"}, {"batch", 4}}), sheet_of("poisson", {{"N", 64}})}) {
-    EXPECT_FALSE(sheet.condition) << sheet.spec;
-    EXPECT_FALSE(sheet.start_condition) << sheet.spec;
-  }
+  for (const Sheet& none :  // what is learned or too large
+       {sheet_of("sine", {{"mode", "learn"}, {"batch", 4}}), sheet_of("poisson", {{"N", 64}})})
+    EXPECT_FALSE(none.condition || none.start_condition) << none.spec;
 }
 
 // y = x, but for a pole at one point of the landscape, or a fault.
-class Pole final : public DensePhysics {
- public:
-  explicit Pole(std::string fault) : DensePhysics(2, 2), fault_(std::move(fault)) {}
-  void value(VectorRef x, VectorOut y) const override {
-    y = x;
-    if (x.squaredNorm() > 0) return;
-    if (fault_ == "throw") throw std::runtime_error("no value at the pole");
-    if (fault_ == "exit") std::_Exit(0);
-    if (fault_ == "crash") std::raise(SIGKILL);
-    y[0] = fault_ == "nan" ? std::nan("") : std::numeric_limits<Real>::infinity();
-  }
-  void derivative(VectorRef, BatchOut J) const override { J.setIdentity(); }
-
- private:
-  std::string fault_;
-};
-
 struct PoleOptions {
   std::string fault = "infinite";
 };
@@ -96,17 +58,24 @@ void fields(PoleOptions& o, auto& field) {
 }
 
 ProblemParts make_pole(const PoleOptions& o, const Draw&) {
-  return {.physics = std::make_unique<Pole>(o.fault),
-          .start = Vector(Eigen::Vector2d(3, 1)),
-          .target = Eigen::Vector2d(2, 2),
-          .minimum = 0,
-          .window = std::array<Real, 4>{-4, 4, -4, 4}};
+  const auto value = [fault = o.fault](VectorRef x) -> Vector {
+    if (x.squaredNorm() > 0) return x;
+    if (fault == "throw") throw std::runtime_error("no value at the pole");
+    if (fault == "exit") std::_Exit(0);
+    if (fault == "crash") std::raise(SIGKILL);
+    return Eigen::Vector2d(fault == "nan" ? std::nan("") : INFINITY, 0);
+  };
+  return {
+      .physics = physics_of(2, 2, value, [](VectorRef) { return Matrix::Identity(2, 2).eval(); }),
+      .start = Vector(Eigen::Vector2d(3, 1)),
+      .target = Eigen::Vector2d(2, 2),
+      .minimum = 0,
+      .window = std::array<Real, 4>{-4, 4, -4, 4}};
 }
 
 Catalog with_pole() {
   Catalog catalog = builtin_catalog();
-  catalog.problems.add(problem_entry(
-      {.name = "pole", .title = "Has a pole", .formula = "y = x", .source = "here"}, make_pole));
+  catalog.problems.add(problem_entry({.name = "pole", .title = "Has a pole"}, make_pole));
   return catalog;
 }
 
@@ -142,11 +111,46 @@ TEST(Sheets, ThatCannotBeMadeCostTheirFiguresAndNotTheRun) {
   }
 }
 
+TEST(Sheets, OfEveryComponentConformToTheSchema) {
+  const Json form = schema("component");
+  const auto expect_sound = [&](const Sheet& sheet) {
+    const Json json = to_json(sheet);
+    EXPECT_EQ(schema_violations(json, form), std::vector<std::string>{}) << sheet.name;
+    EXPECT_EQ(to_json(sheet_from_json(json)), json) << sheet.name;
+  };
+  for (const std::string& name : catalog().problems.ready().names())
+    expect_sound(sheet_of(name, {}));
+  for (const std::string& name : catalog().optimizers.ready().names())
+    expect_sound(optimizer_sheet(catalog(), complete_optimizer(catalog(), name, OptionValues())));
+}
+
+TEST(Plans, ConformToTheSchemaAndKeepEarlierCells) {
+  const TemporaryFolder folder;
+  Store store(folder.path());
+  store.plan("one", {{"0123456789abcdef", "twist", "gd", 0}});
+  store.plan("two",
+             {{"0123456789abcdef", "twist", "gd", 0}, {"fedcba9876543210", "twist", "sip", 0}});
+  const Json plan = read_json(folder.path() / "plan.json");
+  EXPECT_EQ(schema_violations(plan, schema("plan")), std::vector<std::string>{});
+  EXPECT_EQ(plan.at("cells").size(), 2U);
+  EXPECT_EQ(plan.at("suites").size(), 2U);
+}
+
 // --- Measured prices: every oracle offered, in the right order of magnitude, kept by later runs.
 
 Request request_of(const std::string& problem, const OptionValues& options) {
   return named({.problem = complete_problem(catalog(), problem, options),
                 .optimizer = complete_optimizer(catalog(), "gd", OptionValues())});
+}
+
+MeasuredPrices prices_of(const std::string& name, const OptionValues& options) {
+  const Component component = complete_problem(catalog(), name, options);
+  return measure_prices(make_problem(catalog(), component, 0), "b");
+}
+
+const MeasuredPrice* find(const MeasuredPrices& prices, std::string_view oracle) {
+  const auto at = std::ranges::find(prices.oracles, oracle, &MeasuredPrice::oracle);
+  return at == prices.oracles.end() ? nullptr : &*at;
 }
 
 TEST(Prices, AreMeasuredOfEveryOracleThatIsOffered) {
@@ -159,11 +163,10 @@ TEST(Prices, AreMeasuredOfEveryOracleThatIsOffered) {
     EXPECT_GT(measured.forward_seconds, 0) << name;
     const OracleSet offered = problem.offers();
     for (std::size_t kind = 0; kind < kOracles; ++kind) {
-      const auto at =
-          std::ranges::find(measured.oracles, kOracleNames[kind], &MeasuredPrice::oracle);
+      const MeasuredPrice* const at = find(measured, kOracleNames[kind]);
       const auto oracle = static_cast<Oracle>(kind);
       const bool is_measured = offered.contains(oracle) && oracle != Oracle::truth;
-      ASSERT_EQ(at != measured.oracles.end(), is_measured) << name << ", " << kOracleNames[kind];
+      ASSERT_EQ(at != nullptr, is_measured) << name << ", " << kOracleNames[kind];
       if (!is_measured) continue;
       EXPECT_EQ(at->declared, problem.prices()[kind]) << name << ", " << at->oracle;
       EXPECT_LE(at->low, at->price) << name << ", " << at->oracle;
@@ -177,14 +180,9 @@ TEST(Prices, AreMeasuredOfEveryOracleThatIsOffered) {
 
 // A network sees one pass of a batch, shared by its samples; the solve has physics besides.
 TEST(Prices, OfALearnedProblemTellWhatItsNetworkTakesAnExample) {
-  const auto inference = [](const std::string& name, const OptionValues& options) {
-    const Problem problem = make_problem(catalog(), request_of(name, options).problem, 0);
-    const MeasuredPrices measured = measure_prices(problem, "b");
-    const auto at = std::ranges::find(measured.oracles, kInference, &MeasuredPrice::oracle);
-    return at == measured.oracles.end() ? std::optional<MeasuredPrice>() : *at;
-  };
-  EXPECT_FALSE(inference("sine", {}));
-  const auto price = inference("sine", {{"mode", "learn"}, {"batch", 100}});
+  EXPECT_FALSE(find(prices_of("sine", {}), kInference));
+  const MeasuredPrices learned = prices_of("sine", {{"mode", "learn"}, {"batch", 100}});
+  const MeasuredPrice* const price = find(learned, kInference);
   ASSERT_TRUE(price);
   EXPECT_GT(price->price, 0);
   EXPECT_LT(price->price, 0.1) << "a hundredth of a batch, or a few of them";
@@ -192,58 +190,40 @@ TEST(Prices, OfALearnedProblemTellWhatItsNetworkTakesAnExample) {
 }
 
 TEST(Prices, OfMatricesAreLeftOutWhereOneWouldTakeTooLong) {
-  const OptionValues grid{{"N", 64}};  // 4096 unknowns: a Jacobian of 128 MiB
-  const Problem problem = make_problem(catalog(), request_of("poisson", grid).problem, 0);
-  const MeasuredPrices measured = measure_prices(problem, "b");
-  const auto has = [&](const char* oracle) {
-    return std::ranges::find(measured.oracles, oracle, &MeasuredPrice::oracle) !=
-           measured.oracles.end();
-  };
+  const MeasuredPrices measured = prices_of("poisson", {{"N", 64}});  // a Jacobian of 128 MiB
   for (const char* product : {"pullback", "pushforward", "hessian_product", "inverse"})
-    EXPECT_TRUE(has(product)) << product;
+    EXPECT_TRUE(find(measured, product)) << product;
   for (const char* matrix : {"jacobian", "hessian", "curvature", "sensitivity"})
-    EXPECT_FALSE(has(matrix)) << matrix;
+    EXPECT_FALSE(find(measured, matrix)) << matrix;
 }
 
-// y = x after so many additions forward, and so many back.
-class Laborious final : public DensePhysics {
- public:
-  Laborious(int forward, int back) : DensePhysics(1, 1), forward_(forward), back_(back) {}
-  void value(VectorRef x, VectorOut y) const override { y[0] = x[0] + labour(forward_); }
-  void derivative(VectorRef, BatchOut J) const override { J(0, 0) = 1 + labour(back_); }
-
- private:
-  static Real labour(int additions) {
-    volatile Real sum = 0;
-    for (int i = 0; i < additions; ++i) sum = sum + 0;
-    return sum;
-  }
-  int forward_, back_;
-};
-
+// Of y = x after so many additions forward, and so many back.
 MeasuredPrice pullback_price(int forward, int back) {
-  const Problem problem({.physics = std::make_unique<Laborious>(forward, back),
-                         .start = Vector::Ones(1),
-                         .target = Vector::Zero(1)});
-  const MeasuredPrices measured = measure_prices(problem, "b");
-  return *std::ranges::find(measured.oracles, "pullback", &MeasuredPrice::oracle);
+  const auto labour = [](Real value, int additions) {
+    volatile Real sum = value;
+    for (int i = 0; i < additions; ++i) sum = sum + 0;
+    return Matrix::Constant(1, 1, Real{sum}).eval();
+  };
+  const Problem problem(
+      {.physics = physics_of(
+           1, 1, [=](VectorRef x) -> Vector { return labour(x[0], forward).col(0); },
+           [=](VectorRef) { return labour(1, back); }),
+       .start = Vector::Ones(1),
+       .target = Vector::Zero(1)});
+  return *find(measure_prices(problem, "b"), "pullback");
 }
 
 // Both are measured side by side, so that a busy machine slows them alike: 20 within a factor of 4.
-TEST(Prices, AreInForwardSolves) {
-  const MeasuredPrice pullback = pullback_price(2000, 40'000);
-  EXPECT_GT(pullback.price, 5);
-  EXPECT_LT(pullback.price, 80);
-}
-
 // A difference of two times would be lost in what they vary by.
-TEST(Prices, OfACallThatIsShortBesideTheForwardSolveAreNeverZero) {
-  const MeasuredPrice pullback = pullback_price(200'000, 200);
-  EXPECT_GT(pullback.low, 0);
-  EXPECT_LT(pullback.price, 0.1);
+TEST(Prices, AreInForwardSolvesAndNeverZeroWhereACallIsShortBesideOne) {
+  const MeasuredPrice dear = pullback_price(2000, 40'000), cheap = pullback_price(200'000, 200);
+  EXPECT_GT(dear.price, 5);
+  EXPECT_LT(dear.price, 80);
+  EXPECT_GT(cheap.low, 0);
+  EXPECT_LT(cheap.price, 0.1);
 }
 
-TEST(Prices, BelowAMicrosecondAForwardSolveOrWithoutAnAgreedRangeAreNotResolved) {
+TEST(Prices, BelowAMicrosecondAForwardSolveOrWithoutAnAgreedRangeAreNotResolvedAndTheSheetTells) {
   const auto is_sound = [](Real low, Real price, Real high, double forward_seconds) {
     return is_resolved({.oracle = "pullback", .price = price, .low = low, .high = high},
                        forward_seconds);
@@ -252,9 +232,6 @@ TEST(Prices, BelowAMicrosecondAForwardSolveOrWithoutAnAgreedRangeAreNotResolved)
   EXPECT_FALSE(is_sound(1, 1.5, 2, 1e-7));
   EXPECT_FALSE(is_sound(0, 0, 0.1, 1e-5));
   EXPECT_FALSE(is_sound(0.1, 1, 2, 1e-5));
-}
-
-TEST(Prices, TellInTheSheetWhetherTheyAreResolved) {
   Sheet sheet;
   sheet.options_text = "[]";
   sheet.prices = MeasuredPrices{.build = "b", .processor = "p", .forward_seconds = 1e-8};
@@ -276,8 +253,7 @@ TEST(Prices, StandInTheSheetAndAreKeptByLaterRuns) {
   };
   Json first = written();
   ASSERT_TRUE(first.contains("prices"));
-  const Json schema = parse_json(std::string(builtin_schemas().at("component")), "component");
-  EXPECT_EQ(schema_violations(first, schema), std::vector<std::string>{});
+  EXPECT_EQ(schema_violations(first, schema("component")), std::vector<std::string>{});
   EXPECT_EQ(to_json(sheet_from_json(first)), first);
   EXPECT_EQ(written(), first);
   first["prices"]["build"] = "another";  // then they are measured anew

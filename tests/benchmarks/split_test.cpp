@@ -1,5 +1,5 @@
 // A plan in shards: the same division for whoever asks, of about the same times, by predictions
-// that are written once.
+// that are written once; and how long a run still takes, for which cells are weighed by them.
 #include "benchmarks/shard/split.h"
 
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@
 #include <map>
 #include <numeric>
 
-#include "core/digest.h"
+#include "benchmarks/run/progress.h"
 #include "core/errors.h"
 #include "core/files.h"
 #include "core/random.h"
@@ -34,18 +34,12 @@ std::vector<double> times_of(std::size_t count) {
   return times;
 }
 
-std::vector<double> loads_of(const std::vector<std::size_t>& shards,
-                             const std::vector<double>& weights, std::size_t count) {
-  std::vector<double> loads(count);
-  for (std::size_t i = 0; i < shards.size(); ++i) loads.at(shards[i]) += weights[i];
-  return loads;
-}
-
 TEST(Split, GivesShardsOfTheSamePredictedTime) {
   for (const std::size_t count : {1, 3, 16, 64}) {
-    const auto requests = requests_of(5000);
     const auto weights = times_of(5000);
-    const auto loads = loads_of(split(requests, weights, count), weights, count);
+    const auto shards = split(requests_of(5000), weights, count);
+    std::vector<double> loads(count);
+    for (std::size_t i = 0; i < shards.size(); ++i) loads.at(shards[i]) += weights[i];
     const auto [least, most] = std::ranges::minmax(loads);
     EXPECT_LE(most, 1.2 * least) << count;
     EXPECT_NEAR(std::accumulate(loads.begin(), loads.end(), 0.0),
@@ -64,7 +58,7 @@ TEST(Split, DoesNotDependOnTheOrderOfThePlan) {
     EXPECT_EQ(forth[i], back[requests.size() - 1 - i]) << i;
 }
 
-TEST(Split, GivesEveryCellToOneShard) {
+TEST(Split, GivesEveryCellToOneShardAndLeavesSomeEmptyOfFewerCells) {
   const auto requests = requests_of(100);
   const auto shards = split(requests, std::vector<double>(100, 1), 8);
   std::map<std::string, int> seen;
@@ -72,11 +66,8 @@ TEST(Split, GivesEveryCellToOneShard) {
     for (const Request& request : part_of(requests, shards, {index, 8})) ++seen[request.cell];
   ASSERT_EQ(seen.size(), 100U);
   for (const auto& [cell, times] : seen) EXPECT_EQ(times, 1) << cell;
-}
-
-TEST(Split, OfFewerCellsThanShardsLeavesSomeEmpty) {
-  const auto shards = split(requests_of(2), {1, 1}, 5);
-  EXPECT_NE(shards[0], shards[1]);
+  const auto few = split(requests_of(2), {1, 1}, 5);
+  EXPECT_NE(few[0], few[1]);
 }
 
 // --- which shard is asked for
@@ -141,9 +132,8 @@ TEST(Predictions, AreWrittenOnceAndTakeThePlaceOfLaterOnes) {
 
 TEST(Predictions, OfAnotherPlanAreRefused) {
   const TemporaryFolder folder;
-  Preview shown = preview_of(requests_of(0), 1);
   const auto few = requests_of(3), more = requests_of(5);
-  shown = preview_of(few, 1);
+  Preview shown = preview_of(few, 1);
   keep_predictions(folder.path(), shown);
   EXPECT_THROW(weights_of(more, folder.path()), UsageError);
   EXPECT_EQ(weights_of({few.begin(), few.begin() + 2}, folder.path()).size(), 2U);
@@ -171,6 +161,67 @@ TEST(Predictions, KeepEveryBit) {
   ASSERT_EQ(read.size(), 2U);
   for (std::size_t i = 0; i < 2; ++i) EXPECT_EQ(read[i].seconds, cells[i].seconds);
   EXPECT_TRUE(predicted_from_text(file_text({}), "it").empty());
+}
+
+// --- the time that is left
+
+constexpr double kShare = 0.25;  // of its prediction that a cell takes
+
+// Cells in order, one at a time: what was told to be left after each.
+std::vector<double> told(const std::vector<double>& predicted) {
+  TimeLeft left;
+  for (const double seconds : predicted) left.expect(seconds);
+  std::vector<double> all;
+  double now = 0;
+  for (const double seconds : predicted) {
+    now += kShare * seconds;
+    left.finish(seconds, now);
+    all.push_back(left.at(now).value_or(-1));
+  }
+  return all;
+}
+
+TEST(TimeLeft, NeverRisesWhenSlowCellsComeAfterFastOnes) {
+  std::vector<double> cells(1000, 0.01);
+  cells.insert(cells.end(), 10, 20);
+  const std::vector<double> all = told(cells);
+  for (std::size_t i = 1; i < all.size(); ++i) EXPECT_LE(all[i], all[i - 1]) << i;
+  EXPECT_GE(all[900], kShare * 200) << "the slow cells are known to come";
+  EXPECT_EQ(all.back(), 0);
+}
+
+TEST(TimeLeft, IsRightWithinAFifthOnceTwoFifthsOfTheRunAreOver) {
+  const std::vector<double> all = told(std::vector<double>(100, 3));
+  for (std::size_t i = 40; i < all.size(); ++i) {
+    const double real = kShare * 3 * static_cast<double>(all.size() - i - 1);
+    EXPECT_NEAR(all[i], real, 0.2 * real + 1e-9) << i;
+  }
+}
+
+TEST(TimeLeft, CountsDownBetweenTwoEndsAndSaysZeroWhereItTakesLonger) {
+  TimeLeft left;
+  left.expect(10);
+  left.expect(10);
+  EXPECT_FALSE(left.at(0).has_value()) << "nothing has ended yet";
+  left.finish(10, 5);
+  const double then = left.at(5).value_or(0);
+  EXPECT_NEAR(left.at(6).value_or(0), then - 1, 1e-12);
+  EXPECT_EQ(left.at(1000).value_or(-1), 0);
+}
+
+TEST(TimeLeft, CountsCellsWithoutAPredictionAsTheMeanOfTheOthers) {
+  TimeLeft left;
+  for (const std::optional<double> predicted :
+       {std::optional(1.0), std::optional(3.0), std::optional<double>(), std::optional<double>()})
+    left.expect(predicted);
+  left.finish(3, 6);  // twice as long as predicted, and so is the rest
+  EXPECT_EQ(left.at(6).value_or(0), 2 * (1 + 2 + 2));
+  TimeLeft unknown;
+  for (int i = 0; i < 4; ++i) unknown.expect({});
+  EXPECT_FALSE(unknown.at(1).has_value()) << "nothing has ended yet";
+  unknown.finish({}, 5);
+  EXPECT_EQ(unknown.at(5).value_or(0), 15);
+  EXPECT_FALSE(TimeLeft().at(1).has_value()) << "nothing is expected";
 }
 
 }  // namespace

@@ -5,18 +5,14 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 
-#include "benchmarks/plan/catalog.h"
-#include "benchmarks/plan/suite.h"
-#include "benchmarks/run/run_plan.h"
 #include "benchmarks/run/sheets.h"
 #include "core/json.h"
-#include "core/records/schema.h"
+#include "core/records/json_view.h"
 #include "optimizers/optimizer.h"
-#include "problems/dense_physics.h"
 #include "problems/problem.h"
 #include "tests/benchmarks/builtin.h"
+#include "tests/benchmarks/pieces.h"
 #include "tests/temporary_folder.h"
 
 namespace isoline::benchmarks {
@@ -49,17 +45,10 @@ TEST(Tuning, OfEveryMethodIsOneNumberOfItsOwnUnlessItSearchesALineOrIsALibrarys)
     ASSERT_TRUE(knob.has_value()) << name;
     EXPECT_GT(knob->standard, 0) << name;
     EXPECT_NO_THROW(complete_optimizer(catalog(), name, with_value(*knob, {}, knob->standard)));
+    const Sheet sheet = optimizer_sheet(catalog(), complete_optimizer(catalog(), name, {}));
+    EXPECT_EQ(sheet_from_json(to_json(sheet)).tunable, entry.tunable.option) << name;
   }
   EXPECT_EQ(without, 17U);
-}
-
-TEST(Tuning, IsToldByTheSheetOfAMethod) {
-  const auto told = [](const std::string& name) {
-    const Sheet sheet = optimizer_sheet(catalog(), complete_optimizer(catalog(), name, {}));
-    return sheet_from_json(to_json(sheet)).tunable;
-  };
-  EXPECT_EQ(told("levenberg-marquardt"), "initial-damping");
-  EXPECT_EQ(told("ceres-lm"), "");
 }
 
 TEST(Tuning, OfWhatTrainsANetworkIsTheRateOfItsNetworksOptimizer) {
@@ -75,7 +64,7 @@ TEST(Tuning, OfWhatTrainsANetworkIsTheRateOfItsNetworksOptimizer) {
 
 // --- which values
 
-TEST(TuningGrids, AreSevenValuesOfWhichOneIsTheDefault) {
+TEST(TuningGrids, AreSevenValuesOfWhichOneIsTheDefaultWhereItLiesWithin) {
   for (const auto& [name, entry] : catalog().optimizers.ready()) {
     const auto knob = knob_of(catalog(), name, problem_of("hig-toy"), {});
     if (!knob || knob->tunable.unit == Tunable::Unit::cauchy) continue;
@@ -84,9 +73,7 @@ TEST(TuningGrids, AreSevenValuesOfWhichOneIsTheDefault) {
     EXPECT_TRUE(std::ranges::is_sorted(values)) << name;
     EXPECT_EQ(std::ranges::count(values, knob->standard), 1) << name;
   }
-}
-
-TEST(TuningGrids, OfStepsAlongTheGradientAreInCauchyStepsAndHoldTheDefaultWhereItLiesWithin) {
+  // Of steps along the gradient they are in Cauchy steps.
   const auto knob = knob_of(catalog(), "gd", problem_of("sine"), {});
   ASSERT_EQ(knob->tunable.unit, Tunable::Unit::cauchy);
   const std::vector<Real> near = grid_of(*knob, 0.2), far = grid_of(*knob, 1e-6);
@@ -148,25 +135,12 @@ TEST(TuningScores, OfATieGoToTheDefaultOrToWhatIsNearest) {
   EXPECT_EQ(best_value(values, {good, bad, bad, good}, 1), 3U);
   EXPECT_EQ(best_value(values, {bad, bad, good, bad}, 0.01), 2U);
   EXPECT_EQ(best_value(values, {{10, 2}, {10, 1}, bad, bad}, 10), 1U);
-}
-
-TEST(TuningScores, ExpectedBestOfBFallsFromTheMeanToTheLeast) {
-  EXPECT_EQ(best_of({3, 1, 2}), (std::vector<Real>{2, 4.0 / 3, 1}));
+  EXPECT_EQ(best_of({3, 1, 2}), (std::vector<Real>{2, 4.0 / 3, 1})) << "from the mean to the least";
 }
 
 // --- the whole
 
 // y = s x: gradient descent on ½(s x)² solves it in one step at the rate 1/s².
-class Steep final : public problems::DensePhysics {
- public:
-  explicit Steep(Real slope) : DensePhysics(1, 1), slope_(slope) {}
-  void value(VectorRef x, VectorOut y) const override { y[0] = slope_ * x[0]; }
-  void derivative(VectorRef, BatchOut J) const override { J(0, 0) = slope_; }
-
- private:
-  Real slope_;
-};
-
 struct SteepOptions {
   Real slope = 1, start = 1;
 };
@@ -176,12 +150,12 @@ void fields(SteepOptions& o, auto& field) {
 }
 
 problems::ProblemParts make_steep(const SteepOptions& o, const Draw& draw) {
-  problems::ProblemParts parts;
-  parts.physics = std::make_unique<Steep>(o.slope);
-  parts.start = draw.start(Vector::Constant(1, o.start));
-  parts.target = Vector::Zero(1);
-  parts.minimum = 0;
-  return parts;
+  const auto slope = [s = o.slope](VectorRef) { return Matrix::Constant(1, 1, s).eval(); };
+  return {.physics = physics_of(
+              1, 1, [s = o.slope](VectorRef x) -> Vector { return s * x; }, slope),
+          .start = draw.start(Vector::Constant(1, o.start)),
+          .target = Vector::Zero(1),
+          .minimum = 0};
 }
 
 Catalog with_steep() {
@@ -212,15 +186,12 @@ TEST(Tuning, GoesOnBeyondAnEdgeThatIsBestAndMarksWhereItStops) {
 }
 
 // Cauchy's step, 1/s², solves it at once.
-TEST(Tuning, StopsAtSevenValuesWhereTheBestIsAmongThem) {
+TEST(Tuning, StopsAtSevenValuesWhereTheBestIsAmongThemAndLeavesOutWhatIsInapplicable) {
   const Json row = rows_of(with_steep(), "steep[slope=1e-4]", "gd", 100).at(0);
   EXPECT_EQ(row["source"]["grid"]["rate"].size(), 7U);
   EXPECT_EQ(row["options"]["rate"], 1e8);
   EXPECT_FALSE(row["source"].contains("edge"));
-}
-
-TEST(Tuning, LeavesOutWhatIsInapplicable) {
-  EXPECT_EQ(rows_of(builtin_catalog(), "rosenbrock", "kfac", 10).size(), 0U);
+  EXPECT_EQ(rows_of(catalog(), "rosenbrock", "kfac", 10).size(), 0U);
 }
 
 TEST(UsedRates, StandBesideThePlanWithTheTableTheyAreFrom) {
@@ -234,8 +205,7 @@ TEST(UsedRates, StandBesideThePlanWithTheTableTheyAreFrom) {
   write_used_rates(rates, expand(catalog(), suite, rates), store);
   write_used_rates(rates, {}, store);  // another plan of the folder uses none
   const Json table = read_json(folder.path() / "rates.json");
-  const Json schema = parse_json(std::string(builtin_schemas().at("rates")), "rates");
-  EXPECT_EQ(schema_violations(table, schema), std::vector<std::string>{});
+  EXPECT_EQ(schema_violations(table, schema("rates")), std::vector<std::string>{});
   ASSERT_EQ(table["rows"].size(), 2U);
   EXPECT_EQ(table["rows"][0]["file"], "direct.json");
   EXPECT_TRUE(table["rows"][0]["source"].contains("grid"));

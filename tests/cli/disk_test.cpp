@@ -25,38 +25,27 @@ class Disk : public testing::Test {
     if (allowed.exit_code != 0)
       GTEST_SKIP() << "no file system can be mounted here: " << allowed.err;
   }
-  // The first run told why it ended; the second went on to sound files.
-  void expect_end_and_resume(const Finished& both) {
-    EXPECT_TRUE(contains(both.out, "first 2\n")) << both.out << both.err;
-    const std::string first = read_text(shell.folder() / "first.err");
-    EXPECT_TRUE(contains(first, "No space left on device")) << first;
-    EXPECT_TRUE(contains(both.out, "second 0\n"))
-        << both.out << read_text(shell.folder() / "second.err");
-    EXPECT_TRUE(contains(both.out, "valid 0\n")) << both.out;
-  }
   Shell shell;
 };
 
-// Room for the plan and some records. The second run has room for all of them.
-TEST_F(Disk, ThatIsFullEndsTheRunWithAMessageAndTheNextGoesOn) {
-  const Finished both = on_disk("size=300k", kRun +
-                                                 "--no-report 2>first.err; echo first $?\n"
-                                                 "mount -o remount,size=64m disk\n" +
-                                                 kRun +
-                                                 "2>second.err; echo second $?\n"
-                                                 "./isoline validate disk/out; echo valid $?\n"
-                                                 "ls disk/out/runs | grep -vc 'json$'");
-  expect_end_and_resume(both);
-  EXPECT_TRUE(both.out.ends_with("\n0\n")) << both.out;
-}
-
-TEST_F(Disk, WhoseInodesAreSpentEndsTheRunWithAMessageAndTheNextGoesOn) {
-  const Finished both =
-      on_disk("size=64m,nr_inodes=24", kRun + "--no-report 2>first.err; echo first $?\n" +
-                                           "mount -o remount,nr_inodes=4096 disk\n" + kRun +
-                                           "2>second.err; echo second $?\n"
-                                           "./isoline validate disk/out; echo valid $?\n");
-  expect_end_and_resume(both);
+// Room for the plan and some records, in bytes or in inodes. The second run has room for all of
+// them.
+TEST_F(Disk, ThatIsFullEndsTheRunWithAMessageAndTheNextGoesOnToSoundFiles) {
+  for (const auto& [small, large] :
+       {std::pair("size=300k", "size=64m"), std::pair("size=64m,nr_inodes=24", "nr_inodes=4096")}) {
+    const Finished both =
+        on_disk(small, kRun + "--no-report 2>first.err; echo first $?\nmount -o remount," + large +
+                           " disk\n" + kRun +
+                           "2>second.err; echo second $?\n"
+                           "./isoline validate disk/out; echo valid $?\n"
+                           "ls disk/out/runs | grep -vc 'json$'");
+    const std::string first = read_text(shell.folder() / "first.err");
+    EXPECT_TRUE(contains(first, "No space left on device")) << first;
+    for (const char* part : {"first 2\n", "second 0\n", "valid 0\n"})
+      EXPECT_TRUE(contains(both.out, part))
+          << both.out << both.err << read_text(shell.folder() / "second.err");
+    EXPECT_TRUE(both.out.ends_with("\n0\n")) << both.out;
+  }
 }
 
 TEST_F(Disk, ThatIsReadOnlyIsTheCallersMistakeBeforeAnythingRuns) {

@@ -40,7 +40,7 @@ function(readme_examples out)
   endwhile()
   file(CONFIGURE OUTPUT ${folder}/catalog.cpp CONTENT
 "// Generated from the cpp blocks of README.md and docs/.
-#include \"tests/cli/readme_examples.h\"
+#include \"benchmarks/plan/catalog.h\"
 
 namespace isoline::problems {
 @problems_declarations@}  // namespace isoline::problems

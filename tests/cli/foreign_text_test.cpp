@@ -13,14 +13,12 @@ constexpr const char* kEscape = "\x1b";
 // A shell that knows no $'…' makes the bytes by printf.
 TEST(ForeignText, AFolderWhoseNameIsNoUtf8IsAFolder) {
   const Shell shell;
-  const Finished run = shell(
+  shell.expect(
       "./isoline run --problem square --optimizer gd --iterations 3 --quiet "
       "--out \"$(printf 'x\\377')\"");
-  EXPECT_EQ(run.exit_code, 0) << run.err;
   EXPECT_EQ(count_records(shell.folder() / "x\xff"), 1U);
-  const Finished again =
-      shell("./isoline report \"$(printf 'x\\377')\" && ./isoline validate \"$(printf 'x\\377')\"");
-  EXPECT_EQ(again.exit_code, 0) << again.err;
+  const Finished again = shell.expect(
+      "./isoline report \"$(printf 'x\\377')\" && ./isoline validate \"$(printf 'x\\377')\"");
   EXPECT_EQ(valid_utf8(again.out), again.out);
 }
 
@@ -43,17 +41,14 @@ TEST(ForeignText, NoControlSequenceOfAFileOrAnArgumentReachesTheTerminal) {
 
 TEST(ForeignText, ARecordsMessageIsShownAsTextAndKeptAsItIs) {
   const Shell shell;
-  ASSERT_EQ(shell("./isoline run --problem square --optimizer gd --iterations 3 --quiet "
-                  "--no-report --out r")
-                .exit_code,
-            0);
+  shell.expect(
+      "./isoline run --problem square --optimizer gd --iterations 3 --quiet --no-report --out r");
   const std::string change =
       "sed -i 's/\"status\":\"[a-z]*\"/\"status\":\"failed\"/;"
       "s/\"message\":\"[^\"]*\"/\"message\":\"\\\\u001b[2J\"/' r/runs/*.json && ";
   const Finished report = shell(change + "./isoline report r");
   EXPECT_FALSE(contains(report.err, kEscape)) << report.err;
-  const Finished printed = shell("./isoline report r");
-  EXPECT_EQ(printed.exit_code, 0) << printed.err;
+  const Finished printed = shell.expect("./isoline report r");
   EXPECT_FALSE(contains(printed.out + printed.err, kEscape));
 }
 

@@ -1,9 +1,11 @@
-// The verbs that work on a result folder: run, report and validate.
+// The verbs that work on a result folder: run, with what it repeats, replay, report and validate.
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
 #include <csignal>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <thread>
 
@@ -23,73 +25,86 @@ const std::string kMatrix =
 
 class Run : public testing::Test {
  protected:
+  std::vector<fs::path> files() const {
+    std::vector<fs::path> all;
+    for (const auto& entry : fs::directory_iterator(out / "runs"))
+      if (entry.path().extension() == ".json") all.push_back(entry.path());
+    return all;
+  }
+  std::vector<Json> records() const {
+    std::vector<Json> all;
+    for (const fs::path& file : files()) all.push_back(read_json(file));
+    return all;
+  }
+  // Changes every record of an optimizer, or of all ("*").
+  void change(const std::string& optimizer, const std::function<void(Json&)>& how) const {
+    for (const fs::path& file : files()) {
+      Json record = read_json(file);
+      if (optimizer != "*" && record.at("request").at("optimizer").at("name") != optimizer)
+        continue;
+      how(record);
+      write_text(file, record.dump() + "\n");
+    }
+  }
+
   Shell shell;
   fs::path out = shell.folder() / "out";
 };
 
 TEST_F(Run, WritesRecordsAPlanSheetsAndAReportAndSaysWhere) {
-  const Finished result = shell(kMatrix);
-  EXPECT_EQ(result.exit_code, 0) << result.err;
-  EXPECT_TRUE(contains(result.out, "3 cells: 3 run, 0 reused")) << result.out;
-  EXPECT_TRUE(contains(result.out, "1 inapplicable")) << result.out;
-  EXPECT_TRUE(contains(result.out, "out/report/index.html")) << result.out;
+  const Finished result = shell.expect(
+      kMatrix, {.out = {"3 cells: 3 run, 0 reused", "1 inapplicable", "out/report/index.html"},
+                .err = {"cells 3/3"}});
+  EXPECT_FALSE(contains(result.err, "\r")) << "progress in a pipe is plain lines: " << result.err;
+  EXPECT_FALSE(contains(result.out, "cells 3/3")) << result.out;
   EXPECT_EQ(count_records(out), 3U);
   EXPECT_TRUE(fs::exists(out / "plan.json"));
   for (const char* format :
        {"index.html", "report.md", "report.csv", "report.tex", "report.json", "statistics.csv"})
     EXPECT_TRUE(fs::exists(out / "report" / format)) << format;
-  const Finished validated = shell("./isoline validate out");
-  EXPECT_EQ(validated.exit_code, 0) << validated.out;
+  shell.expect("./isoline validate out");
 }
 
 TEST_F(Run, DoneCellsAreNotRepeatedUnlessForced) {
   shell(kMatrix + "--no-report");
   EXPECT_FALSE(fs::exists(out / "report"));
-  EXPECT_TRUE(contains(shell(kMatrix).out, "3 cells: 0 run, 3 reused"));
-  EXPECT_TRUE(contains(shell(kMatrix + "--force").out, "3 cells: 3 run, 0 reused"));
+  shell.expect(kMatrix, {.out = {"3 cells: 0 run, 3 reused"}});
+  shell.expect(kMatrix + "--force", {.out = {"3 cells: 3 run, 0 reused"}});
+  const Finished quiet = shell.expect(kMatrix + "--force --quiet");
+  EXPECT_EQ(quiet.out + quiet.err, "") << "where nothing is wrong";
 }
 
 TEST_F(Run, AFlagAfterTheMatrixTakesEffect) {
-  EXPECT_TRUE(contains(shell(kMatrix + "--seeds 2..4 --jobs 2").out, "9 cells: 9 run"));
-  EXPECT_TRUE(contains(shell(kMatrix + "--seeds =9 --jobs 1").out, "3 cells: 3 run"));
-  EXPECT_TRUE(contains(shell(kMatrix + "--seeds 2 --exclusive").out, "6 cells: 6 run"));
-}
-
-TEST_F(Run, QuietSaysNothingWhereNothingIsWrong) {
-  const Finished result = shell(kMatrix + "--quiet");
-  EXPECT_EQ(result.out + result.err, "");
-  EXPECT_EQ(result.exit_code, 0);
+  shell.expect(kMatrix + "--seeds 2..4 --jobs 2", {.out = {"9 cells: 9 run"}});
+  shell.expect(kMatrix + "--seeds =9 --jobs 1", {.out = {"3 cells: 3 run"}});
+  shell.expect(kMatrix + "--seeds 2 --exclusive", {.out = {"6 cells: 6 run"}});
 }
 
 TEST_F(Run, RepetitionsAppendTimings) {
-  EXPECT_EQ(shell(kMatrix + "--repeat 3").exit_code, 0);
-  EXPECT_TRUE(contains(shell(kMatrix + "--repeat 3").out, "3 cells: 0 run, 3 reused"));
-  for (const auto& entry : fs::directory_iterator(out / "runs")) {
-    const Json record = read_json(entry.path());
+  shell.expect(kMatrix + "--repeat 3");
+  shell.expect(kMatrix + "--repeat 3", {.out = {"3 cells: 0 run, 3 reused"}});
+  for (const Json& record : records()) {
     if (record.at("status") == "inapplicable") continue;
     EXPECT_EQ(record.at("repeat_wall_seconds").size(), 3U) << record.at("request").dump();
   }
 }
 
 TEST_F(Run, DryRunPrintsThePlanAndTouchesNothing) {
-  const Finished before = shell(kMatrix + "--dry-run");
-  EXPECT_EQ(before.exit_code, 0);
+  shell.expect(kMatrix + "--dry-run", {.out = {"inapplicable: the Jacobian has no inverse",
+                                               "3 cells: 0 cached, 1 inapplicable, 2 to run"}});
   EXPECT_FALSE(fs::exists(out));
-  EXPECT_TRUE(contains(before.out, "inapplicable: the Jacobian has no inverse")) << before.out;
-  EXPECT_TRUE(contains(before.out, "3 cells: 0 cached, 1 inapplicable, 2 to run")) << before.out;
   shell(kMatrix);
-  const Finished after = shell(kMatrix + "--seeds 2 --dry-run");
-  EXPECT_TRUE(contains(after.out, "6 cells: 3 cached, 1 inapplicable, 2 to run, about"))
-      << after.out;
+  shell.expect(kMatrix + "--seeds 2 --dry-run",
+               {.out = {"6 cells: 3 cached, 1 inapplicable, 2 to run, about"}});
 }
 
 TEST_F(Run, ADryRunOfManyCellsSaysTheTotalFirstAndListsTwenty) {
   const std::string matrix = "./isoline run --problem square --optimizer gd,newton --seeds 15 ";
-  const Finished result = shell(matrix + "--dry-run");
+  const Finished result =
+      shell.expect(matrix + "--dry-run", {.out = {"… and 10 more; --all lists them\n"}});
   EXPECT_TRUE(result.out.starts_with("30 cells: 0 cached, 0 inapplicable, 30 to run"))
       << result.out;
   EXPECT_EQ(count_lines(result.out), 23U) << result.out;
-  EXPECT_TRUE(contains(result.out, "… and 10 more; --all lists them\n")) << result.out;
   EXPECT_EQ(count_lines(shell(matrix + "--dry-run --all").out), 32U);
 }
 
@@ -104,13 +119,13 @@ std::vector<std::string> result_folders(const fs::path& at) {
 
 TEST_F(Run, AMatrixOfOnesOwnGoesToAFolderNamedByItsPlan) {
   const std::string matrix = "./isoline run --problem square --optimizer newton --quiet ";
-  EXPECT_EQ(shell(matrix + "--iterations 5").exit_code, 0);
+  shell.expect(matrix + "--iterations 5");
   const std::vector<std::string> first = result_folders(shell.folder());
   ASSERT_EQ(first.size(), 1U);
   EXPECT_TRUE(first[0].starts_with("square-newton-")) << first[0];
-  EXPECT_EQ(shell(matrix + "--iterations 5").exit_code, 0);
+  shell.expect(matrix + "--iterations 5");
   EXPECT_EQ(result_folders(shell.folder()), first) << "the same plan has the same folder";
-  EXPECT_EQ(shell(matrix + "--iterations 6").exit_code, 0);
+  shell.expect(matrix + "--iterations 6");
   EXPECT_EQ(result_folders(shell.folder()).size(), 2U) << "another plan has another";
   for (const std::string& name : result_folders(shell.folder()))
     EXPECT_EQ(count_records(shell.folder() / "results" / name), 1U) << name;
@@ -118,115 +133,84 @@ TEST_F(Run, AMatrixOfOnesOwnGoesToAFolderNamedByItsPlan) {
 
 TEST_F(Run, ProblemsAndOptimizersKeepTheirPartOfASuite) {
   const std::string part = "./isoline run notebook --optimizer newton --problem square ";
-  const Finished result = shell(part + "--no-report --out out");
-  EXPECT_EQ(result.exit_code, 0) << result.err;
+  shell.expect(part + "--no-report --out out");
   ASSERT_GE(count_records(out), 1U);
-  const std::string whole = shell("./isoline run notebook --dry-run --all").out;
-  for (const auto& entry : fs::directory_iterator(out / "runs")) {
-    const Json request = read_json(entry.path()).at("request");
-    EXPECT_EQ(request.at("problem").at("name"), "square");
-    EXPECT_EQ(request.at("optimizer").at("name"), "newton");
-    // Its cells are the suite's own, budget and all: they are found again in a run of the whole.
-    EXPECT_TRUE(contains(shell("./isoline run notebook --out out --dry-run").out, " cached"));
+  for (const Json& record : records()) {
+    EXPECT_EQ(record.at("request").at("problem").at("name"), "square");
+    EXPECT_EQ(record.at("request").at("optimizer").at("name"), "newton");
   }
-  EXPECT_LT(count_records(out), count_lines(whole));
-  const std::string folder = shell(part + "--dry-run").out;
-  EXPECT_TRUE(contains(folder, "result folder: results/notebook-square-newton-")) << folder;
+  // Its cells are the suite's own, budget and all: they are found again in a run of the whole.
+  shell.expect("./isoline run notebook --out out --dry-run",
+               {.out = {fmt::format(" {} cached", count_records(out))}});
+  EXPECT_LT(count_records(out), count_lines(shell("./isoline run notebook --dry-run --all").out));
+  shell.expect(part + "--dry-run", {.out = {"result folder: results/notebook-square-newton-"}});
 }
 
 TEST_F(Run, TheRecordedCommandRepeatsTheRunInAShell) {
   const std::string words = "run --problem square --optimizer 'gd[rate=0.01]' --iterations 3 ";
-  ASSERT_EQ(shell("./isoline " + words + "--no-report --out \"it's here\"").exit_code, 0);
-  const fs::path folder = shell.folder() / "it's here";
-  ASSERT_EQ(count_records(folder), 1U);
-  const auto record = read_json(fs::directory_iterator(folder / "runs")->path());
-  const auto command = record.at("provenance").at("run").at("command").get<std::string>();
-  const Finished again = shell("./" + command + " --dry-run");
-  EXPECT_EQ(again.exit_code, 0) << command << "\n" << again.err;
-  EXPECT_TRUE(contains(again.out, "1 cell: 1 cached")) << command << "\n" << again.out;
+  shell.expect("./isoline " + words + "--no-report --out \"it's here\"");
+  out = shell.folder() / "it's here";
+  ASSERT_EQ(count_records(out), 1U);
+  const auto command = records()[0].at("provenance").at("run").at("command").get<std::string>();
+  shell.expect("./" + command + " --dry-run", {.out = {"1 cell: 1 cached"}});
 }
 
 TEST_F(Run, AReportOfAFolderWithoutRecordsIsAnErrorAndWritesNothing) {
   fs::create_directories(out / "runs");
-  const Finished result = shell("./isoline report out");
-  EXPECT_EQ(result.exit_code, 1) << result.out;
-  EXPECT_TRUE(contains(result.err, "no records in out")) << result.err;
+  const Finished result =
+      shell.expect("./isoline report out", {.exit_code = 1, .err = {"no records in out"}});
   EXPECT_EQ(count_lines(result.err), 1U) << result.err;
   EXPECT_FALSE(fs::exists(out / "report"));
 }
 
 TEST_F(Run, TuningStoresItsPlanAndSheetsLikeEveryRun) {
-  const Finished tuned = shell(
+  shell.expect(
       "./isoline tune square --optimizer gd --grid rate=1e-2..1e-1x2 --tuning-seeds =100 --work 50 "
       "--out out");
-  EXPECT_EQ(tuned.exit_code, 0) << tuned.err;
   EXPECT_EQ(count_records(out), 2U);
   EXPECT_EQ(read_json(out / "plan.json").at("cells").size(), 2U);
-  EXPECT_EQ(shell("./isoline validate out").exit_code, 0);
-  EXPECT_EQ(shell("./isoline report out").exit_code, 0);
-}
-
-TEST_F(Run, ProgressInAPipeIsPlainLinesOnStandardError) {
-  const Finished result = shell(kMatrix);
-  EXPECT_TRUE(contains(result.err, "cells 3/3")) << result.err;
-  EXPECT_FALSE(contains(result.err, "\r")) << result.err;
-  EXPECT_FALSE(contains(result.out, "cells 3/3")) << result.out;
+  shell.expect("./isoline validate out && ./isoline report out");
 }
 
 TEST_F(Run, AnExplicitRateWinsOverTheTable) {
   shell("./isoline run --problem square --optimizer 'gd[lr=0.01]' --iterations 3 --out out");
-  for (const auto& entry : fs::directory_iterator(out / "runs")) {
-    const Json optimizer = read_json(entry.path()).at("request").at("optimizer");
-    EXPECT_EQ(optimizer.at("options").at("rate"), 0.01);
-  }
+  for (const Json& record : records())
+    EXPECT_EQ(record.at("request").at("optimizer").at("options").at("rate"), 0.01);
 }
 
 TEST_F(Run, AReportOfAPartialPlanSaysHowMuchIsThere) {
   shell(kMatrix + "--no-report");
-  fs::remove(fs::directory_iterator(out / "runs")->path());
-  EXPECT_EQ(shell("./isoline report out").exit_code, 0);
-  EXPECT_TRUE(contains(read_text(out / "report" / "report.md"), "2 of 3 cells"));
-  EXPECT_TRUE(contains(read_text(out / "report" / "index.html"), "2 of 3 cells"));
+  fs::remove(files()[0]);
+  shell.expect("./isoline report out");
+  for (const char* page : {"report.md", "index.html"})
+    EXPECT_TRUE(contains(read_text(out / "report" / page), "2 of 3 cells")) << page;
 }
 
-// Two runs of one build agree; a loss raised by 5 % in one cell, and a cell taken away, do not
-// pass.
-TEST_F(Run, CompareAndMergeSeeOneChangedCell) {
+// Two runs of one build are united; a loss raised by 5 % in one cell does not pass.
+TEST_F(Run, MergeSeesOneChangedCell) {
   shell(kMatrix + "--no-report");
   shell("mv out again");
   shell(kMatrix + "--no-report");
-  const Finished same = shell("./isoline compare out again");
-  EXPECT_EQ(same.exit_code, 0) << same.out;
-  EXPECT_TRUE(contains(same.out, "3 cells in both: 3 equal")) << same.out;
-  EXPECT_EQ(shell("./isoline merge out again --out both").exit_code, 0);
-  EXPECT_EQ(shell("./isoline validate both").exit_code, 0);
+  shell.expect("./isoline merge out again --out both && ./isoline validate both");
   EXPECT_EQ(count_records(shell.folder() / "both"), 3U);
-  for (const auto& entry : fs::directory_iterator(out / "runs")) {
-    Json record = read_json(entry.path());
-    if (record.at("request").at("optimizer").at("name") != "gd") continue;
+  change("gd", [](Json& record) {
     record["summary"]["loss"] = 1.05 * real_of(record["summary"]["loss"]);
     record["curve"]["loss"].back() = record["summary"]["loss"];  // else it contradicts itself
-    write_text(entry.path(), record.dump());
-  }
-  const Finished worse = shell("./isoline compare again out --json");
-  EXPECT_EQ(worse.exit_code, 2) << worse.out;
-  EXPECT_EQ(parse_json(worse.out, "comparison").at("differences").size(), 1U) << worse.out;
-  const Finished conflict = shell("./isoline merge out again --out torn");
-  EXPECT_EQ(conflict.exit_code, 2);
-  EXPECT_TRUE(contains(conflict.err, "brown-dennis × gd")) << conflict.err;
+  });
+  shell.expect("./isoline compare again out --json", {.exit_code = 2});
+  shell.expect("./isoline merge out again --out torn",
+               {.exit_code = 2, .err = {"brown-dennis × gd"}});
   EXPECT_FALSE(fs::exists(shell.folder() / "torn"));
 }
 
 TEST_F(Run, ValidateFindsWhatIsWrongAndExitsTwo) {
   shell(kMatrix + "--no-report");
-  const fs::path victim = fs::directory_iterator(out / "runs")->path();
+  const fs::path victim = files()[0];
   Json record = read_json(victim);
   record["status"] = "splendid";
   write_text(victim, record.dump());
-  const Finished result = shell("./isoline validate out");
-  EXPECT_EQ(result.exit_code, 2);
-  EXPECT_TRUE(contains(result.out, victim.filename())) << result.out;
-  EXPECT_TRUE(contains(result.out, ", 1 wrong")) << result.out;
+  shell.expect("./isoline validate out",
+               {.exit_code = 2, .out = {victim.filename(), ", 1 invalid"}});
 }
 
 // --- a run that takes long: gradient descent so slow that it neither arrives nor stalls
@@ -234,8 +218,8 @@ TEST_F(Run, ValidateFindsWhatIsWrongAndExitsTwo) {
 class LongRun : public Run {
  protected:
   void SetUp() override {
-    child_ = fork();
-    if (child_ != 0) return;
+    child = fork();
+    if (child != 0) return;
     fs::current_path(shell.folder());
     const int nowhere = open("/dev/null", O_RDWR);
     for (const int descriptor : {0, 1, 2}) dup2(nowhere, descriptor);
@@ -245,47 +229,177 @@ class LongRun : public Run {
     _exit(1);
   }
   void TearDown() override {
-    if (child_ > 0) kill(child_, SIGKILL);
+    if (child > 0) kill(child, SIGKILL);
   }
   bool wait_for_records(std::size_t count) const {
-    wait_until([&] { return count_records(out) >= count || kill(child_, 0) != 0; });
+    wait_until([&] { return count_records(out) >= count || kill(child, 0) != 0; });
     return count_records(out) >= count;
   }
   // The first lets running cells finish, which here would take for ever; the second stops them.
   int exit_code_after_two(int signal) {
-    kill(child_, signal);
+    kill(child, signal);
     std::this_thread::sleep_for(std::chrono::milliseconds(300));  // two at once would be one
-    kill(child_, signal);
+    kill(child, signal);
     int status = 0;
-    waitpid(child_, &status, 0);
-    child_ = 0;
+    waitpid(child, &status, 0);
+    child = 0;
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   }
 
- private:
-  pid_t child_ = 0;
-
- protected:
-  pid_t child() const { return child_; }
+  pid_t child = 0;
 };
-
-TEST_F(LongRun, TheParentHasOneThread) {
-  ASSERT_TRUE(wait_for_records(1));
-  const std::string status = read_text("/proc/" + std::to_string(child()) + "/status");
-  EXPECT_TRUE(contains(status, "\nThreads:\t1\n")) << status;
-}
 
 TEST_F(LongRun, ThatIsInterruptedTwiceExitsWith130AndGoesOn) {
   ASSERT_TRUE(wait_for_records(1));
+  const std::string status = read_text("/proc/" + std::to_string(child) + "/status");
+  EXPECT_TRUE(contains(status, "\nThreads:\t1\n")) << "the parent has one thread: " << status;
   EXPECT_EQ(exit_code_after_two(SIGINT), 130);
-  const std::size_t kept = count_records(out);
-  EXPECT_LT(kept, 4U);
-  const Finished rest = shell(
+  EXPECT_LT(count_records(out), 4U);
+  shell.expect(
       "./isoline run --problem square --optimizer newton --iterations 1000000000 --target 0 "
-      "--rates none --out out --no-report");
-  EXPECT_TRUE(contains(rest.out, "1 cell: 0 run, 1 reused")) << rest.out;
-  EXPECT_TRUE(
-      contains(shell("./isoline report out && cat out/report/report.md").out, "of 4 cells"));
+      "--rates none --out out --no-report",
+      {.out = {"1 cell: 0 run, 1 reused"}});
+  shell.expect("./isoline report out && cat out/report/report.md", {.out = {"of 4 cells"}});
+}
+
+// --- --retry, and records from the future, which change nothing
+
+const std::string kRetried =
+    "./isoline run --problem square,brown-dennis --optimizer gd,newton --iterations 20 --out out "
+    "--no-report ";
+
+class Retry : public Run {
+ protected:
+  void SetUp() override { ASSERT_EQ(shell(kRetried).exit_code, 0); }
+};
+
+TEST_F(Retry, RepeatsCellsThatEndedSoAndNoOthers) {
+  change("gd", [](Json& record) { record["status"] = "crashed"; });
+  EXPECT_TRUE(contains(shell(kRetried + "--retry timeout,memory").out, "0 run, 4 reused"));
+  shell.expect(kRetried + "--retry crashed --dry-run",
+               {.out = {"4 cells: 2 cached, 0 inapplicable, 2 to run"}});
+  const Finished again =
+      shell.expect(kRetried + "--retry failed,crashed", {.out = {"4 cells: 2 run, 2 reused"}});
+  EXPECT_FALSE(contains(again.err, "another result")) << again.err;
+  shell.expect(kRetried + "--retry failed,crashed", {.out = {"0 run, 4 reused"}});
+  shell.expect("./isoline run --retry failed notebook --dry-run");  // the word behind is a suite
+}
+
+// Timings of a cell that went wrong are no timings of the one that takes its place.
+TEST_F(Retry, ForgetsTheTimesOfWhatItReplaces) {
+  change("gd", [](Json& record) {
+    record["status"] = "memory";
+    record["repeat_wall_seconds"] = {1e-5};
+  });
+  shell.expect(kRetried + "--retry memory");
+  for (const Json& record : records()) EXPECT_EQ(record.at("repeat_wall_seconds").size(), 1U);
+}
+
+TEST_F(Retry, NeedsNoClockThatGoesForward) {
+  change("*",
+         [](Json& record) { record["provenance"]["run"]["started"] = "2199-12-31T23:59:59Z"; });
+  shell.expect(kRetried, {.out = {"4 cells: 0 run, 4 reused"}});
+  shell.expect(kRetried + "--force", {.out = {"4 cells: 4 run, 0 reused"}});
+  for (const Json& record : records())
+    EXPECT_LT(record.at("provenance").at("run").at("started"), "2199");
+}
+
+// A record of another build, from the future, does not win over the one of this build.
+TEST_F(Retry, ARecordOfTheFutureDoesNotHideThisBuildsOwn) {
+  Json record = records()[0];
+  record["build"] = std::string(16, 'f');
+  record["provenance"]["run"]["started"] = "2199-12-31T23:59:59Z";
+  const std::string cell = record.at("cell");
+  write_text(out / "runs" / (cell + "-" + std::string(16, 'f') + ".json"), record.dump() + "\n");
+  const Finished reused = shell.expect(kRetried + "--reuse", {.out = {"4 cells: 0 run, 4 reused"}});
+  EXPECT_FALSE(contains(reused.err, "another build")) << reused.err;
+}
+
+// --- replay: a record is run again, equal, or the first difference is named
+
+class Replay : public Run {
+ protected:
+  void SetUp() override {
+    shell.expect(
+        "./isoline run --problem square,brown-dennis --optimizer newton,gd,inverse-gradient "
+        "--iterations 30 --seeds 0..1 --out out --no-report --quiet");
+  }
+  // The first record of an optimizer, changed, as changed.json; its replay.
+  Finished replay(const char* optimizer, const std::function<void(Json&)>& how,
+                  const Expected& expected) const {
+    for (Json& record : records()) {
+      if (record.at("request").at("optimizer").at("name") != optimizer) continue;
+      how(record);
+      write_text(shell.folder() / "changed.json", record.dump());
+      return shell.expect("./isoline replay changed.json", expected);
+    }
+    ADD_FAILURE() << "no record of " << optimizer;
+    return {};
+  }
+};
+
+TEST_F(Replay, OfRecordsOfThisBuildIsEqualAndWritesNothing) {
+  const Finished all =
+      shell.expect("./isoline replay out/runs/*.json", {.out = {"equal, 30 iterations"}});
+  EXPECT_EQ(count_lines(all.out), 12U) << all.out;
+  EXPECT_EQ(count_records(out), 12U);
+  shell.expect("./isoline validate out");
+  shell.expect("./isoline replay out", {.exit_code = 1});
+}
+
+TEST_F(Replay, NamesTheFirstDifferenceInTheCurveOrBesideIt) {
+  replay("gd",
+         [](Json& record) {
+           record["curve"]["loss"][17] = 0.25;
+           record["curve"]["step_norm"][20] = 0.5;
+         },
+         {.exit_code = 2, .out = {"differs: loss at iteration 17: 0.25 against "}});
+  replay("newton", [](Json& record) { record["counts"]["forward"] = 12345; },
+         {.exit_code = 2, .out = {"differs: counts/forward: 12345 against "}});
+  replay("newton", [](Json& record) { record["verified"]["1e-3"] = false; }, {.exit_code = 2});
+  const Finished several =
+      shell.expect("./isoline replay changed.json out/runs/*.json", {.exit_code = 2});
+  EXPECT_EQ(count_lines(several.out), 13U) << "the worst is the exit code";
+}
+
+TEST_F(Replay, OfASampleTakesSoManyRecordsOfAFolder) {
+  const Finished half = shell.expect("./isoline replay out --sample 50% --seed 3",
+                                     {.out = {"records, sampled with --seed 3"}});
+  const std::size_t all = count_records(out);
+  EXPECT_EQ(count_lines(half.out), all / 2 + 1) << half.out;
+  EXPECT_EQ(shell("./isoline replay out --sample 50% --seed 3").out, half.out);
+  fs::create_directories(shell.folder() / "forged" / "runs");
+  replay("gd", [](Json& record) { record["curve"]["loss"][17] = 0.25; }, {.exit_code = 2});
+  fs::rename(shell.folder() / "changed.json", shell.folder() / "forged" / "runs" / "one.json");
+  shell.expect("./isoline replay forged --sample 1%", {.exit_code = 2});
+  shell.expect("./isoline replay out --sample nothing", {.exit_code = 1});
+}
+
+TEST_F(Replay, OfAnotherBuildOrAComponentThatIsNotThereIsNotComparable) {
+  replay(
+      "gd",
+      [](Json& record) {
+        record["build"] = std::string(16, '0');
+        record["build_parts"]["optimizer"] = std::string(16, '1');
+      },
+      {.exit_code = 4, .out = {"another build computed it, which differs in: optimizer; equal"}});
+  replay("gd", [](Json& record) { record["request"]["problem"]["name"] = "sqare"; },
+         {.exit_code = 4, .out = {"did you mean 'square'"}});
+}
+
+TEST_F(Replay, OfARunThatAClockEndedGoesAsFarAsBothWent) {
+  const auto cut = [](Json& record) {
+    record["nondeterministic"] = true;
+    record["status"] = "timeout";
+    record.erase("trajectory");
+    const auto shorten = [](Json& column) {
+      if (column.is_array()) column = std::vector<Json>(column.begin(), column.begin() + 13);
+    };
+    for (Json& column : record["curve"]) shorten(column);
+    for (Json& column : record["curve"]["counts"]) shorten(column);
+    record["curve"]["loss"][12] = 77;  // where it was ended, in the midst of a step
+  };
+  replay("gd", cut, {.out = {"equal up to iteration 11"}});
 }
 
 }  // namespace

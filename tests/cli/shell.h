@@ -1,12 +1,14 @@
 // Commands run as a user types them, in a temporary folder where ./isoline is the built program.
 #pragma once
 
+#include <gtest/gtest.h>
 #include <sys/wait.h>
 
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "core/files.h"
 #include "core/json.h"
@@ -17,6 +19,16 @@ namespace isoline::benchmarks {
 struct Finished {
   int exit_code = -1;
   std::string out, err;
+};
+
+inline bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+// The exit code of a command, and parts of what it prints.
+struct Expected {
+  int exit_code = 0;
+  std::vector<std::string> out = {}, err = {};
 };
 
 class Shell {
@@ -33,13 +45,20 @@ class Shell {
             .err = read_text(folder_.path() / ".err")};
   }
 
+  Finished expect(const std::string& command, const Expected& expected = {}) const {
+    Finished finished = (*this)(command);
+    const std::string all = command + "\n" + finished.out + finished.err;
+    EXPECT_EQ(finished.exit_code, expected.exit_code) << all;
+    for (const std::string& part : expected.out)
+      EXPECT_TRUE(contains(finished.out, part)) << part << ": " << all;
+    for (const std::string& part : expected.err)
+      EXPECT_TRUE(contains(finished.err, part)) << part << ": " << all;
+    return finished;
+  }
+
  private:
   TemporaryFolder folder_;
 };
-
-inline bool contains(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
 
 inline std::size_t count_lines(const std::string& text) {
   return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));

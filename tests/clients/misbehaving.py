@@ -53,11 +53,14 @@ def misbehave(x):
     elif mode == "hangs":
         time.sleep(600)
     elif mode == "forks":
+        ready, written = os.pipe()
         if os.fork() == 0:
             os.setsid()
             with open(sys.argv[2], "w") as file:
                 file.write(str(os.getpid()))
+            os.write(written, b".")
             time.sleep(600)
+        os.read(ready, 1)
 
 
 def forward(x):

@@ -23,7 +23,7 @@ class Package(unittest.TestCase):
         subprocess.run(["dpkg-deb", "-x", cls.package, f"{cls.folder}/root"], check=True)
 
     def run_it(self, *words):
-        """With nothing on the path but the programs of a bare system that SLURM's scripts use."""
+        """With nothing on the path."""
         run = subprocess.run([f"{self.folder}/root/usr/bin/isoline", *words], cwd=self.folder,
                              env={"PATH": "/nowhere"}, capture_output=True, text=True, check=False)
         self.assertEqual(run.returncode, 0, run.stdout + run.stderr)
@@ -54,11 +54,10 @@ class Package(unittest.TestCase):
         self.assertIn("MIT", notice)
         self.assertIn("GNU General Public License", self.field("Description"))
 
-    def test_it_runs_submits_and_reports(self):
+    def test_it_runs_and_reports(self):
         self.run_it("run", "--problem", "square,sine", "--optimizer", "gd,ceres-lm", "--iterations",
                     "20", "--out", "out", "--quiet")
         self.assertTrue(os.path.exists(f"{self.folder}/out/report/index.html"))
-        self.assertIn("sbatch --parsable --array=1-1", self.run_it("submit", "--slurm", "--", "notebook"))
         self.run_it("report", "out", "--out", "again")
         self.assertTrue(os.path.exists(f"{self.folder}/again/index.html"))
 

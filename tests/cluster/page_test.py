@@ -13,8 +13,6 @@ import unittest
 
 import slurm
 
-PAGE = pathlib.Path(__file__).parents[2] / "docs" / "on-a-cluster.md"
-
 # What GNU parallel does here: the command once an argument, in its place.
 PARALLEL = """#!/bin/sh
 command=
@@ -24,19 +22,18 @@ for each; do eval "$(echo "$command" | sed "s/{}/$each/")" || exit; done
 """
 
 
-def block(fence):
-    """The lines of the one block with this fence, comments left out."""
-    found = re.findall(rf"^```{fence}\n(.*?)^```$", PAGE.read_text(encoding="utf-8"), re.M | re.S)
-    assert len(found) == 1, f"{len(found)} blocks {fence}"
-    return [line for line in found[0].splitlines() if not line.startswith("#")]
+def commands_of(fence):
+    return [line for line in slurm.block(fence) if not line.startswith("#")]
 
 
 class Page(unittest.TestCase):
     def setUp(self):
         self.folder = self.enterContext(tempfile.TemporaryDirectory())
         os.mkdir(f"{self.folder}/bin")
-        os.symlink(sys.argv[1], f"{self.folder}/isoline")
-        os.symlink(sys.argv[1], f"{self.folder}/bin/isoline")
+        os.makedirs(f"{self.folder}/build/portable")
+        for place in ["isoline", "bin/isoline", "build/portable/isoline"]:
+            os.symlink(sys.argv[1], f"{self.folder}/{place}")
+        slurm.write_scripts(self.folder)
         self.environment = dict(os.environ, PATH=f"{self.folder}/bin:{os.environ['PATH']}")
 
     def run_line(self, line, **variables):
@@ -51,7 +48,7 @@ class Page(unittest.TestCase):
         self.assertTrue(os.path.exists(f"{self.folder}/{merged}/report/index.html"))
 
     def test_ten_commands_lead_from_the_plan_to_the_report(self):
-        commands = block("shell")
+        commands = commands_of("shell")
         self.assertEqual(len(commands), 10)
         with slurm.Slurm() as cluster:
             self.environment |= cluster.environment | {"PATH": self.environment["PATH"]}
@@ -65,12 +62,12 @@ class Page(unittest.TestCase):
         path = pathlib.Path(self.folder) / "bin" / "parallel"
         path.write_text(PARALLEL, encoding="utf-8")
         path.chmod(0o755)
-        for line in block("shell parallel"):
+        for line in commands_of("shell parallel"):
             self.run_line(line)
         self.assert_is_the_whole("results/notebook/merged")
 
     def test_a_workflow_does_the_shards(self):
-        lines = block("yaml")
+        lines = commands_of("yaml")
         self.assertLessEqual(len(lines), 12)
         plan, run, merge = re.findall(r"run: '(.*?)'\}", "\n".join(lines))
         self.run_line(plan, GITHUB_OUTPUT="output")

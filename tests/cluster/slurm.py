@@ -1,6 +1,8 @@
 # A SLURM of one node on loopback, with its authentication, for as long as a test wants it.
 import os
+import pathlib
 import pwd
+import re
 import shutil
 import socket
 import subprocess
@@ -41,6 +43,22 @@ MaxArraySize=9
 NodeName={host} NodeAddr=127.0.0.1 CPUs=2 State=UNKNOWN
 PartitionName=main Nodes={host} Default=YES MaxTime=INFINITE State=UP
 """
+
+
+PAGE = pathlib.Path(__file__).parents[2] / "docs" / "on-a-cluster.md"
+
+
+def block(fence):
+    """The lines of the one block with this fence in the page on clusters."""
+    found = re.findall(rf"^```{fence}\n(.*?)^```$", PAGE.read_text(encoding="utf-8"), re.M | re.S)
+    assert len(found) == 1, f"{len(found)} blocks {fence}"
+    return found[0].splitlines()
+
+
+def write_scripts(folder):
+    for name in ["shard.sh", "merge.sh"]:
+        text = "\n".join(block(f"shell {name}")) + "\n"
+        pathlib.Path(folder, name).write_text(text, encoding="utf-8")
 
 
 def programs():

@@ -3,8 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
-#include <new>
+#include <cstdlib>
+#include <memory>
 
 #include "core/random.h"
 
@@ -12,24 +14,14 @@ namespace isoline {
 namespace {
 
 // Numbers at an address that oneDNN accepts.
-class Aligned {
- public:
-  explicit Aligned(Index count, RandomStream& stream)
-      : data_(static_cast<float*>(::operator new(sizeof(float) * count, kAlignment))) {
-    const Vector drawn = stream.normal_vector(count);
-    for (Index i = 0; i < count; ++i) data_[i] = static_cast<float>(drawn[i]);
-  }
-  Aligned(const Aligned&) = delete;
-  Aligned& operator=(const Aligned&) = delete;
-  ~Aligned() { ::operator delete(data_, kAlignment); }
-
-  float* data() const { return data_; }
-  float operator[](Index i) const { return data_[i]; }
-
- private:
-  static constexpr std::align_val_t kAlignment{64};
-  float* data_;
-};
+using Aligned = std::unique_ptr<float[], decltype(&std::free)>;
+Aligned aligned(Index count, RandomStream& stream) {
+  const std::size_t bytes = (sizeof(float) * static_cast<std::size_t>(count) + 63) / 64 * 64;
+  Aligned numbers(static_cast<float*>(std::aligned_alloc(64, bytes)), &std::free);
+  const Vector drawn = stream.normal_vector(count);
+  std::ranges::transform(drawn, numbers.get(), [](Real x) { return static_cast<float>(x); });
+  return numbers;
+}
 
 struct Layout {
   ConvolutionShape s;
@@ -58,11 +50,11 @@ TEST_P(KernelGradients, AreTheSumsOverImagesAndPixels) {
   const ConvolutionShape s = GetParam();
   const Layout layout{s};
   RandomStream stream(0, "convolution", "test", 0);
-  const Aligned in(s.images * s.in * layout.halo() * layout.halo(), stream);
-  const Aligned cotangent(s.images * s.out * s.N * s.N, stream);
-  const Aligned kernel(s.out * s.in * 9, stream);
+  const Aligned in = aligned(s.images * s.in * layout.halo() * layout.halo(), stream);
+  const Aligned cotangent = aligned(s.images * s.out * s.N * s.N, stream);
+  const Aligned kernel = aligned(s.out * s.in * 9, stream);
   KernelGradient gradient(s);
-  for (int call = 0; call < 2; ++call) gradient(in.data(), cotangent.data(), kernel.data());
+  for (int call = 0; call < 2; ++call) gradient(in.get(), cotangent.get(), kernel.get());
   for (Index o = 0; o < s.out; ++o)
     for (Index i = 0; i < s.in; ++i)
       for (Index tap = 0; tap < 9; ++tap) {

@@ -37,9 +37,17 @@ TEST(Decompose, SingularValuesAloneAreThoseOfTheSvd) {
     ASSERT_TRUE(thin_svd(A, svd) && singular_values(A, sigma));
     EXPECT_LE((sigma - svd.sigma).norm(), kRound) << m << " × " << n;
   }
+}
+
+TEST(Decompose, OfNotANumberOrOfNothingIsRefused) {
+  const Matrix nan = Matrix::Constant(2, 2, std::nan(""));
+  Svd svd;
   Vector sigma;
-  EXPECT_FALSE(singular_values(Matrix::Constant(2, 2, std::nan("")), sigma));
+  FactoredSvd factored;
+  EXPECT_FALSE(thin_svd(nan, svd));
+  EXPECT_FALSE(singular_values(nan, sigma));
   EXPECT_FALSE(singular_values(Matrix(0, 3), sigma));
+  EXPECT_FALSE(factored.factor(nan));
 }
 
 TEST(Decompose, FactoredSvdIsTheThinOneKeptAsItsFactors) {
@@ -62,16 +70,6 @@ TEST(Decompose, FactoredSvdIsTheThinOneKeptAsItsFactors) {
   }
 }
 
-TEST(Decompose, FactoredSvdOfNotANumberIsRefused) {
-  FactoredSvd factored;
-  EXPECT_FALSE(factored.factor(Matrix::Constant(2, 2, std::nan(""))));
-}
-
-TEST(Decompose, SvdOfNotANumberIsRefused) {
-  Svd svd;
-  EXPECT_FALSE(thin_svd(Matrix::Constant(2, 2, std::nan("")), svd));
-}
-
 TEST(Decompose, EigenvectorsRebuildTheMatrix) {
   const Matrix A = random_matrix(4, 4) + random_matrix(4, 4).transpose();
   SymmetricEigen eigen;
@@ -88,7 +86,6 @@ TEST(Decompose, SquareSystemsAreSolvedAndSingularOnesRefused) {
   EXPECT_FALSE(solve_square(Matrix::Zero(2, 2), Vector::Ones(2), x));
 }
 
-// Of all minimizers of ‖x1 + x2 − 2‖ the shortest is (1, 1).
 TEST(Decompose, PositiveDefiniteSystemsAreSolvedInPlaceAndOthersRefused) {
   const Matrix root = random_matrix(4, 4), A = root * root.transpose() + Matrix::Identity(4, 4);
   Matrix factored = A, B = random_matrix(4, 3);
@@ -99,6 +96,7 @@ TEST(Decompose, PositiveDefiniteSystemsAreSolvedInPlaceAndOthersRefused) {
   EXPECT_FALSE(solve_positive_definite(factored, B));
 }
 
+// Of all minimizers of ‖x1 + x2 − 2‖ the shortest is (1, 1).
 TEST(Decompose, LeastSquaresTakesTheShortestMinimizer) {
   Vector x;
   ASSERT_TRUE(least_squares(Matrix::Ones(3, 2), Vector::Constant(3, 2), 1e-12, x));

@@ -3,14 +3,16 @@
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <csignal>
 #include <fstream>
 
-#include "core/errors.h"
+#include "tests/refusal.h"
 #include "tests/temporary_folder.h"
 
 namespace isoline {
@@ -20,12 +22,7 @@ namespace fs = std::filesystem;
 
 std::string complaint_about(const fs::path& path, std::size_t most_bytes = kMostBytes,
                             Links links = Links::followed) {
-  try {
-    read_text(path, most_bytes, links);
-  } catch (const UsageError& error) {
-    return error.what();
-  }
-  return "";
+  return refusal([&] { read_text(path, most_bytes, links); });
 }
 
 void expect_said(const std::string& text, const std::string& part) {
@@ -147,6 +144,48 @@ TEST(Files, MovedAsideNeverReplaceEachOther) {
   EXPECT_EQ(read_text(aside / "plan.json"), "first");
   EXPECT_EQ(names_in(aside).size(), 3U);
   EXPECT_THROW(move_into(aside, file), UsageError) << "there is none left";
+}
+
+TEST(Files, AFailedWriteLeavesTheOldFileAndNoOther) {
+  const TemporaryFolder owned;
+  const std::filesystem::path& folder = owned.path();
+  const auto path = folder / "record.json";
+  write_text(path, "old");
+  std::filesystem::create_directory(folder / "taken");
+  EXPECT_THROW(write_text(folder / "taken", "new"), std::runtime_error);  // rename must fail
+  EXPECT_THROW(write_text(folder / "absent" / "record.json", "new"), std::runtime_error);
+  EXPECT_EQ(read_text(path), "old");
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder), {}), 2);
+}
+
+// A limit on the size of files stands in for a full disk: write() fails half-way in both.
+TEST(Files, AFullDiskIsAnErrorAndLeavesNothingBehind) {
+  const TemporaryFolder owned;
+  const std::filesystem::path& folder = owned.path();
+  rlimit before{};
+  getrlimit(RLIMIT_FSIZE, &before);
+  const rlimit small{10, before.rlim_max};
+  std::signal(SIGXFSZ, SIG_IGN);
+  setrlimit(RLIMIT_FSIZE, &small);
+  EXPECT_THROW(write_text(folder / "record.json", std::string(100, 'x')), std::runtime_error);
+  setrlimit(RLIMIT_FSIZE, &before);
+  std::signal(SIGXFSZ, SIG_DFL);
+  EXPECT_TRUE(std::filesystem::is_empty(folder));
+}
+
+// What is told to be written is on the disk, or an error says that it may not be.
+TEST(Files, AFlushThatCannotBeIsAnError) {
+  const TemporaryFolder owned;
+  EXPECT_NO_THROW(flush_all(owned.path()));
+  EXPECT_THROW(flush_all(owned.path() / "absent"), std::runtime_error);
+  EXPECT_THROW(write_unflushed(owned.path() / "absent" / "a.json", "{}"), std::runtime_error);
+}
+
+// Published test vectors of FNV-1a, 64 bits (Fowler, Noll, Vo).
+TEST(Digest, IsFnv1a) {
+  EXPECT_EQ(digest(""), "cbf29ce484222325");
+  EXPECT_EQ(digest("a"), "af63dc4c8601ec8c");
+  EXPECT_EQ(digest("foobar"), "85944171f73967e8");
 }
 
 }  // namespace

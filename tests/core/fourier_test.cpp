@@ -39,11 +39,13 @@ TEST(RealFourier, SpectrumIsTheDefiningSum) {
   }
 }
 
-TEST(RealFourier, InverseUndoesForwardButForItsFactor) {
-  const Vector x = random_grid();
-  RealFourier2d transform(kRows, kColumns);
+TEST(RealFourier, InverseUndoesForwardButForItsFactorAndLeavesTheInputAlone) {
+  const Vector x = random_grid(), given = x;
+  RealFourier2d first(kRows, kColumns);
+  RealFourier2d transform = std::move(first);
   Vector back(x.size());
-  transform.forward(x);
+  transform.forward(given);
+  EXPECT_EQ(given, x);
   transform.inverse(back);
   EXPECT_LT((back / transform.round_trip() - x).norm(), kRounding);
 }
@@ -66,27 +68,10 @@ TEST(RealFourier, EqualInputGivesEqualBitsWhereverItLies) {
   }
 }
 
-TEST(RealFourier, LeavesItsInputAlone) {
-  const Vector x = random_grid();
-  const Vector given = x;
-  RealFourier2d transform(kRows, kColumns);
-  transform.forward(given);
-  EXPECT_EQ(given, x);
-}
-
-TEST(RealFourier, SurvivesBeingMoved) {
-  const Vector x = random_grid();
-  RealFourier2d first(kRows, kColumns);
-  RealFourier2d second = std::move(first);
-  Vector back(x.size());
-  second.forward(x);
-  second.inverse(back);
-  EXPECT_LT((back / second.round_trip() - x).norm(), kRounding);
-}
-
-TEST(RealFourier, AGridOfAnotherSizeIsAUsageError) {
-  RealFourier2d transform(kRows, kColumns);
-  EXPECT_THROW(transform.forward(random_grid(7)), UsageError);
+TEST(Transforms, OfAGridOfAnotherSizeAreUsageErrors) {
+  EXPECT_THROW(RealFourier2d(kRows, kColumns).forward(random_grid(7)), UsageError);
+  Matrix x = random_grid(14).reshaped(7, 2);
+  EXPECT_THROW(SineTransform(6).columns(x, x), UsageError);
 }
 
 // By long double, whose rounding is a thousandth of what is allowed.
@@ -128,12 +113,6 @@ TEST(SineTransform, InPlaceTwiceIsTheInputTimesAFactor) {
   sine.columns(back, back);
   sine.columns(back, back);
   EXPECT_LT((back / sine.round_trip() - x).norm(), kRounding);
-}
-
-TEST(SineTransform, OfAnotherSizeIsAUsageError) {
-  SineTransform sine(6);
-  Matrix x = random_columns(7, 2);
-  EXPECT_THROW(sine.columns(x, x), UsageError);
 }
 
 }  // namespace

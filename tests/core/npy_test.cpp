@@ -7,9 +7,8 @@
 #include <cmath>
 #include <cstring>
 
-#include "core/errors.h"
 #include "core/files.h"
-#include "core/json.h"
+#include "tests/refusal.h"
 #include "tests/temporary_folder.h"
 
 namespace isoline {
@@ -28,6 +27,10 @@ std::string by_numpy() {
     bytes.append(raw, 4);
   }
   return bytes;
+}
+
+std::string refusal_of(const std::string& bytes) {
+  return refusal([&] { npy_from_bytes(bytes); });
 }
 
 TEST(Npy, ReadsWhatNumpyWrites) {
@@ -54,27 +57,17 @@ TEST(Npy, SurvivesTheRoundTripAtEveryRank) {
 }
 
 TEST(Npy, RefusesWhatItCannotTakeWithOneSentence) {
-  const TemporaryFolder folder;
-  const auto file = folder.path() / "a.npy";
-  const auto complaint = [&](const std::string& bytes) -> std::string {
-    write_text(file, bytes);
-    try {
-      read_npy(file);
-    } catch (const UsageError& error) {
-      return error.what();
-    }
-    return "";
-  };
   const std::string good = by_numpy();
-  EXPECT_NE(complaint("hello").find("no .npy file"), std::string::npos);
-  EXPECT_NE(complaint(good.substr(0, good.size() - 3)).find("bytes of numbers"), std::string::npos);
+  EXPECT_NE(refusal_of("hello").find("no .npy file"), std::string::npos);
+  EXPECT_NE(refusal_of(good.substr(0, good.size() - 3)).find("bytes of numbers"),
+            std::string::npos);
   std::string complex = good;
   complex.replace(complex.find("<f4"), 3, "<c8");
-  EXPECT_NE(complaint(complex).find("'<c8'"), std::string::npos);
+  EXPECT_NE(refusal_of(complex).find("'<c8'"), std::string::npos);
   std::string infinite = good;
   const float nan = NAN;
   std::memcpy(infinite.data() + infinite.size() - 4, &nan, 4);
-  EXPECT_NE(complaint(infinite).find("not finite"), std::string::npos);
+  EXPECT_NE(refusal_of(infinite).find("not finite"), std::string::npos);
 }
 
 // A file of the format's first version, with any header and numbers of zero.
@@ -88,50 +81,30 @@ std::string shaped(const std::string& shape, const char* order = "False") {
   return fmt::format("{{'descr': '<f8', 'fortran_order': {}, 'shape': {}, }}\n", order, shape);
 }
 
-std::string refusal_of(const std::string& bytes) {
-  try {
-    npy_from_bytes(bytes);
-  } catch (const UsageError& error) {
-    return error.what();
-  }
-  return "";
-}
-
-// As many letters as a header's length can say made std::regex recurse until the stack ended.
-TEST(Npy, AHeaderOfSixtyThousandLettersIsRefused) {
+TEST(Npy, HeadersThatCannotBeAreRefusedBeforeRoomIsMade) {
+  const auto expect = [](const std::string& header, std::size_t bytes, const char* part) {
+    EXPECT_NE(refusal_of(npy_of(header, bytes)).find(part), std::string::npos)
+        << header.substr(0, 80);
+  };
+  // As many letters as a header's length can say made std::regex recurse until the stack ended.
   for (const std::string& header :
        {std::string(60'000, ' '), "{'descr': '" + std::string(60'000, 'a') + "'}",
         shaped("(" + std::string(60'000, '1') + ")"), shaped("(" + std::string(60'000, ' ') + ")")})
-    EXPECT_NE(refusal_of(npy_of(header, 0)).find("at most 10000"), std::string::npos)
-        << header.substr(0, 40);
-}
-
-// 2³² · 2³² is 0 in 64 bits: an index into what was allocated for it would lead anywhere.
-TEST(Npy, AShapeWhoseProductWrapsIsRefused) {
+    expect(header, 0, "at most 10000");
+  // 2³² · 2³² is 0 in 64 bits: an index into what was allocated for it would lead anywhere.
   for (const char* order : {"False", "True"})
     for (const char* shape :
          {"(4294967296, 4294967296)", "(9223372036854775807, 2)", "(3, 6148914691236517206)",
           "(0, 9223372036854775807, 9223372036854775807)"})
-      EXPECT_NE(refusal_of(npy_of(shaped(shape, order), 16)).find("more numbers than a file"),
-                std::string::npos)
-          << shape;
-}
-
-TEST(Npy, AShapeThatAsksForMoreThanIsThereIsRefusedBeforeItIsMadeRoomFor) {
-  EXPECT_NE(refusal_of(npy_of(shaped("(1000000000000,)"), 16)).find("it holds 16 bytes"),
-            std::string::npos);
-  EXPECT_NE(refusal_of(npy_of(shaped("(2305843009213693952,)"), 0)).find("it holds 0 bytes"),
-            std::string::npos)
-      << "2⁶¹ numbers of 8 bytes are 0 bytes in 64 bits";
-}
-
-TEST(Npy, SizesThatAreNoCountsAreRefused) {
+      expect(shaped(shape, order), 16, "more numbers than a file");
+  expect(shaped("(1000000000000,)"), 16, "it holds 16 bytes");
+  expect(shaped("(2305843009213693952,)"), 0, "it holds 0 bytes");  // of 8: 0 bytes in 64 bits
   for (const char* shape : {"(-1,)", "(-2, -2)", "(99999999999999999999,)", "(1.5,)", "(x,)",
                             "(1 2)", "(,)", "5", "[5]", "(True,)"})
-    EXPECT_NE(refusal_of(npy_of(shaped(shape), 16)).find("shape"), std::string::npos) << shape;
+    expect(shaped(shape), 16, "its header must be like");
   std::string many = "(";
   for (int i = 0; i < 100; ++i) many += "1,";
-  EXPECT_NE(refusal_of(npy_of(shaped(many + ")"), 8)).find("more than 64"), std::string::npos);
+  expect(shaped(many + ")"), 8, "more than 64");
 }
 
 TEST(Npy, AHeaderThatIsNoDictionaryOfThreeKeysIsRefused) {

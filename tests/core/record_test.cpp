@@ -1,15 +1,26 @@
-// A record survives the round trip, and its digest names the request.
+// Records, requests and plans survive their files, the schemas say what their fields say, and the
+// fields beside a record are read back or refused. After a field is added the schemas are renewed
+// by
+//   ISOLINE_RENEW_SCHEMAS=1 build/release/tests/core_tests --gtest_filter='Schemas.*'
 #include "core/records/record.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdlib>
+#include <filesystem>
 #include <functional>
 #include <nlohmann/json.hpp>
 
-#include "core/errors.h"
+#include "core/files.h"
 #include "core/json.h"
-#include "core/privilege.h"
+#include "core/oracle.h"
+#include "core/records/json_view.h"
+#include "core/records/npy.h"
+#include "core/records/request.h"
+#include "core/records/sheet.h"
+#include "tests/refusal.h"
+#include "tests/temporary_folder.h"
 
 namespace isoline {
 namespace {
@@ -47,13 +58,6 @@ TEST(Record, SurvivesTheRoundTrip) {
   EXPECT_EQ(to_json(record_from_text(json_text(written), "it")), written);
 }
 
-TEST(Record, OfAnOlderVersionHasNoCountsAtItsHits) {
-  Json older = to_json(sample());
-  older["hits"].erase("counts");
-  EXPECT_TRUE(record_from_text(json_text(older), "it").hits->counts.empty());
-  EXPECT_EQ(without_timings(older), without_timings(to_json(sample())));
-}
-
 TEST(Record, WhatIsNoRecordIsAUsageError) {
   Json json = to_json(sample());
   for (const char* missing : {"schema", "cell", "request", "status", "curve", "summary"}) {
@@ -77,13 +81,6 @@ TEST(Provenance, IsSharedInMemoryByTheRecordsOfOneBuild) {
   EXPECT_EQ(third.provenance.build->commit, "abc");
   EXPECT_EQ(first.provenance.run.concurrent_jobs, 2);
   EXPECT_EQ(second.provenance.run.concurrent_jobs, 5);
-}
-
-TEST(Provenance, WhatAnotherVersionSaysBesidesSurvives) {
-  Json json = to_json(sample());
-  json["provenance"]["host"] = {{"load", 1.25}};
-  json["provenance"]["run"]["queue"] = "night";
-  EXPECT_EQ(to_json(record_from_text(json_text(json), "it")), json);
 }
 
 TEST(Provenance, OfAProgramThatSaysNothingIsEmpty) {
@@ -121,10 +118,10 @@ TEST(Record, TimesAreLeftOutOfComparisons) {
 TEST(Cell, HasTheNameThatEarlierVersionsGaveIt) {
   const Json direct = Json::parse(R"({
     "budget": {"iterations": 100000, "seconds": "inf", "target": 1e-10, "work": 2000},
-    "optimizer": {"name": "sip", "revision": 2, "spec": "sip", "options": {
+    "optimizer": {"name": "sip", "spec": "sip", "options": {
       "inner-steps": 1, "inverse": "auto", "inverse-evaluations": 200, "max-loss-change": 0.2,
       "network-optimizer": "auto", "network-steps": 1, "proxy": "l2", "step": 1.0}},
-    "problem": {"name": "sine", "revision": 1, "spec": "sine", "options": {
+    "problem": {"name": "sine", "spec": "sine", "options": {
       "batch": 100, "data": 0, "form": "code", "gamma": 10.0, "mode": "direct",
       "network": "mlp[layers=32-64-32]", "phi": 45.0, "xi": 10.0}},
     "rates": "", "seed": 0, "threads": 1})");
@@ -169,32 +166,164 @@ TEST(Privileges, AreInversesWhereThePhysicsAreInverted) {
   EXPECT_FALSE(is_inverse_of_physics("it was told of an inverse of the physics"));
 }
 
-// A component may gain an option that is empty by default: its cells keep their names.
-TEST(Cell, DoesNotDependOnAnOptionOfNoText) {
-  const Request asked = sample().request;
-  Request other = asked;
-  other.problem.options.set("watch", std::string());
-  other.optimizer.options.set("remark", std::string());
-  EXPECT_EQ(cell_digest(other), cell_digest(asked));
-  other.problem.options.set("watch", std::string("noise"));
-  EXPECT_NE(cell_digest(other), cell_digest(asked));
-}
-
 TEST(Cell, DependsOnAllThatIsAskedAndNothingElse) {
   const Request asked = sample().request;
   Request other = asked;
   other.rates = "direct.json";
-  other.optimizer.revision = 9;
+  other.problem.options.set("watch", std::string());  // a new option that is empty by default
   EXPECT_EQ(cell_digest(other), cell_digest(asked));
   for (const auto& change : std::vector<std::function<void(Request&)>>{
            [](Request& r) { r.seed = 8; }, [](Request& r) { r.threads = 2; },
            [](Request& r) { r.budget.work = 5; }, [](Request& r) { r.budget.target = 0; },
            [](Request& r) { r.problem.options.set("n", Index{1}); },
+           [](Request& r) { r.problem.options.set("watch", std::string("noise")); },
            [](Request& r) { r.optimizer.options.set("rate", 0.2); }}) {
     Request changed = asked;
     change(changed);
     EXPECT_NE(cell_digest(changed), cell_digest(asked));
   }
+}
+
+const std::filesystem::path kFolder =
+    std::filesystem::path(ISOLINE_SOURCE_DIR) / "benchmarks/schemas";
+
+void expect_renewed(const char* file, const Json& schema) {
+  if (std::getenv("ISOLINE_RENEW_SCHEMAS") != nullptr) write_json(kFolder / file, schema);
+  EXPECT_EQ(read_json(kFolder / file), schema)
+      << file << " is not what the fields say: renew it as the first lines of this file tell";
+}
+
+TEST(Schemas, AreWhatTheFieldsSay) {
+  expect_renewed("run.json", run_schema());
+  expect_renewed("component.json", sheet_schema());
+  expect_renewed("plan.json", plan_schema());
+}
+
+// A record with all that it must have and nothing more.
+Record least() {
+  Record record{.cell = std::string(16, '0'), .build = std::string(16, '1')};
+  record.status = Status::budget;
+  for (const auto& [name, tau] : kVerified)
+    record.verified[name] = record.found[name] = std::nullopt;
+  Build build{.version = "0",
+              .commit = "abc",
+              .is_dirty = false,
+              .compiler = "c",
+              .flags = "f",
+              .instruction_set = "i",
+              .processor = "p",
+              .libraries = {{"a", "1"}}};
+  record.provenance = Provenance(build);
+  record.provenance.run = {
+      .started = "now", .concurrent_jobs = 1, .is_exclusive = true, .command = "isoline"};
+  return record;
+}
+
+TEST(Schemas, OfRecordsRefuseWhatIsMissingUnknownOrOfAnotherType) {
+  const Schema schema(run_schema());
+  const Json good = to_json(least());
+  EXPECT_EQ(schema.violations(good), std::vector<std::string>{});
+  for (const char* field : {"cell", "request", "status", "minimum", "summary", "provenance"}) {
+    Json broken = good;
+    broken.erase(field);
+    EXPECT_NE(schema.violations(broken), std::vector<std::string>{}) << field;
+  }
+  for (const auto& [place, value] : std::map<std::string, Json>{{"/cell", "short"},
+                                                                {"/unknown", 1},
+                                                                {"/summary/loss", nullptr},
+                                                                {"/summary/work", 1.5},
+                                                                {"/status", "running"},
+                                                                {"/request/threads", 0},
+                                                                {"/request/seed", -1},
+                                                                {"/provenance/commit", 5},
+                                                                {"/verified/1e-3", "yes"},
+                                                                {"/counts/forward", -1}}) {
+    Json broken = good;
+    broken[Json::json_pointer(place)] = value;
+    EXPECT_NE(schema.violations(broken), std::vector<std::string>{}) << place;
+  }
+  Json infinite = good;
+  infinite["summary"]["loss"] = "inf";
+  EXPECT_EQ(schema.violations(infinite), std::vector<std::string>{});
+}
+
+// As a seed is: what reads it as a signed number finds −1.
+TEST(Schema, TheLargestIntegerIsNotBelowZero) {
+  const Json schema{{"properties", {{"seed", {{"type", "integer"}, {"minimum", 0}}}}}};
+  EXPECT_TRUE(schema_violations({{"seed", std::uint64_t{18446744073709551615U}}}, schema).empty());
+  EXPECT_TRUE(schema_violations({{"seed", 1}}, schema).empty());
+  EXPECT_FALSE(schema_violations({{"seed", -1}}, schema).empty());
+}
+
+TEST(Schema, ViolationsNameTheirPlace) {
+  const Json schema{{"type", "object"},
+                    {"properties", {{"list", {{"items", {{"type", "integer"}}}}}}}};
+  const auto violations = schema_violations({{"list", {1, "two"}}}, schema);
+  ASSERT_FALSE(violations.empty());
+  bool is_named = false;
+  for (const std::string& each : violations) is_named |= each.find("[1]") != std::string::npos;
+  EXPECT_TRUE(is_named) << violations[0];
+}
+
+// y*, x* and x at two iterations, of 2×3 cells.
+FieldFrames small_fields() {
+  FieldFrames fields{.iterations = {0, 7}, .shape = {4, 2, 3}};
+  for (int i = 0; i < 24; ++i) fields.numbers.push_back(0.1F * static_cast<float>(i));
+  fields.digest = digest(field_file(fields));
+  return fields;
+}
+
+std::string refusal_of(FieldFrames fields, const std::filesystem::path& path) {
+  fields.numbers.clear();
+  return refusal([&] { read_field_numbers(fields, path); });
+}
+
+TEST(FieldFrames, AreReadBackFromTheirFile) {
+  const TemporaryFolder folder;
+  const FieldFrames written = small_fields();
+  write_text(folder.path() / "a.npy", field_file(written));
+  FieldFrames read = written;
+  read.numbers.clear();
+  read_field_numbers(read, folder.path() / "a.npy");
+  EXPECT_EQ(read.numbers, written.numbers);
+  EXPECT_EQ(read.target()[1], 0.1F);
+  EXPECT_EQ(read.truth()[0], 0.6F);
+  EXPECT_EQ(read.x(1)[5], 2.3F);
+  const NumberArray array = read_npy(folder.path() / "a.npy");
+  EXPECT_EQ(array.shape, (std::vector<Index>{4, 2, 3}));
+  EXPECT_EQ(array.values[23], static_cast<Real>(2.3F));
+}
+
+TEST(FieldFrames, ThatAreMissingDamagedOrAnothersAreRefused) {
+  const TemporaryFolder folder;
+  const std::filesystem::path path = folder.path() / "a.npy";
+  const FieldFrames fields = small_fields();
+  EXPECT_NE(refusal_of(fields, path).find("a.npy"), std::string::npos);
+  std::string bytes = field_file(fields);
+  bytes.back() ^= 1;
+  write_text(path, bytes);
+  EXPECT_NE(refusal_of(fields, path).find("is not the file that its record names"),
+            std::string::npos);
+  FieldFrames other = fields;
+  other.shape = {4, 3, 2};
+  write_text(path, field_file(fields));
+  EXPECT_NE(refusal_of(other, path).find("shape"), std::string::npos);
+}
+
+TEST(FieldFrames, WhoseShapeOrIterationsCannotBeAreUnsound) {
+  EXPECT_NO_THROW(require_sound(small_fields()));
+  using Numbers = std::vector<std::int64_t>;
+  for (const auto& [iterations, shape] :
+       std::vector<std::pair<Numbers, std::vector<Index>>>{{{0, 7}, {5, 2, 3}},
+                                                           {{0, 7}, {2, 2, 3}},
+                                                           {{0, 7}, {4, 0, 3}},
+                                                           {{0, 7}, {4, 6}},
+                                                           {{0, 7}, {4, 2, -3}},
+                                                           {{7, 7}, {4, 2, 3}},
+                                                           {{-1, 7}, {4, 2, 3}},
+                                                           {{7, 0}, {4, 2, 3}}})
+    EXPECT_THROW(require_sound({.iterations = iterations, .shape = shape}), UsageError)
+        << iterations[0] << ", " << shape.size();
 }
 
 }  // namespace

@@ -1,13 +1,20 @@
-// A command that a record keeps means the same when it is typed again.
+// A command that a record keeps means the same when it is typed again; and the processor time of a
+// program that computes for this one counts as this one's.
 #include "core/shell.h"
 
 #include <gtest/gtest.h>
+#include <poll.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <cstdio>
+#include <ctime>
 #include <memory>
 #include <vector>
 
+#include "core/clock.h"
 #include "core/errors.h"
+#include "core/foreign/foreign.h"
 
 namespace isoline {
 namespace {
@@ -34,11 +41,6 @@ TEST(Shell, WordsOfACommandAreSplitAsAShellSplitsThem) {
     EXPECT_THROW(shell_words(open), UsageError) << open;
 }
 
-TEST(Shell, WordsComeBackFromACommandMadeOfThem) {
-  const std::vector<std::string> words = {"it's", "a b", "$HOME", "\\", "\"", "", "two\nlines"};
-  EXPECT_EQ(shell_words(shell_command(words)), words);
-}
-
 // What `sh` makes of it, each word on a line of its own.
 std::string read_back(const std::string& command) {
   const std::unique_ptr<FILE, int (*)(FILE*)> pipe(popen(("printf '<%s>' " + command).c_str(), "r"),
@@ -56,6 +58,35 @@ TEST(Shell, ReadsEveryWordBackAsItWas) {
   std::string expected;
   for (const std::string& word : words) expected += "<" + word + ">";
   EXPECT_EQ(read_back(shell_command(words)), expected);
+  EXPECT_EQ(shell_words(shell_command(words)), words);
+}
+
+// Beside that of this process itself.
+double counted_beside() {
+  timespec own{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &own);
+  return processor_seconds() - static_cast<double>(own.tv_sec) -
+         1e-9 * static_cast<double>(own.tv_nsec);
+}
+
+TEST(CountedProcess, ItsTimeIsThatOfWhomItComputesForAndStaysWhenItHasGone) {
+  constexpr double kEnough = 0.05;  // seconds, much more than two clocks read in turn differ by
+  const double before = counted_beside();
+  double counted = 0;
+  {
+    const ChildProgram busy({.command = "sh -c 'while :; do :; done'"});
+    for (int look = 0; look < 6000 && counted < kEnough; ++look) {
+      poll(nullptr, 0, 5);
+      counted = counted_beside() - before;
+    }
+    EXPECT_GE(counted, kEnough);
+  }
+  EXPECT_GE(counted_beside() - before, 0.9 * counted);
+  const pid_t forked = fork();  // who counts nobody itself
+  if (forked == 0) _exit(counted_beside() < 0.9 * kEnough ? 0 : 1);
+  int status = 1;
+  waitpid(forked, &status, 0);
+  EXPECT_EQ(status, 0);
 }
 
 }  // namespace

@@ -1,10 +1,11 @@
-// The door for text that others wrote: valid where it comes in, harmless where it is shown.
+// Text of others is valid where it comes in and harmless where it is shown; instants come back.
 #include "core/text.h"
 
 #include <gtest/gtest.h>
 
 #include <cstdio>
 
+#include "core/clock.h"
 #include "core/files.h"
 #include "tests/temporary_folder.h"
 
@@ -67,6 +68,22 @@ TEST(Text, ThatCannotBeWrittenIsAnError) {
   std::setvbuf(full, nullptr, _IONBF, 0);
   EXPECT_THROW(say(full, "text"), std::exception);
   std::fclose(full);
+}
+
+// The seconds by `date -u -d TEXT +%s`.
+TEST(Instant, IsTheUniversalTimeOfSecondsSince1970AndNothingElse) {
+  EXPECT_EQ(instant_text(0), "1970-01-01T00:00:00Z");
+  EXPECT_EQ(instant_text(1769860800), "2026-01-31T12:00:00Z");
+  EXPECT_EQ(instant_from("2024-02-29T23:59:59Z"), 1709251199);
+  for (const std::int64_t seconds : {-1LL, 0LL, 951782400LL, 4102444799LL})
+    EXPECT_EQ(instant_from(instant_text(seconds)), seconds) << instant_text(seconds);
+  EXPECT_EQ(instant_from(instant_text(seconds_now())).value_or(0) / 100, seconds_now() / 100);
+  for (const std::string& text :
+       {std::string(), std::string("2026-01-31"), std::string("2026-01-31T12:00:00"),
+        std::string("2026-01-31T12:00:00Z "), std::string("2026-02-31T12:00:00Z"),
+        std::string("2026-1-31T12:00:00Z"), std::string("yesterday"),
+        std::string("2026-01-31T25:00:00Z"), std::string("2026-01-31T12:00:00Z\0more", 25)})
+    EXPECT_EQ(instant_from(text), std::nullopt) << text;
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
-// Every piece of shared work is done once, and what it throws reaches the caller. The libraries'
-// kernel is who it is said to be chosen by.
+// Every piece of shared work is done once, and what it throws reaches the caller. The processor's
+// features, and the kernel that is chosen for them.
 #include "core/threads.h"
 
 #include <gtest/gtest.h>
@@ -107,6 +107,35 @@ TEST(CacheSizes, AreThoseThatEigenBlocksBy) {
 #ifdef ISOLINE_PORTABLE
   EXPECT_EQ(cache_sizes().l1, 32 * 1024);
 #endif
+}
+
+TEST(Processor, NamesItselfAndItsInstructions) {
+  EXPECT_FALSE(processor().brand.empty());
+#ifdef __AVX2__  // what this was compiled for is what it runs on
+  EXPECT_TRUE(processor().has("avx2"));
+  EXPECT_TRUE(processor().has("fma"));
+#endif
+  EXPECT_EQ(processor().has("avx512f"), __builtin_cpu_supports("avx512f") != 0);
+  EXPECT_FALSE(processor().has("3dnow!"));
+}
+
+const Processor kSse{"of 2008", {"sse3", "ssse3", "sse4_1", "sse4_2"}};
+const Processor kAvx2{"of 2013", {"sse3", "avx", "fma", "avx2"}};
+const Processor kNoFma{"of a kind that was planned", {"sse3", "avx", "avx2"}};
+const Processor kAvx512{
+    "of 2017", {"sse3", "avx", "fma", "avx2", "avx512f", "avx512bw", "avx512dq", "avx512vl"}};
+const Processor kHalf{"of 2016", {"sse3", "avx", "fma", "avx2", "avx512f", "avx512cd"}};
+
+TEST(BetterKernel, IsAskedForWhereOpenBlasChoseBelowTheProcessor) {
+  for (const char* own : {"Prescott", "Haswell", "Zen"})
+    EXPECT_EQ(better_kernel(kAvx512, own), "SkylakeX");
+  for (const char* own : {"Prescott", "Sandybridge"})
+    EXPECT_EQ(better_kernel(kAvx2, own), "Haswell");
+  EXPECT_EQ(better_kernel(kHalf, "Prescott"), "Haswell");
+  for (const char* own : {"SkylakeX", "Cooperlake"}) EXPECT_EQ(better_kernel(kAvx512, own), "");
+  for (const char* own : {"Haswell", "Zen"}) EXPECT_EQ(better_kernel(kAvx2, own), "");
+  EXPECT_EQ(better_kernel(kSse, "Nehalem"), "");
+  EXPECT_EQ(better_kernel(kNoFma, "Sandybridge"), "");
 }
 
 }  // namespace

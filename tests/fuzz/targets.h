@@ -6,13 +6,9 @@
 #include <string>
 #include <string_view>
 
-namespace isoline::benchmarks {
-struct Catalog;
-}
-
 namespace isoline::fuzz {
 
-// One a file of this folder, which has its name, and a corpus in corpus/<name>/.
+// Each has a corpus in corpus/<name>/.
 void spec(std::string_view bytes);
 void command_line(std::string_view bytes);
 void suite(std::string_view bytes);
@@ -25,8 +21,6 @@ void wire(std::string_view bytes);
 
 // Calls `read`. A refusal must be a sentence, not what a library says to itself.
 void expect_read_or_refused(const std::function<void()>& read);
-
-const benchmarks::Catalog& catalog();  // what the program has built in
 
 // A file in memory that is read by its path.
 class MemoryFile {

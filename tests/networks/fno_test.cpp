@@ -1,8 +1,9 @@
 // The Fourier neural operator: its published size, and its modes against the whole transform.
+#include "networks/fno.h"
+
 #include <gtest/gtest.h>
 
 #include "core/fourier.h"
-#include "networks/fourier_operator.h"
 #include "networks/network.h"
 
 namespace isoline::networks {

@@ -77,23 +77,6 @@ TEST(Perceptron, FloatAgreesWithDoubleToItsPrecision) {
   }
 }
 
-TEST(Perceptron, JacobianIsTheOneByPullbacks) {
-  for (const char* options : {"precision=double", "precision=double,activation=gelu,layers=7-3"}) {
-    constexpr Index kRows = 3, kSamples = 11;
-    const auto network = make(options, 4, 2);
-    RandomStream stream(1, "mlp", "test");
-    const Vector theta = network->start(stream);
-    const Matrix in = stream.normal_vector(4 * kSamples).reshaped(4, kSamples);
-    const Matrix dy_dx = stream.normal_vector(6 * kSamples).reshaped(kRows, 2 * kSamples);
-    Matrix x(2, kSamples), fast(kRows * kSamples, theta.size()), slow = fast;
-    Workspace w;
-    network->forward(theta, in, x, w);
-    network->jacobian(dy_dx, fast, w);
-    network->Network::jacobian(dy_dx, slow, w);
-    EXPECT_LE((fast - slow).norm(), 1e-14 * slow.norm());  // rounding in double
-  }
-}
-
 // What belongs to a sample, x, its change along v and its rows of the Jacobian, may not depend on
 // its place: neither on the batch around it, nor on where vector registers end, nor on the kernels
 // that a library picks.

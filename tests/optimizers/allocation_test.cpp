@@ -68,39 +68,35 @@ TEST(Allocation, FirstOrderStepsAllocateNothingOnceWarm) {
   }
 }
 
-std::int64_t allocations_of_jacobians(const Problem& problem) {
+// Of evaluations of a matrix at a point, once the work space is sized.
+template <class F>
+std::int64_t allocations_of(const Problem& problem, const F& fill) {
   Point at;
-  Matrix J;
-  const auto evaluate = [&] {
+  Matrix all;
+  std::int64_t before = 0;
+  for (int i = 0; i < 2; ++i) {
+    before = allocations;
     problem.forward(problem.start(), at);
-    problem.jacobian(J, at);
-  };
-  evaluate();  // sizes the work space
-  const std::int64_t before = allocations;
-  evaluate();
+    fill(all, at);
+  }
   return allocations - before;
 }
 
 // By formula, by products, through a network, and row by row through one without its own.
-TEST(Allocation, JacobiansAllocateNothingOnceWarm) {
+TEST(Allocation, JacobiansAndHessiansAllocateNothingOnceWarm) {
+  const auto of_jacobian = [](const Problem& problem) {
+    return allocations_of(problem, [&](Matrix& J, Point& at) { problem.jacobian(J, at); });
+  };
   for (const char* spec : {"rosenbrock", "broyden-tridiagonal[n=20]", "sine[mode=learn]", "hig-toy",
                            "exponential[mode=learn]", "variably-dimensioned", "linear-chain",
                            "coupled-oscillators[mode=learn]", "quantum-dipole[mode=learn]",
                            "quantum-dipole[loss=residual]", "poisson-hig"})
-    EXPECT_EQ(allocations_of_jacobians(published(spec)), 0) << spec;
-  EXPECT_EQ(allocations_of_jacobians(learned_affine(6)), 0) << "a network without its own";
-}
-
-TEST(Allocation, HessiansAllocateNothingOnceWarm) {
+    EXPECT_EQ(of_jacobian(published(spec)), 0) << spec;
+  EXPECT_EQ(of_jacobian(learned_affine(6)), 0) << "a network without its own";
   for (const char* spec : {"rosenbrock", "brown-dennis", "wood"}) {
     const Problem problem = published(spec);
-    Point at;
-    Matrix H;
-    problem.forward(problem.start(), at);
-    problem.hessian(H, at);
-    const std::int64_t before = allocations;
-    problem.hessian(H, at);
-    EXPECT_EQ(allocations - before, 0) << spec;
+    const auto hessian = [&](Matrix& H, Point& at) { problem.hessian(H, at); };
+    EXPECT_EQ(allocations_of(problem, hessian), 0) << spec;
   }
 }
 

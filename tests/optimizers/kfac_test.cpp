@@ -10,19 +10,6 @@ namespace isoline::optimizers {
 using networks::LayerMoments;
 namespace {
 
-Vector first_step(const Problem& problem, const std::string& spec) {
-  return run(problem, spec, iterations(1)).theta - problem.start();
-}
-
-void expect_near(const Vector& one, const Vector& other, Real tolerance, const std::string& what) {
-  EXPECT_LE((one - other).norm(), tolerance * other.norm()) << what;
-}
-
-std::string why(const std::string& spec, const Problem& problem) {
-  const OptimizerEntry& entry = optimizers().at(parse_spec(spec).name);
-  return why_inapplicable(entry, options_of_spec(entry, spec), problem);
-}
-
 // A convolution of periodic N×N grids and nothing after it: taps up to `reach` away, bias.
 class Convolved final : public Network {
  public:
@@ -157,36 +144,8 @@ TEST(Kfac, IsTheNaturalGradientOfAConvolutionWhoseOutputIsSeenPlaceByPlace) {
               first_step(problem, "gauss-newton"), 1e-9, "places");
 }
 
-// Numbers that act one by one, as those of a batch norm, and no layer besides.
-class Scales final : public Network {
- public:
-  Index parameters() const override { return 4; }
-  Index inputs() const override { return 0; }
-  Index outputs() const override { return 4; }
-  Vector start(RandomStream&) const override { return Vector::Ones(4); }
-  std::vector<Block> layout() const override {
-    return {{0, 2, 1, Block::Kind::norm}, {2, 2, 1, Block::Kind::norm}};
-  }
-  void forward(VectorRef theta, BatchRef, BatchOut x, Workspace&) const override {
-    x.col(0) = theta;
-  }
-  void pushforward(VectorRef v, BatchOut Jv, Workspace&) const override { Jv.col(0) = v; }
-  void pullback(BatchRef u, VectorOut JTu, Workspace&) const override { JTu = u.col(0); }
-  bool has_layer_moments() const override { return true; }
-  void layer_moments(BatchRef u, std::vector<LayerMoments>& out, VectorOut JTu,
-                     Workspace&) const override {
-    out.clear();
-    JTu = u.col(0);
-  }
-};
-
 TEST(Kfac, StepsABatchNormOverTheMeanOfEachBlocksDiagonal) {
-  const Matrix M = Eigen::Vector4d(1, 2, 3, 4).asDiagonal();
-  const Problem problem({.physics = std::make_unique<Linear>(M),
-                         .start = Vector::Ones(4),
-                         .target = Matrix::Zero(4, 1),
-                         .network = std::make_unique<Scales>(),
-                         .input = Matrix(0, 1)});
+  const Problem problem = separate({{0, 2, 1, Block::Kind::norm}, {2, 2, 1, Block::Kind::norm}});
   const Eigen::Vector4d gradient(1, 4, 9, 16), mean(2.5, 2.5, 12.5, 12.5);
   const Vector expected = -(gradient.array() / (mean.array() + 0.5)).matrix();
   expect_near(first_step(problem, "kfac[rate=1,damping=0.5]"), expected, 1e-14, "norms");

@@ -1,6 +1,9 @@
 // What the methods' formulas promise of each other.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "core/decompose.h"
 #include "run.h"
 #include "trial_problems.h"
@@ -82,34 +85,6 @@ TEST(HalfInverse, KappaMinusOneIsGradientDescent) {
                    "gd[rate=0.02]");
 }
 
-Vector first_step(const Problem& problem, const std::string& spec) {
-  return run(problem, spec, iterations(1)).theta - problem.start();
-}
-
-// Both laws hold exactly; the tolerance is rounding alone.
-TEST(HalfInverse, StepScalesWithTheLossAndWithThePower1MinusKappaOfTheOutput) {
-  const Eigen::Vector2d start(1, 2), target(0.5, -0.3);
-  constexpr Real kScale = 7;
-  for (const char* kappa : {"-1", "0", "0.25", "0.5", "0.75", "1"}) {
-    const std::string spec = std::string("hig[kappa=") + kappa + "]";
-    const Vector step = first_step(linear(easy_matrix(), start, target), spec);
-    const Vector heavier = first_step(linear(easy_matrix(), start, target, kScale), spec);
-    EXPECT_LE((heavier - kScale * step).norm(), 1e-13 * heavier.norm()) << kappa;
-    const Vector larger = first_step(linear(kScale * easy_matrix(), start, kScale * target), spec);
-    const Vector expected = std::pow(kScale, 1 - std::stod(kappa)) * step;
-    EXPECT_LE((larger - expected).norm(), 1e-13 * expected.norm()) << kappa;
-  }
-}
-
-TEST(HalfInverse, SingularValuesUpToTheCutoffAreDiscarded) {
-  const Matrix M = Eigen::Vector2d(1, 1e-3).asDiagonal();
-  const Problem problem = linear(M, Eigen::Vector2d(1, 1), Eigen::Vector2d(0, 0));
-  const Vector kept = first_step(problem, "hig[kappa=1,cutoff=0.9e-3]");
-  const Vector discarded = first_step(problem, "hig[kappa=1,cutoff=1.1e-3]");
-  EXPECT_NEAR(kept[1], -1, 1e-12);
-  EXPECT_EQ(discarded[1], 0);
-}
-
 TEST(InverseGradient, StepsAsGaussNewtonWhereTheJacobianIsSquare) {
   expect_same_path(published("broyden-tridiagonal"), "inverse-gradient", "gauss-newton");
 }
@@ -182,20 +157,67 @@ TEST(Sip, L1ProxySeesSignsAlone) {
 }
 
 TEST(Sip, AnalyticInverseIsRefusedWhereThereIsNone) {
-  const OptimizerEntry& sip = optimizers().at("sip");
-  const auto why = [&](const std::string& spec) {
-    return why_inapplicable(sip, options_of_spec(sip, spec), published("broyden-tridiagonal"));
-  };
-  EXPECT_EQ(why("sip[inverse=analytic]"), "the physics has no local inverse");
-  EXPECT_EQ(why("sip"), "");
-  EXPECT_EQ(why("sip[inverse=lbfgs]"), "");
+  const Problem problem = published("broyden-tridiagonal");
+  EXPECT_EQ(why("sip[inverse=analytic]", problem), "the physics has no local inverse");
+  EXPECT_EQ(why("sip", problem), "");
+  EXPECT_EQ(why("sip[inverse=lbfgs]", problem), "");
 }
 
 TEST(InverseGradient, NeedsAsManyResidualsAsUnknowns) {
   const Problem tall = linear(Matrix::Ones(3, 2), Vector::Ones(2), Vector::Zero(3));
-  const OptimizerEntry& entry = optimizers().at("inverse-gradient");
-  EXPECT_EQ(why_inapplicable(entry, options_of_spec(entry, entry.name), tall),
-            "the Jacobian has no inverse: 3 residuals, 2 unknowns");
+  EXPECT_EQ(why("inverse-gradient", tall), "the Jacobian has no inverse: 3 residuals, 2 unknowns");
+}
+
+// Invariance under rescaled inputs, as declared: `scaling` from the same y₀ = (3, 3) in units of x
+// that differ by α, so that a method whose path in y depends on them shows it.
+
+constexpr int kSteps = 10;
+
+Problem scaling(Real alpha) { return published("scaling[alpha=" + std::to_string(alpha) + "]"); }
+
+// The largest difference, relative to ‖y₀‖, between the paths in y for α and for 1.
+Real path_difference(const std::string& spec, Real alpha) {
+  const Outcome a = run(scaling(1), spec, iterations(kSteps));
+  const Outcome b = run(scaling(alpha), spec, iterations(kSteps));
+  const int points = std::max<int>(a.trace->points, b.trace->points);
+  Real largest = 0;
+  for (int i = 0; i < points; ++i) {  // a path that has ended stays where it is
+    const int ia = std::min<int>(i, a.trace->points - 1);
+    const int ib = std::min<int>(i, b.trace->points - 1);
+    for (int row = 0; row < 2; ++row) {
+      const Real gap = std::abs(a.trace->path_y[ia][row] - b.trace->path_y[ib][row]);
+      largest = std::isfinite(gap) ? std::max(largest, gap) : 1;
+    }
+  }
+  return largest / std::hypot(3, 3);
+}
+
+// Steps of 0.3 of the whole way, where the method has such an option.
+std::string cautious(const OptimizerEntry& entry) {
+  for (const char* option : {"step", "rate"})
+    for (const OptionField& field : entry.options)
+      if (field.name == option) return entry.name + "[" + option + "=0.3]";
+  return entry.name;
+}
+
+Real worst_difference(const std::string& spec) {
+  Real worst = 0;
+  for (const Real alpha : {1e-3, 1e-2, 0.1, 7.0, 1e2, 1e3})
+    worst = std::max(worst, path_difference(spec, alpha));
+  return worst;
+}
+
+TEST(Invariance, DeclaredMethodsAgreeAndOthersDoNot) {
+  for (const auto& [name, entry] : optimizers()) {
+    if (!why_inapplicable(entry, options_of_spec(entry, name), scaling(1)).empty()) continue;
+    const Real worst = worst_difference(cautious(entry));
+    EXPECT_EQ(worst <= 1e-9, entry.is_input_scale_invariant) << name << ": " << worst;
+  }
+}
+
+TEST(Invariance, IsDeclaredByTheMethodsOfWhichItIsClaimed) {
+  for (const char* name : {"newton", "gauss-newton", "inverse-gradient", "sip"})
+    EXPECT_TRUE(optimizers().at(name).is_input_scale_invariant) << name;
 }
 
 }  // namespace

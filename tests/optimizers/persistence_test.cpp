@@ -68,27 +68,19 @@ void expect_same_for_every_method(const Problem& problem) {
   }
 }
 
-TEST(Persistence, OfEveryMethodOnFreshSamples) { expect_same_for_every_method(learned_affine(5)); }
-
-TEST(Persistence, OfEveryMethodOnFiniteData) {
-  expect_same_for_every_method(learned_affine(5, 5));
-  expect_same_for_every_method(learned_affine(2, 2));  // fewer residuals than parameters
-}
-
-TEST(Persistence, OfEveryMethodOnAMultilayerPerceptron) {
+TEST(Persistence, OfEveryMethod) {
   const std::string tiny = "sine[mode=learn,xi=3,network=mlp[layers=5-4],batch=6";
-  expect_same_for_every_method(published(tiny + "]"));
-  expect_same_for_every_method(published(tiny + ",data=6]"));
+  for (const auto& [batch, data] : {std::pair{5, 0}, {5, 5}, {2, 2}})  // the last with a wide J
+    expect_same_for_every_method(learned_affine(batch, data));
+  for (const std::string& spec :
+       {tiny + "]", tiny + ",data=6]", std::string("broyden-tridiagonal")})
+    expect_same_for_every_method(published(spec));
 }
 
 TEST(Persistence, OfKroneckerFactorsOfConvolutions) {
   expect_same_after_restoring(
       published("poisson[mode=learn,N=4,batch=2,network=unet[levels=2,filters=3]]"),
       optimizers().at("kfac"));
-}
-
-TEST(Persistence, OfEveryMethodOnADirectProblem) {
-  expect_same_for_every_method(published("broyden-tridiagonal"));
 }
 
 }  // namespace

@@ -1,6 +1,8 @@
 // The run loop in small, as the harness has it: begin, start, step and iterate, finish.
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <memory>
 #include <string>
 #include <vector>
@@ -26,8 +28,8 @@ inline const OptimizerRegistry& optimizers() {
   return all;
 }
 
-// A problem of the registry from its spec, as published: seed 0.
-inline Problem published(const std::string& text) {
+// A problem of the registry from its spec; as published, that is with seed 0.
+inline Problem published(const std::string& text, std::uint64_t seed = 0) {
   static const ProblemRegistry all = [] {
     ProblemRegistry registry("problem");
     register_problems(registry);
@@ -36,7 +38,7 @@ inline Problem published(const std::string& text) {
   const Spec spec = parse_spec(text);
   const ProblemEntry& entry = all.at(spec.name);
   return entry.make(complete_options(entry.options, entry.name, options_of(spec)),
-                    Draw(0, entry.name));
+                    Draw(seed, entry.name));
 }
 
 struct Outcome {
@@ -85,5 +87,20 @@ inline Outcome run(const Problem& problem, const std::string& spec, const Budget
 
 // `count` iterations, come what may: no target, no stall in so few.
 inline Budget iterations(std::int64_t count) { return {.iterations = count, .target = 0}; }
+
+inline Vector first_step(const Problem& problem, const std::string& spec) {
+  return run(problem, spec, iterations(1)).theta - problem.start();
+}
+
+// Why a method cannot treat a problem; empty where it can.
+inline std::string why(const std::string& spec, const Problem& problem) {
+  const OptimizerEntry& entry = optimizers().at(parse_spec(spec).name);
+  return why_inapplicable(entry, options_of_spec(entry, spec), problem);
+}
+
+inline void expect_near(const Vector& one, const Vector& other, Real tolerance,
+                        const std::string& what) {
+  EXPECT_LE((one - other).norm(), tolerance * other.norm()) << what;
+}
 
 }  // namespace isoline::optimizers

@@ -1,12 +1,51 @@
-// Each way to compute a spectral step against the thin SVD.
+// Each way to compute a spectral step against the thin SVD, and the laws of spectral steps.
 #include <gtest/gtest.h>
 
-#include "spectral_trial.h"
+#include "optimizers/spectral_step.h"
+#include "run.h"
+#include "trial_problems.h"
 
 namespace isoline::optimizers {
 
+using problems::Point;
 using problems::Problem;
 namespace {
+
+SpectralFilter clamped(Real kappa, Real cutoff) {
+  return {.kappa = kappa, .cutoff = cutoff, .clamps = true};
+}
+
+// Three layers in double; `batch` samples of two outputs each make J wide up to 98.
+Problem network(const std::string& batch, const std::string& activation = "tanh") {
+  return published("sine[mode=learn,xi=2,network=mlp[layers=12-12,precision=double,activation=" +
+                   activation + "],batch=" + batch + ",data=" + batch + "]");
+}
+
+constexpr OracleSet kAll{Oracle::forward, Oracle::jacobian, Oracle::pullback, Oracle::pushforward,
+                         Oracle::layer_factors};
+
+struct Computed {
+  Vector step;  // −V f(σ) Uᵀ g
+  std::string said;
+  Real estimate = 0;  // of the error by a Gram matrix
+};
+
+Computed step_of(const Problem& problem, const Vector& theta, Way way, const SpectralFilter& filter,
+                 const KrylovLimits& krylov = {}, const OracleSet& granted = kAll) {
+  const auto trace = std::make_unique<Trace>();
+  Meter meter(problem, iterations(10), granted, *trace);
+  Vector start = theta;
+  meter.begin(start);
+  SpectralStep spectral(way, krylov);
+  spectral.start(meter);
+  Linearization at;
+  meter.linearize(theta, at);
+  Matrix g;
+  at.cotangent(g);
+  Vector step = Vector::Zero(theta.size());
+  EXPECT_TRUE(spectral.add(meter, at, filter, g.reshaped(), -1, step));
+  return {step, trace->claimed, spectral.error_by_gram()};
+}
 
 // Wide, tall and square; at the start, and where 30 steps have led.
 void for_some_points(const std::function<void(const Problem&, const Vector&)>& check) {
@@ -33,7 +72,7 @@ void for_some_points(const std::function<void(const Problem&, const Vector&)>& c
 // Of which a Gram matrix, too, gives the step to 1e-8, wherever the spectrum lies.
 const SpectralFilter kFilters[] = {power_filter(-1, 0),         power_filter(0, 1e-3),
                                    power_filter(0.25, 1e-3),    power_filter(0.5, 1e-3),
-                                   power_filter(0.75, 1e-3),    truncated_inverse_filter(1e-3),
+                                   power_filter(0.75, 1e-3),    power_filter(1, 1e-3),
                                    tikhonov_filter(1e-3),       decaying_filter(0.5, 1e-6),
                                    decaying_filter(0.75, 1e-6), decaying_filter(1, 1e-6)};
 
@@ -68,7 +107,7 @@ TEST(SpectralStep, EveryWayAgreesWithTheSvd) {
 TEST(SpectralStep, EveryWayClampsAlike) {
   const Problem problem = network("3");
   for (const Real kappa : {0.5, 1.0}) {
-    const SpectralFilter filter = clamped_power_filter(kappa, 0.3);
+    const SpectralFilter filter = clamped(kappa, 0.3);
     const Vector reference = step_of(problem, problem.start(), Way::svd, filter).step;
     const Vector discarded =
         step_of(problem, problem.start(), Way::svd, power_filter(kappa, 0.3)).step;
@@ -120,7 +159,7 @@ TEST(SpectralStep, OfThePublishedProblemsAgreesWithTheSvd) {
 TEST(SpectralStep, TheErrorOfAGramMatrixIsEstimated) {
   for_some_points([](const Problem& problem, const Vector& theta) {
     for (const Real cutoff : {1e-4, 1e-3}) {
-      const SpectralFilter filter = truncated_inverse_filter(cutoff);
+      const SpectralFilter filter = power_filter(1, cutoff);
       const Vector reference = step_of(problem, theta, Way::svd, filter).step;
       const Computed by_gram = step_of(problem, theta, Way::gram, filter);
       const Real error = (by_gram.step - reference).norm() / reference.norm();
@@ -191,13 +230,83 @@ TEST(Filters, AreTheirFormulas) {
   EXPECT_EQ(power_filter(-1, 0)(0.7, of), 0.7);
   EXPECT_DOUBLE_EQ(power_filter(0.5, 0.1)(2, of), 1 / std::sqrt(2.0));
   EXPECT_EQ(power_filter(0.5, 0.5)(2, of), 0);  // strictly greater
-  EXPECT_DOUBLE_EQ(clamped_power_filter(1, 0.5)(1e-9, of), 0.5);
+  EXPECT_DOUBLE_EQ(clamped(1, 0.5)(1e-9, of), 0.5);
   for (const Real sigma : {1e-9, 0.7, 3.0})  // a function of σ², times σ
-    EXPECT_DOUBLE_EQ(sigma * clamped_power_filter(0.5, 0.5).over_sigma(sigma, of),
-                     clamped_power_filter(0.5, 0.5)(sigma, of));
-  EXPECT_DOUBLE_EQ(truncated_inverse_filter(0.1)(2, of), 0.5);
+    EXPECT_DOUBLE_EQ(sigma * clamped(0.5, 0.5).over_sigma(sigma, of), clamped(0.5, 0.5)(sigma, of));
+  EXPECT_DOUBLE_EQ(power_filter(1, 0.1)(2, of), 0.5);
   EXPECT_DOUBLE_EQ(tikhonov_filter(0.5)(2, of), 2 / (4 + 1.5));
   EXPECT_DOUBLE_EQ(decaying_filter(0.5, 0.25)(2, of), 2 / std::pow(4 + 4, 0.75));
+}
+
+// The laws of spectral steps, by every way to compute them.
+
+constexpr Real kKappas[] = {-1, 0, 0.25, 0.5, 0.75, 1};
+
+// L → c L, y → s y, on a network's wide Jacobian.
+Problem scaled(Real loss, Real output) {
+  const Matrix M = output * easy_matrix();
+  Matrix input(2, 2), truth(2, 2);
+  input << 0.3, -0.8, 0.5, 0.1;
+  truth << 1, 2, -1, 0.5;
+  RandomStream start(1, "trial", "start");
+  auto affine = std::make_unique<Affine>(2, 2);
+  Vector theta = affine->start(start);
+  return Problem({.physics = std::make_unique<Linear>(M),
+                  .start = std::move(theta),
+                  .target = M * truth,
+                  .network = std::move(affine),
+                  .input = input,
+                  .loss = std::make_unique<HalfSquared>(loss),
+                  .minimum = 0});
+}
+
+TEST(SpectralStep, ScalesWithTheLossAndWithThePower1MinusKappaOfTheOutput) {
+  constexpr Real kScale = 7;
+  for (const Way way : {Way::svd, Way::qr, Way::gram, Way::layers, Way::automatic})
+    for (const Real kappa : kKappas) {
+      const auto step = [&](const Problem& problem) {
+        return step_of(problem, problem.start(), way, power_filter(kappa, 1e-6)).step;
+      };
+      const Vector one = step(scaled(1, 1));
+      expect_near(step(scaled(kScale, 1)), kScale * one, 1e-10, "loss");
+      expect_near(step(scaled(1, kScale)), std::pow(kScale, 1 - kappa) * one, 1e-10, "output");
+    }
+}
+
+// B copies of a sample: exponent −(1+κ)/2 for every κ.
+TEST(SpectralStep, ScalesWithMinusHalfOf1PlusKappaOfEqualSamples) {
+  constexpr Index kCopies = 5;
+  const auto copies = [](Index count) {
+    RandomStream start(1, "trial", "start");
+    auto affine = std::make_unique<Affine>(2, 2);
+    Vector theta = affine->start(start);
+    return Problem({.physics = std::make_unique<Linear>(easy_matrix()),
+                    .start = std::move(theta),
+                    .target = Eigen::Vector2d(1, -2).replicate(1, count),
+                    .network = std::move(affine),
+                    .input = Eigen::Vector2d(0.4, -0.7).replicate(1, count),
+                    .minimum = 0});
+  };
+  for (const Way way : {Way::svd, Way::qr, Way::gram, Way::automatic})
+    for (const Real kappa : kKappas) {
+      const SpectralFilter filter = power_filter(kappa, 1e-6);
+      const Vector one = step_of(copies(1), copies(1).start(), way, filter).step;
+      const Vector many = step_of(copies(kCopies), copies(kCopies).start(), way, filter).step;
+      expect_near(many, std::pow(kCopies, -(1 + kappa) / 2) * one, 1e-10, std::to_string(kappa));
+    }
+}
+
+TEST(SpectralStep, KappaMinusOneIsTheGradient) {
+  const Problem problem = network("8");
+  Point at;
+  Matrix g(problem.outputs(), problem.samples());
+  Vector gradient(problem.unknowns());
+  problem.forward(problem.start(), at);
+  problem.cotangent(at, g);
+  problem.pullback(g, gradient, at);
+  for (const Way way : {Way::svd, Way::qr, Way::gram, Way::layers, Way::lanczos})
+    expect_near(step_of(problem, problem.start(), way, power_filter(-1, 0)).step, -gradient, 1e-10,
+                "gradient");
 }
 
 }  // namespace

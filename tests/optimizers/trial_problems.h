@@ -150,6 +150,46 @@ class Affine final : public Network {
   Index inputs_, outputs_;
 };
 
+// Numbers that act one by one, laid out as these blocks, and no layer besides; x starts at 1.
+class Separate final : public Network {
+ public:
+  explicit Separate(std::vector<Block> layout) : layout_(std::move(layout)) {}
+  Index parameters() const override { return 4; }
+  Index inputs() const override { return 0; }
+  Index outputs() const override { return 4; }
+  Vector start(RandomStream&) const override { return Vector::Ones(4); }
+  std::vector<Block> layout() const override { return layout_; }
+  void forward(VectorRef theta, BatchRef, BatchOut x, Workspace&) const override {
+    x.col(0) = theta;
+  }
+  void pushforward(VectorRef v, BatchOut Jv, Workspace&) const override { Jv.col(0) = v; }
+  void pullback(BatchRef u, VectorOut JTu, Workspace&) const override { JTu = u.col(0); }
+  bool has_curvature() const override { return true; }
+  void curvature(VectorRef, BatchRef, BatchRef du, VectorOut out, Workspace&) const override {
+    out = du.col(0);
+  }
+  bool has_layer_moments() const override { return true; }
+  void layer_moments(BatchRef u, std::vector<networks::LayerMoments>& out, VectorOut JTu,
+                     Workspace&) const override {
+    out.clear();
+    JTu = u.col(0);
+  }
+
+ private:
+  std::vector<Block> layout_;
+};
+
+// Of which the curvatures, like the gradient, are 1, 4, 9, 16.
+inline Problem separate(const std::vector<Block>& layout) {
+  const Matrix M = Eigen::Vector4d(1, 2, 3, 4).asDiagonal();
+  return Problem({.physics = std::make_unique<Linear>(M),
+                  .start = Vector::Ones(4),
+                  .target = Matrix::Zero(4, 1),
+                  .network = std::make_unique<Separate>(layout),
+                  .input = Matrix(0, 1),
+                  .minimum = 0});
+}
+
 // Learns x = (1 + in₀, 2 − in₁) for y = M x; `data` 0: fresh samples at each step.
 inline Problem learned_affine(Index batch, Index data = 0) {
   auto network = std::make_unique<Affine>(2, 2);

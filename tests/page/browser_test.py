@@ -480,7 +480,7 @@ class Learned(unittest.TestCase):
                 page.open(pathlib.Path(folder, "report", "index.html").as_uri())
                 verdict = page.run("return document.querySelector('.verdict').innerText")
                 self.assertIn("at equal work", verdict)
-                self.assertIn("nearest in x", verdict)
+                self.assertIn("smallest error in x", verdict)
                 heat = page.wait("return document.querySelector('#heat').innerText")
                 self.assertIn("learned: error in x", heat)
                 self.assertIn("ranked by work",

@@ -56,15 +56,6 @@ TEST(Burgers, ApproachesTheExactSolutionAtSecondOrder) {
     EXPECT_NEAR(std::log2(errors[i - 1] / errors[i]), 2, 0.15) << i;  // the next order is O(h²)
 }
 
-TEST(Burgers, IsOfSecondOrderInTimeAlone) {
-  const Vector x = exact(32, 0.03, 0), fine = evolved(BurgersFlow(32, 1 << 14, 0.03, 0.25), x);
-  std::array<Real, 4> errors{};
-  for (std::size_t i = 0; i < errors.size(); ++i)
-    errors[i] = (evolved(BurgersFlow(32, Index(32) << i, 0.03, 0.25), x) - fine).norm();
-  for (std::size_t i = 1; i < errors.size(); ++i)
-    EXPECT_NEAR(std::log2(errors[i - 1] / errors[i]), 2, 0.15) << i;  // the next order is O(Δt)
-}
-
 // Momentum to rounding; energy without viscosity but for Heun's third order, and less with it.
 TEST(Burgers, KeepsMomentumAndEnergyAsTheEquationDoes) {
   const Vector x = states(64, 1).col(0).array() + 0.3;
@@ -76,27 +67,6 @@ TEST(Burgers, KeepsMomentumAndEnergyAsTheEquationDoes) {
   };
   EXPECT_LT(std::abs(gain(16)), 1e-3);
   EXPECT_GT(std::abs(gain(16) / gain(32)), 6);  // 8 in the limit
-}
-
-TEST(Burgers, DerivativesAreThoseOfTheStepsForEverySample) {
-  const BurgersFlow flow(16, 0, 0.005, 0.25);
-  const Matrix x = states(16, 3);
-  RandomStream stream(1, "burgers", "derivatives");
-  const Matrix v = stream.normal_vector(48).reshaped(16, 3);
-  const Matrix u = stream.normal_vector(48).reshaped(16, 3);
-  Workspace w;
-  Matrix y(16, 3), Jv(16, 3), JTu(16, 3);
-  flow.forward(x, Matrix(), y, w);
-  flow.pushforward(v, Jv, w);
-  flow.pullback(u, JTu, w);
-  const Real h = 1e-3;  // differences of fourth order leave h⁴ of a fifth derivative and ε/h
-  for (Index b = 0; b < 3; ++b) {
-    EXPECT_NEAR(u.col(b).dot(Jv.col(b)), v.col(b).dot(JTu.col(b)), 1e-12);  // of sums of order 1
-    EXPECT_EQ(evolved(flow, x.col(b)), y.col(b));
-    const auto at = [&](Real step) { return evolved(flow, x.col(b) + step * v.col(b)); };
-    const Vector slope = (8 * (at(h) - at(-h)) - (at(2 * h) - at(-2 * h))) / (12 * h);
-    EXPECT_LT((slope - Jv.col(b)).norm(), 1e-8 * Jv.col(b).norm()) << b;
-  }
 }
 
 // Heun's steps of Δt and −Δt undo each other to fourth order, so all of them to third.
@@ -153,6 +123,96 @@ TEST(Burgers, TooFewStepsAreAUsageErrorThatSaysHowMany) {
   }
   EXPECT_THROW(make("burgers[viscosity=-1]"), UsageError);
   EXPECT_THROW(make("burgers[time=0]"), UsageError);
+}
+
+// Wave packets: the signal, its noise, what the noise leaves of x*, and the local inverse.
+
+Vector signal(const Problem& problem, const Vector& x) {
+  Point at;
+  problem.physics_forward(x, problem.batch(), at);
+  return at.y;
+}
+
+TEST(WavePacket, IsACosineUnderAGaussianAtItsTimes) {
+  const Problem problem = make("wave-packet");
+  const Vector y = signal(problem, Eigen::Vector4d(1.5, 0.25, 0.8, 3));
+  ASSERT_EQ(y.size(), 64);
+  for (Index i = 0; i < 64; ++i) {
+    const Real late = -8 + 16 * static_cast<Real>(i) / 63 - 0.25;
+    const Real expected = 1.5 * std::exp(-late * late / 1.28) * std::cos(3 * late);
+    EXPECT_NEAR(y[i], expected, 1e-14) << i;  // rounding, of terms up to 1.5
+  }
+}
+
+TEST(WavePacket, CountsNoSignOfWidthAndFrequency) {
+  const Problem problem = make("wave-packet[noise=0]", 4);
+  const Vector truth = *problem.truth();
+  for (const Index i : {2, 3}) {
+    Vector mirrored = truth;
+    mirrored[i] = -truth[i];
+    EXPECT_EQ(signal(problem, mirrored), signal(problem, truth)) << i;
+    EXPECT_EQ(problem.x_error(mirrored), 0) << i;
+  }
+  EXPECT_GT(problem.x_error(-truth), 0.5);
+}
+
+// The least of ½‖r‖² over 64 samples by 4 unknowns is ½σ²χ² of 60 degrees of freedom, whose mean
+// over 100 instances lies within 4 of its standard deviations, ½σ²√(120/100) each.
+TEST(WavePacket, LeavesTheNoiseAsItsLeastLoss) {
+  constexpr Real kNoise = 0.1, kCount = 100;
+  Real sum = 0, floors = 0;
+  for (std::uint64_t seed = 0; seed < 100; ++seed) {
+    const Problem problem = make("wave-packet[noise=0.1]", seed);
+    sum += problem.minimum().value();
+    floors += problem.x_floor(problem.batch());
+    EXPECT_FALSE(problem.truth().has_value());
+  }
+  const Real unit = 0.5 * kNoise * kNoise;
+  EXPECT_NEAR(sum / kCount, 60 * unit, 4 * unit * std::sqrt(120 / kCount));
+  EXPECT_GT(floors / kCount, 0.01);
+  EXPECT_LT(floors / kCount, 0.3);
+  EXPECT_EQ(make("wave-packet[noise=0]").minimum(), 0);
+  EXPECT_EQ(make("wave-packet[noise=0]").x_floor(make("wave-packet[noise=0]").batch()), 0);
+}
+
+// From within a tenth of every unknown, without noise.
+TEST(WavePacket, LocalInverseFindsAPacketNearby) {
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    const Problem problem = make("wave-packet[noise=0]", seed);
+    const Vector truth = *problem.truth();
+    RandomStream stream(seed, "wave-packet", "nearby");
+    const Vector factors = stream.uniform_vector(4, 0.9, 1.1);
+    Point at;
+    problem.physics_forward(truth.cwiseProduct(factors), problem.batch(), at);
+    Matrix x(4, 1);
+    EXPECT_TRUE(problem.local_inverse(problem.target(), x, at).all());
+    EXPECT_LT(problem.x_error(x), 1e-3 * truth.norm()) << seed;
+  }
+}
+
+TEST(WavePacket, LocalInverseOfWhatIsReachedStays) {
+  const Problem problem = make("wave-packet", 3);
+  Point at;
+  problem.forward(problem.start(), at);
+  Matrix x(4, 1);
+  EXPECT_TRUE(problem.local_inverse(at.y, x, at).all());
+  EXPECT_EQ(x, at.x());
+}
+
+TEST(WavePacket, IsLearnedFromItsNoisySignal) {
+  const Problem problem = make("wave-packet[mode=learn,noise=0.1]", 1);
+  Batch batch;
+  problem.draw_validation(batch);
+  EXPECT_EQ(batch.input, batch.target);
+  EXPECT_EQ(problem.x_error(batch.truth, batch), 0);
+  Point at;
+  problem.physics_forward(batch.truth, batch, at);
+  const Matrix noise = batch.target - at.y;
+  const Real count = static_cast<Real>(noise.size());
+  EXPECT_NEAR(noise.norm() / std::sqrt(count), 0.1, 4 * 0.1 / std::sqrt(2 * count));
+  const Vector least = batch.truth.rowwise().minCoeff(), most = batch.truth.rowwise().maxCoeff();
+  EXPECT_TRUE((least.array() >= Eigen::Array4d(0.5, -1.5, 0.5, 2)).all()) << least;
+  EXPECT_TRUE((most.array() <= Eigen::Array4d(1.5, 1.5, 1.5, 4)).all()) << most;
 }
 
 }  // namespace

@@ -3,13 +3,77 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 #include <numbers>
 
 #include "core/errors.h"
-#include "flow_cases.h"
+#include "core/random.h"
+#include "problems/physics/flow_step.h"
 
 namespace isoline::problems {
 namespace {
+
+constexpr Real kLength = 128;
+
+using Function = std::function<Real(Real x, Real y)>;
+
+// At (Δx (i + along_x), Δx (j + along_y)), (N²).
+Vector sampled(Index N, Real along_x, Real along_y, const Function& f) {
+  const Real dx = kLength / static_cast<Real>(N);
+  Vector values(N * N);
+  for (Index j = 0; j < N; ++j)
+    for (Index i = 0; i < N; ++i)
+      values[i + N * j] =
+          f(dx * (static_cast<Real>(i) + along_x), dx * (static_cast<Real>(j) + along_y));
+  return values;
+}
+
+// u, v and m where this arrangement has them, (3N²).
+Vector state_of(const FlowOptions& o, const Function& u, const Function& v, const Function& m) {
+  const Real face = o.arrangement == Arrangement::staggered ? 0 : 0.5;
+  Vector state(3 * o.cells());
+  state << sampled(o.N, face, 0.5, u), sampled(o.N, 0.5, face, v), sampled(o.N, 0.5, 0.5, m);
+  return state;
+}
+
+// The flow of the golden values, which has no random numbers in it.
+struct Golden {
+  static constexpr Real k = 2 * std::numbers::pi / kLength;
+  static Real vortex(Real x, Real y) {
+    const Real rx = x - 64, ry = y - 64;
+    return 1.3 * std::exp(-(rx * rx + ry * ry) / 800);
+  }
+  static Real u(Real x, Real y) {
+    return 3 - vortex(x, y) * (y - 64) +
+           0.3 * (std::sin(k * (2 * x + 3 * y)) + 0.5 * std::cos(k * (5 * x - y)));
+  }
+  static Real v(Real x, Real y) {
+    return -2 + vortex(x, y) * (x - 64) +
+           0.3 * (std::cos(k * (3 * x - 2 * y)) + 0.5 * std::sin(k * (x + 4 * y)));
+  }
+  static Real marker(Real x, Real y) {
+    return std::exp(-(x - 50) * (x - 50) / 162 - (y - 70) * (y - 70) / 98);
+  }
+  // Staggered, sampled as the published scripts do: the means on the faces of what the centres
+  // have.
+  static Vector state(const FlowOptions& o) {
+    FlowOptions centres = o;
+    centres.arrangement = Arrangement::collocated;
+    const Vector sampled = state_of(centres, u, v, marker);
+    if (o.arrangement == Arrangement::collocated) return sampled;
+    Vector state = sampled;
+    const Index n = o.cells();
+    weigh(o.N, 0.5, 0.5, Side::left, sampled.head(n), state.head(n));
+    weigh(o.N, 0.5, 0.5, Side::below, sampled.segment(n, n), state.segment(n, n));
+    return state;
+  }
+};
+
+// Of every quantity, (3N²).
+Vector noise_of(const FlowOptions& o, std::string_view purpose) {
+  RandomStream stream(0, "flow", purpose);
+  return stream.normal_vector(3 * o.cells());
+}
 
 struct Values {
   Real energy, mean_u, mean_v, total, x, y;
@@ -78,41 +142,6 @@ TEST(Flow, TakesTheStepOfThePublishedSolverCollocated) {
   EXPECT_NEAR(after.total, 98.785785, 5e-7);
   EXPECT_NEAR(after.x, 49.865150, 5e-7);
   EXPECT_NEAR(after.y, 66.940255, 5e-7);
-}
-
-// u advected by means of the four faces around, as a definition has it.
-TEST(Flow, AdvectsLikeThePublishedSolver) {
-  const FlowOptions staggered, collocated{.arrangement = Arrangement::collocated};
-  const Index N = staggered.N, n = staggered.cells();
-  const Real unit = staggered.dt / staggered.dx();
-  Advection advection(N);
-  Vector out(n), dx(n), dy(n);
-  Vector state = Golden::state(collocated);
-  advection.trace(unit * state.head(n), unit * state.segment(n, n));
-  advection.value(state.head(n), out);
-  Real energy = out.squaredNorm();
-  advection.value(state.segment(n, n), out);
-  EXPECT_NEAR(energy + out.squaredNorm(), 266528.7528, 5e-5);
-
-  state = Golden::state(staggered);
-  const Vector u = state.head(n), v = state.segment(n, n);
-  const auto at = [N](const Vector& q, Index i, Index j) {
-    return q[(i + N) % N + N * ((j + N) % N)];
-  };
-  for (Index j = 0; j < N; ++j)
-    for (Index i = 0; i < N; ++i)
-      dy[i + N * j] =
-          unit / 4 * (at(v, i - 1, j) + at(v, i, j) + at(v, i - 1, j + 1) + at(v, i, j + 1));
-  advection.trace(unit * u, dy);
-  advection.value(u, out);
-  energy = out.squaredNorm();
-  for (Index j = 0; j < N; ++j)
-    for (Index i = 0; i < N; ++i)
-      dx[i + N * j] =
-          unit / 4 * (at(u, i, j - 1) + at(u, i, j) + at(u, i + 1, j - 1) + at(u, i + 1, j));
-  advection.trace(dx, unit * v);
-  advection.value(v, out);
-  EXPECT_NEAR(energy + out.squaredNorm(), 266289.2914, 5e-5);
 }
 
 // --- laws
@@ -242,6 +271,90 @@ TEST(Flow, RefusesWhatCannotBeSimulated) {
   EXPECT_EQ(law_of({.viscosity = 5}),
             "a viscosity of 5 is too large for its explicit step: with a time step of 0.25 and "
             "cells of 2 it is stable up to Δx²/(4Δt) = 4");
+}
+
+// --- advection where displacements leave the lattice, where they are no numbers, and its
+// transpose; the sums of neighbours that displacements are
+
+// A point that moves by whole periods more comes from the same place; of 12 cells a margin is wider
+// than half, of 16 four go into a row.
+TEST(Advection, GoesByPeriods) {
+  for (const Index N : {6, 12, 16}) {
+    Advection advection(N);
+    RandomStream stream(0, "test", "periods");
+    const Vector q = stream.normal_vector(N * N), dx = 2 * stream.normal_vector(N * N);
+    const Vector dy = 2 * stream.normal_vector(N * N), u = stream.normal_vector(N * N);
+    const auto turns = static_cast<Real>(3 * N);
+    const Vector far_dx = dx.array() + turns, far_dy = dy.array() - turns;
+    Vector near(N * N), far(N * N);
+    Matrix pulled = Matrix::Zero(N * N, 3), far_pulled = pulled;
+    advection.trace(dx, dy);
+    advection.value(q, near);
+    advection.pullback(q, u, pulled.col(0), pulled.col(1), pulled.col(2));
+    advection.trace(far_dx, far_dy);
+    advection.value(q, far);
+    advection.pullback(q, u, far_pulled.col(0), far_pulled.col(1), far_pulled.col(2));
+    EXPECT_LE((far - near).norm(), 1e-12 * near.norm()) << N;
+    EXPECT_LE((far_pulled - pulled).norm(), 1e-12 * pulled.norm()) << N;
+  }
+}
+
+TEST(Advection, ByWhatIsNoNumberIsNone) {
+  constexpr Index N = 8;
+  Advection advection(N);
+  Vector still = Vector::Zero(N * N), q = Vector::Ones(N * N), out(N * N);
+  for (const Real lost : {std::nan(""), 1e300}) {
+    Vector dx = still;
+    dx[9] = lost;
+    advection.trace(dx, still);
+    advection.value(q, out);
+    EXPECT_EQ(out[40], 1) << "far from there nothing is lost";
+  }
+  Vector dx = still;
+  dx[9] = std::nan("");
+  advection.trace(dx, still);
+  advection.value(q, out);
+  EXPECT_TRUE(std::isnan(out[9]));
+}
+
+// By sums to rounding, of rows that four go into and of others, and where the clamp holds: q is
+// noise.
+TEST(Advection, PullsBackTheTransposeOfWhatItPushes) {
+  for (const Index N : {4, 6, 7, 9, 16}) {
+    Advection advection(N);
+    RandomStream stream(0, "test", "transpose", static_cast<std::uint64_t>(N));
+    const auto draw = [&] { return stream.normal_vector(N * N); };
+    const Vector q = draw(), dx = draw(), dy = draw(), u = draw();
+    const Vector vq = draw(), vdx = draw(), vdy = draw();
+    Vector pushed(N * N);
+    advection.trace(dx, dy);
+    advection.pushforward(q, vq, vdx, vdy, pushed);
+    Matrix pulled = Matrix::Ones(N * N, 3);  // to which it is added
+    advection.pullback(q, u, pulled.col(0), pulled.col(1), pulled.col(2));
+    pulled.array() -= 1;
+    const Real there = u.dot(pushed);
+    const Real back = pulled.col(0).dot(vq) + pulled.col(1).dot(vdx) + pulled.col(2).dot(vdy);
+    EXPECT_NEAR(there, back, 1e-13 * u.norm() * pushed.norm() * static_cast<Real>(N)) << N;
+    const Matrix first = pulled;
+    pulled.setZero();
+    advection.pullback(q, u, pulled.col(0), pulled.col(1), pulled.col(2));
+    EXPECT_LE((pulled - first).norm(), 1e-13 * first.norm()) << "the call before left something";
+  }
+}
+
+TEST(SquaresOfNeighbours, AreSumsOfSums) {
+  constexpr Index N = 6;
+  RandomStream stream(0, "test", "squares");
+  const Vector q = stream.normal_vector(N * N);
+  Vector row(N * N), twice(N * N);
+  for (const Side across : {Side::left, Side::right})
+    for (const Side along : {Side::below, Side::above}) {
+      weigh(N, 1, 1, along, q, row);
+      weigh(N, 0.3, 0.3, across, row, twice);
+      Vector once = q;
+      add_square(N, 0.3, across, along, q, once);
+      EXPECT_LE((once - q - twice).norm(), 1e-15 * (q.norm() + twice.norm()));
+    }
 }
 
 }  // namespace

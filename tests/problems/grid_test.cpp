@@ -1,11 +1,11 @@
 // Laws and figures of the grid problems and of the random fields they seek.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <numbers>
 
 #include "core/decompose.h"
 #include "make.h"
-#include "problems/laplacian.h"
 #include "problems/random_fields.h"
 
 namespace isoline::problems {
@@ -32,28 +32,6 @@ Vector cosine_mode(Index k, Index N) {
       .cos();
 }
 
-// The stencil written out as a matrix, and solved by LU.
-TEST(Poisson, SolvesTheFivePointStencil) {
-  constexpr Index N = 6;
-  Matrix laplacian = Matrix::Zero(N * N, N * N);
-  for (Index j = 0; j < N; ++j) {
-    for (Index i = 0; i < N; ++i) {
-      const Index cell = i + j * N;
-      laplacian(cell, cell) = -4;
-      if (i > 0) laplacian(cell, cell - 1) = 1;
-      if (i < N - 1) laplacian(cell, cell + 1) = 1;
-      if (j > 0) laplacian(cell, cell - N) = 1;
-      if (j < N - 1) laplacian(cell, cell + N) = 1;
-    }
-  }
-  const Problem problem = make("poisson[N=6]");
-  RandomStream stream(1, "poisson", "test");
-  const Vector x = stream.normal_vector(N * N);
-  Vector y;
-  ASSERT_TRUE(solve_square(laplacian, x, y));
-  EXPECT_LE((forward(problem, x) - y).norm(), 1e-13 * y.norm());  // cond is 19
-}
-
 // ∇²P(x) = x by the stencil, to some hundreds of roundings of the largest y or x.
 TEST(Poisson, SolvesWhatItsStencilSays) {
   for (const Index N : {2, 9, 64, 512}) {
@@ -75,9 +53,10 @@ TEST(Poisson, SolvesWhatItsStencilSays) {
 // 81 numbers a sample: each begins elsewhere between two vector registers.
 TEST(Poisson, GivesASampleTheSameBitsInAnyColumn) {
   const Matrix x = RandomStream(3, "poisson", "test").normal_vector(81).replicate(1, 5);
-  Matrix y(81, 5);
-  Laplacian(9).solve(x, y);
-  for (Index b = 1; b < 5; ++b) EXPECT_EQ(y.col(b), y.col(0)) << b;
+  const Problem problem = make("poisson[mode=learn,N=9,batch=5,network=mlp]");
+  Point at;
+  problem.physics_forward(x, problem.batch(), at);
+  for (Index b = 1; b < 5; ++b) EXPECT_EQ(at.y.col(b), at.y.col(0)) << b;
 }
 
 // (sin(64π/130)/sin(π/130))² = 1711.66, the condition of P on 64×64 cells.
@@ -134,8 +113,7 @@ TEST(SoftRectangles, HaveThePublishedStatistics) {
 }
 
 TEST(SoftRectangles, ScaleWithTheGrid) {
-  RandomStream fine(1, "rectangles", "test"), coarse(1, "rectangles", "test");
-  const Real difference = soft_rectangles(128, fine).mean() - soft_rectangles(64, coarse).mean();
+  const Real difference = make("heat[N=128]", 1).truth()->mean() - make("heat", 1).truth()->mean();
   EXPECT_LE(std::abs(difference), 0.01);  // but for the edges, whose softness stays one cell
 }
 
@@ -199,6 +177,58 @@ TEST(Heat, RepeatedDampedInversesFollowThePublishedErrorsAndDoNotDiverge) {
   EXPECT_NEAR(sums[1], 119, 25);  // spreads likewise
   for (int step = 1; step < kSteps; ++step)
     EXPECT_LE(sums[step + 1], 1.001 * sums[step]) << step;  // level but for noise in weak modes
+}
+
+TEST(PoissonHig, HasThePublishedSpectrum) {
+  const Problem problem = make("poisson-hig");
+  Point at;
+  problem.forward(problem.start(), at);
+  Matrix L;
+  problem.jacobian(L, at);
+  EXPECT_EQ(L, L.transpose());
+  SymmetricEigen eigen;
+  ASSERT_TRUE(symmetric_eigen(L, eigen));
+  EXPECT_NEAR(eigen.lambda[0], -7.76, 5e-3);    // as printed
+  EXPECT_NEAR(eigen.lambda[63], -0.241, 5e-4);  // as printed
+  EXPECT_NEAR(eigen.lambda[0] / eigen.lambda[63], 32.16, 5e-3);
+  const Real s = std::sin(std::numbers::pi / 18);
+  EXPECT_NEAR(eigen.lambda[63], -8 * s * s, 1e-13);
+}
+
+TEST(PoissonHig, HasThePublishedSizes) {
+  const Problem problem = make("poisson-hig[mode=learn]");
+  EXPECT_EQ(problem.unknowns(), 24896);
+  EXPECT_EQ(problem.samples(), 64);
+  EXPECT_EQ(problem.residuals(), 4096);
+  EXPECT_TRUE(problem.has_fresh_batches());
+  EXPECT_EQ(problem.batch().input, problem.target());
+}
+
+// White noise over |k|²: of N(0, 1) times k⁻² a mode has the power k⁻⁴. What is drawn has no mean
+// and the deviation 1.
+TEST(PoissonHig, TruthIsNoiseThatFallsWithTheSquareOfTheWaveNumber) {
+  constexpr Index kSamples = 4000;
+  const Problem problem = make("poisson-hig[mode=learn,batch=" + std::to_string(kSamples) + "]", 1);
+  const Matrix& truth = problem.batch().truth;
+  EXPECT_LT(truth.colwise().mean().cwiseAbs().maxCoeff(), 1e-14);
+  EXPECT_LT((truth.colwise().squaredNorm().array() / 64 - 1).abs().maxCoeff(), 1e-13);
+  const auto powers = [&](Index k) -> Eigen::ArrayXd {  // along the first axis, of each sample
+    Vector wave(64), other(64);
+    for (Index i = 0; i < 64; ++i) {
+      const Real phase = 2 * std::numbers::pi * static_cast<Real>(k * (i % 8)) / 8;
+      wave[i] = std::cos(phase);
+      other[i] = std::sin(phase);
+    }
+    return (truth.transpose() * wave).array().square() +
+           (truth.transpose() * other).array().square();
+  };
+  // Of the logarithm of two powers of one sample, which its normalization leaves alone, the mean is
+  // exact: each power has an exponential distribution, whose logarithm deviates by π/√6.
+  const Real error = std::numbers::pi / std::sqrt(3.0) / std::sqrt(Real(kSamples));
+  for (Index k = 2; k <= 3; ++k) {
+    const Real fall = (powers(1) / powers(k)).log().mean();
+    EXPECT_NEAR(fall, 4 * std::log(static_cast<Real>(k)), 4 * error) << k;
+  }
 }
 
 }  // namespace

@@ -113,43 +113,6 @@ TEST(QuantumDipole, StepsAreThoseOfADenseSolve) {
   EXPECT_NEAR(final_state(20 * u).norm(), 1, 1e-12);
 }
 
-// Nine samples: one group of lanes and a rest.
-TEST(QuantumDipole, DerivativesAreThoseOfTheStepsForEverySample) {
-  RandomStream stream(2, "quantum-dipole", "derivatives");
-  const auto random = [&](Index rows) -> Matrix {
-    return stream.normal_vector(rows * 9).reshaped(rows, 9);
-  };
-  const Matrix x = random(kSteps), a = random(kPoints).colwise().normalized(), v = random(kSteps),
-               r = random(2 * kPoints);
-  for (const auto output : {ParticleInABox::Output::state, ParticleInABox::Output::missing}) {
-    const ParticleInABox box(output);
-    Workspace w;
-    w.x = x;
-    w.context = a;
-    Matrix y(2 * kPoints, 9), Jv(y), J(2 * kPoints, 9 * kSteps), JTr(kSteps, 9);
-    box.forward(x, a, y, w);
-    box.pushforward(v, Jv, w);
-    box.pullback(r, JTr, w);
-    box.jacobian(J, w);
-    EXPECT_NEAR(r.cwiseProduct(Jv).sum(), v.cwiseProduct(JTr).sum(), 1e-12 * r.norm() * Jv.norm());
-    const Real h = 1e-4;  // differences of fourth order leave h⁴ and ε/h
-    const auto moved = [&](Real step) -> Matrix {
-      Matrix at(2 * kPoints, 9);
-      Workspace own;
-      box.forward(x + step * v, a, at, own);
-      return at;
-    };
-    const Matrix difference =
-        (8 * (moved(h) - moved(-h)) - (moved(2 * h) - moved(-2 * h))) / (12 * h);
-    EXPECT_LT((difference - Jv).norm(), 1e-9 * Jv.norm());
-    for (Index b = 0; b < 9; ++b) {
-      const Matrix of = J.middleCols(b * kSteps, kSteps);
-      EXPECT_LT((of * v.col(b) - Jv.col(b)).norm(), 1e-12 * Jv.norm());
-      EXPECT_LT((of.transpose() * r.col(b) - JTr.col(b)).norm(), 1e-12 * JTr.norm());
-    }
-  }
-}
-
 TEST(QuantumDipole, HasThePublishedSizeAndLoss) {
   const Problem problem = make("quantum-dipole[mode=learn]", 1);
   EXPECT_EQ(problem.unknowns(), 9484);
@@ -162,29 +125,6 @@ TEST(QuantumDipole, HasThePublishedSizeAndLoss) {
   const Matrix& target = problem.target();
   EXPECT_LT((target.colwise().norm().array() - 1).abs().maxCoeff(), 1e-14);
   for (Index i = 0; i < kPoints; ++i) EXPECT_TRUE(target.row(2 * i + 1).isZero(0)) << "real";
-}
-
-// g = −2 Re(s) a and −2 Im(s) a over B, for real a and s = ⟨a, ψ⟩.
-TEST(QuantumDipole, GradientOfTheLossIsThePublishedOne) {
-  const Problem problem = make("quantum-dipole[mode=learn,batch=4]", 1);
-  Point at;
-  problem.forward(problem.start(), at);
-  Matrix g(28, 4);
-  problem.cotangent(at, g);
-  Real sum = 0;
-  for (Index b = 0; b < 4; ++b) {
-    Real re = 0, im = 0;
-    for (Index i = 0; i < kPoints; ++i) {
-      re += problem.target()(2 * i, b) * at.y(2 * i, b);
-      im += problem.target()(2 * i, b) * at.y(2 * i + 1, b);
-    }
-    sum += 1 - re * re - im * im;
-    for (Index i = 0; i < kPoints; ++i) {
-      EXPECT_NEAR(g(2 * i, b), -2 * re * problem.target()(2 * i, b) / 4, 1e-15);
-      EXPECT_NEAR(g(2 * i + 1, b), -2 * im * problem.target()(2 * i, b) / 4, 1e-15);
-    }
-  }
-  EXPECT_NEAR(at.loss, sum / 4, 1e-14);
 }
 
 TEST(QuantumDipole, TheResidualHasTheSameLossAndGradient) {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/ladder.h"
+#include "core/status.h"
 #include "problems/dense_physics.h"
 #include "tests/problems/make.h"
 
@@ -103,25 +103,16 @@ TEST(Scales, HeatHasTheFloorOfTheBestSpectralCutOff) {
     const Real floor = problem.x_floor(problem.batch()), other = floor_by_svd(problem);
     EXPECT_NEAR(floor, other, 1e-3 * other) << seed;
     EXPECT_LT(floor, (problem.start() - problem.truth()->col(0)).norm());
+    Point at;
+    problem.forward(Vector::Zero(problem.unknowns()), at);
+    Matrix x = Matrix::Zero(problem.inputs(), 1);
+    problem.local_inverse(problem.target(), x, at);
+    if (seed == 0) {
+      EXPECT_LT(floor, (x - *problem.truth()).norm()) << "the damped inverse cannot move it";
+    }
   }
   const Problem poisson = make("poisson[N=8]");
   EXPECT_EQ(poisson.x_floor(poisson.batch()), 0);
-}
-
-// A method cannot move the floor, which was its own result once: the damped inverse stays above it.
-TEST(Scales, TheDampedInverseOfHeatStaysAboveTheFloor) {
-  const Problem problem = make("heat[N=8]");
-  Point at;
-  problem.forward(Vector::Zero(problem.unknowns()), at);
-  Matrix x(problem.inputs(), 1);
-  problem.local_inverse(problem.target(), x, at);
-  EXPECT_LT(problem.x_floor(problem.batch()), (x - *problem.truth()).norm());
-}
-
-TEST(Scales, AGoalAboveATenthOfXIsBeyondRanking) {
-  EXPECT_FALSE(is_beyond_ranking(1, 0.0909));  // 1.1 times it is 0.09999
-  EXPECT_TRUE(is_beyond_ranking(1, 0.091));
-  EXPECT_FALSE(is_beyond_ranking(1, 0));
 }
 
 TEST(Scales, WhoSeeksXSaysSoAndKnowsIt) {
@@ -132,10 +123,8 @@ TEST(Scales, WhoSeeksXSaysSoAndKnowsIt) {
       EXPECT_GT(x_scale(problem), 0) << name;
     }
   }
-  for (const char* name : {"scaling", "square", "exponential", "poisson", "heat"})
-    EXPECT_EQ(all_problems().at(name).aim, Aim::x) << name;
-  for (const char* name : {"sine", "rosenbrock", "brown-dennis", "hig-toy"})
-    EXPECT_EQ(all_problems().at(name).aim, Aim::loss) << name;
+  EXPECT_EQ(all_problems().at("heat").aim, Aim::x);
+  EXPECT_EQ(all_problems().at("rosenbrock").aim, Aim::loss);
 }
 
 }  // namespace

@@ -1,8 +1,10 @@
-// The series of learning problems, against closed forms and finite differences.
+// The series of learning problems, against closed forms and finite differences; spectra against
+// single modes.
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <set>
 
 #include "core/trace.h"
@@ -137,18 +139,6 @@ TEST(Watches, NoiseIsThatOfTheGradientsOfParts) {
   EXPECT_GT(direction, 1e-4);
 }
 
-// Of batches of four times as many samples the noise in direction is about a quarter.
-TEST(Watches, NoiseFallsWithTheBatch) {
-  const std::string network = ",network=mlp[layers=3,activation=tanh,precision=double]]";
-  const Problem small = make("exponential[mode=learn,watch=noise,batch=50" + network, 1),
-                large = make("exponential[mode=learn,watch=noise,batch=200" + network, 1);
-  EXPECT_EQ(small.start(), large.start());
-  const Real few = traced(small, small.start()).at("noise of ∇L: direction"),
-             many = traced(large, large.start()).at("noise of ∇L: direction");
-  EXPECT_LT(many, 0.5 * few);
-  EXPECT_GT(many, 0.1 * few);
-}
-
 // x = 0 is off by −x*, which lies between the ends of the decade in y*; the decades' errors, each
 // times its count, make up the error of all.
 TEST(Watches, ErrorsOfTheExponentialAreThoseOfTheDecadesOfItsTargets) {
@@ -176,19 +166,12 @@ TEST(Watches, ErrorsOfTheExponentialAreThoseOfTheDecadesOfItsTargets) {
   EXPECT_NEAR(problem.x_error(Matrix::Zero(1, 1024), validation), all, 1e-12);
 }
 
-Vector with_first_layer(const Problem& problem, const Vector& weights, const Vector& biases) {
-  Vector theta = problem.start();
-  theta.head(7) = weights;
-  theta.segment(7, 7) = biases;
-  return theta;
-}
-
 TEST(Watches, ANeuronThatIsOneForEveryInputIsSaturated) {
   const Problem problem = make("hig-toy", 1);
-  Vector weights = Vector::Constant(7, 0.5), biases = Vector::Zero(7);
-  weights[4] = 1e-6;  // without spread as well, and not saturated
-  biases.head(3) << 50, -50, 50;
-  const auto found = traced(problem, with_first_layer(problem, weights, biases));
+  Vector theta = problem.start();  // the weights of the first layer, then its biases
+  theta.head(14) << Vector::Constant(7, 0.5), 50, -50, 50, Vector::Zero(4);
+  theta[4] = 1e-6;  // without spread as well, and not saturated
+  const auto found = traced(problem, theta);
   EXPECT_EQ(found.at("saturated neurons"), 3);
   EXPECT_EQ(found.at("mean of neuron 1"), 1);
   EXPECT_EQ(found.at("mean of neuron 2"), -1);
@@ -201,6 +184,59 @@ TEST(Watches, ANeuronThatIsOneForEveryInputIsSaturated) {
   EXPECT_NEAR(found.at("spread of neuron 7"), std::sqrt((value - value.mean()).square().mean()),
               1e-14);
   EXPECT_EQ(traced(problem, problem.start()).at("saturated neurons"), 0);
+}
+
+Vector values_of(const Series& series, const Problem& problem, const Vector& theta, Point& at) {
+  Vector values(static_cast<Index>(series.names.size()));
+  series.evaluate(problem, theta, at, values);
+  return values;
+}
+
+Vector cosine_mode(Index k, Index l, Index N) {
+  Matrix mode(N, N);
+  for (Index j = 0; j < N; ++j)
+    for (Index i = 0; i < N; ++i)
+      mode(i, j) =
+          std::cos(2 * std::numbers::pi * static_cast<Real>(i * k + j * l) / static_cast<Real>(N));
+  return mode.reshaped();
+}
+
+// Heat multiplies a mode by e^(−ℓ), ℓ = 8 (2π |k|)², so ∂L/∂x has it times e^(−2ℓ), and U, where
+// the data carry evidence, whole: what is missing in x = x* − a c₂ − b c₅ on 32×32 cells.
+TEST(Spectra, OfHeatAreThoseOfItsModes) {
+  constexpr Index N = 32;
+  const Problem problem = make("heat[N=32]", 1);
+  const Real a = 0.02, b = 0.05;
+  const Vector theta = problem.truth()->reshaped() - a * cosine_mode(1, 1, N) -
+                       b * cosine_mode(0, 5, N);  // |k| = √2/32 = 0.044 and 5/32 = 0.156
+  Point at;
+  problem.forward(theta, at);
+  const Vector values = values_of(spectrum(N), problem, theta, at);
+  const auto kept = [](Real k) { return std::exp(-2 * 8 * std::pow(2 * std::numbers::pi * k, 2)); };
+  const auto shares = [](Real low, Real high) {
+    const Real total = low * low + high * high;
+    return Eigen::Vector4d(low * low / total, 0, high * high / total, 0);
+  };
+  const Eigen::Vector4d missing = shares(a, b),
+                        pulled = shares(a * kept(std::sqrt(2.0) / 32), b * kept(5.0 / 32));
+  EXPECT_LT((values.head(4) - missing).norm(), 1e-12);      // rounding
+  EXPECT_LT((values.segment(4, 4) - pulled).norm(), 1e-9);  // rounding, of the small against y
+  EXPECT_LT((values.tail(4) - missing).norm(), 1e-6);       // modes without evidence hold rounding
+  EXPECT_GT(pulled[0], 0.99);                               // the adjoint has removed the detail
+}
+
+// A wave of the highest number and one along a single axis are counted once each.
+TEST(Spectra, CountEveryModeOnce) {
+  constexpr Index N = 16;
+  const Problem problem = make("heat[N=16]", 1);
+  const Vector theta = problem.truth()->reshaped() - 0.3 * cosine_mode(N / 2, N / 2, N) -
+                       0.3 * std::sqrt(2.0) * cosine_mode(2, 0, N);
+  Point at;
+  problem.forward(theta, at);
+  const Vector values = values_of(spectrum(N), problem, theta, at);
+  // A cosine has the mean square ½ but for the highest, (−1)^(i+j), which has 1.
+  EXPECT_NEAR(values[2], 0.5, 1e-12);
+  EXPECT_NEAR(values[3], 0.5, 1e-12);
 }
 
 }  // namespace

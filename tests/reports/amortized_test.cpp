@@ -59,16 +59,17 @@ struct Shown {
     study.sheets = std::move(sheets);
     section = amortized_section(compare_optimizers(study));
   }
-  Real number(std::size_t row, const std::string& column) const {
+  const TableCell& cell(std::size_t row, const std::string& column) const {
     const Table& table = section.tables.at(0);
     const auto at = std::ranges::find(table.columns, column) - table.columns.begin();
-    const auto& numbers = table.rows.at(row).at(static_cast<std::size_t>(at)).numbers;
-    return numbers.empty() ? NAN : numbers[0].second;
+    return table.rows.at(row).at(static_cast<std::size_t>(at));
   }
   std::string text(std::size_t row, const std::string& column) const {
-    const Table& table = section.tables.at(0);
-    const auto at = std::ranges::find(table.columns, column) - table.columns.begin();
-    return table.rows.at(row).at(static_cast<std::size_t>(at)).text;
+    return cell(row, column).text;
+  }
+  Real number(std::size_t row, const std::string& column) const {
+    const auto& numbers = cell(row, column).numbers;
+    return numbers.empty() ? NAN : numbers[0].second;
   }
 };
 
@@ -82,7 +83,7 @@ TEST(Amortized, TrainingPaysFromSoManyInstancesAsItsTimeHoldsSavings) {
   EXPECT_EQ(shown.number(0, "per example, ms"), 0x1p-10);
   EXPECT_EQ(shown.number(0, kSolved), 0x1p-6 + 0x1p-10);
   EXPECT_EQ(shown.number(0, "pays off from"), 300);
-  EXPECT_NE(shown.section.tables[0].reading.find("from 300 instances"), std::string::npos);
+  EXPECT_TRUE(has(shown.section.tables[0].reading, "from 300 instances"));
 }
 
 TEST(Amortized, SolversAreTimedToTheErrorOfEachNetwork) {
@@ -110,16 +111,11 @@ TEST(Amortized, InstancesThatNeverGetThereStayInTheMedian) {
   EXPECT_EQ(failed.text(0, "failed"), "0, 1");
 }
 
-TEST(Amortized, ASolverFasterThanTheNetworkIsNeverPaidFor) {
-  const Shown shown({trained(0, 1, 3), single("newton", 0, 5e-4)});
-  EXPECT_EQ(shown.text(0, "pays off from"), "never");
-}
-
 TEST(Amortized, ANetworkNoNearerThanWhereSolversStartIsSaidToBe) {
   const Shown shown({trained(0, 11, 3), single("newton", 0, 2)});
   EXPECT_EQ(shown.number(0, kSolved), 0);
   EXPECT_EQ(shown.text(0, "pays off from"), "never");
-  EXPECT_NE(shown.section.tables[0].reading.find("newton starts with"), std::string::npos)
+  EXPECT_TRUE(has(shown.section.tables[0].reading, "newton starts with"))
       << shown.section.tables[0].reading;
 }
 

@@ -46,10 +46,6 @@ std::vector<std::string> cells_of(const AuditedOptimizer& audited) {
   return texts;
 }
 
-bool has(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
-
 TEST(AuditTable, SaysWhatWasMeasured) {
   const std::vector<std::string> expected = {"1 / 2",           "no power law",
                                              "1 / 2",           "no step",
@@ -75,7 +71,6 @@ TEST(AuditTable, IsInEveryFormatAndForeignTextIsHarmless) {
     EXPECT_TRUE(has(latex, part)) << part;
   EXPECT_FALSE(has(html, "<b>|x|"));
   EXPECT_FALSE(has(markdown, "<b>|x|"));
-  EXPECT_TRUE(has(html, "<svg"));
 }
 
 TEST(AuditTable, SaysWhatDoesNotApplyToWhatTeachesANetwork) {
@@ -93,7 +88,7 @@ TEST(AuditTable, TellsThePageWhichMethodARowIsAbout) {
   AuditedOptimizer sip = sample();
   sip.name = "sip";
   const std::string html = section_html(properties_section({sample(), sip}));
-  for (const char* row : {"<tr data-method=\"gd\">", "<g data-method=\"sip\">"})
+  for (const char* row : {"<tr data-method=\"gd\">", "<tr data-method=\"sip\">"})
     EXPECT_TRUE(has(html, row)) << row;
 }
 
@@ -104,24 +99,6 @@ TEST(AuditTable, IsReadForANewcomer) {
   EXPECT_TRUE(has(readings[0].text, "whose Hessian is zero"));
   EXPECT_TRUE(has(readings[2].text, "(order 2): gd"));
   EXPECT_TRUE(has(readings.back().text, "gd declares"));
-}
-
-// What the chapter states: α and α² for gradient descent, 1/α² for Newton's method, 1/α for the
-// inverse gradient, and nothing for Adam and half-inverse gradients.
-TEST(AuditTable, CreditsTheBookWithWhatItStates) {
-  const auto scaling_of = [](const std::vector<AuditedOptimizer>& all) {
-    return property_readings(all)[0].text;
-  };
-  AuditedOptimizer newton = sample();
-  newton.name = "newton";
-  newton.scalings[2] = {{0.1, 1, 10}, law(-1, 1e-15), law(0, 1e-15)};
-  const std::string both = scaling_of({sample(), newton});
-  EXPECT_TRUE(has(both,
-                  "changes L by α², that the inverse Hessian of Newton’s method brings a "
-                  "factor 1/α², and that the inverse gradient steps by 1/α."));
-  EXPECT_TRUE(has(both, "It states no law for Adam, half-inverse gradients or others."));
-  EXPECT_TRUE(has(both, "as s^-1 and that of gradient descent as s^1, which differ by s^-2."));
-  EXPECT_FALSE(has(scaling_of({sample()}), "Newton’s factor is measured"));
 }
 
 TEST(AuditFile, IsReadWithTheStudyAndReportsDoWithoutIt) {

@@ -1,17 +1,22 @@
 // Verdicts on claims against figures worked out by hand, and what false claims come to.
+#include "reports/sections/claims.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "core/results/statistics.h"
 #include "reports/page/page.h"
 #include "reports/report.h"
-#include "reports/sections/evidence.h"
+#include "reports/sections/sections.h"
 #include "tests/reports/asked_claim.h"
 #include "tests/reports/fixture.h"
 
 namespace isoline::reports {
 namespace {
+
+const Study kNoRuns;
 
 // A run whose error in x is `error` throughout; its cell is named by optimizer and seed.
 Record run_of(const std::string& optimizer, std::uint64_t seed, Real error) {
@@ -86,27 +91,36 @@ TEST(Claims, AreJudgedTheSameFromBothSides) {
         << value;
 }
 
-TEST(Claims, ATieIsNoReproductionOfWhoIsAhead) {
-  const Asked ahead{.published = {{"at_least", 1}}, .tolerance = kNone};
-  EXPECT_EQ(verdict_on(over(1, 1, 1), ahead), Verdict::not_reproduced);
-  EXPECT_EQ(verdict_on(over(1, 1.1, 1.2), ahead), Verdict::consistent);
-  EXPECT_EQ(verdict_on(over(1.01, 1.1, 1.2), ahead), Verdict::reproduced);
-  EXPECT_EQ(verdict_on(over(0.8, 0.9, 1.2), ahead), Verdict::not_reproduced);
-  // The error of two readings of 1.35, each ±20 %, is 0.9 to 2.03.
-  const Asked small{.published = {{"value", 1.35}}, .tolerance = kTwo};
-  EXPECT_EQ(verdict_on(over(1, 1, 1), small), Verdict::not_reproduced);
-  EXPECT_EQ(verdict_on(over(1.05, 1.2, 1.9), small), Verdict::reproduced);
-}
-
-// 7 in logarithms: a third is 1.913, three times 343.
-TEST(Claims, PartlyIsFromAThirdToThreeTimesTheEffect) {
-  const Asked seven{.published = {{"value", 7}}, .tolerance = kText};
-  EXPECT_EQ(verdict_on(over(1.07, 1.08, 1.09), seven), Verdict::not_reproduced);
-  EXPECT_EQ(verdict_on(over(1.9, 1.91, 1.95), seven), Verdict::not_reproduced);
-  EXPECT_EQ(verdict_on(over(1.9, 1.92, 1.95), seven), Verdict::partly);
-  EXPECT_EQ(verdict_on(over(300, 342, 345), seven), Verdict::partly);
-  EXPECT_EQ(verdict_on(over(300, 344, 345), seven), Verdict::not_reproduced);
-  EXPECT_EQ(verdict_on(over(0.99, 1.92, 1.95), seven), Verdict::not_reproduced) << "or a tie";
+TEST(Claims, AreJudgedByTheBandTheTieAndTheEffect) {
+  using V = Verdict;
+  const Asked ahead{
+      .published = {{"at_least", 1}},
+      .tolerance = kNone},  // a tie is no lead
+                            // The error of two readings of 1.35, each ±20 %, is 0.9 to 2.03.
+      small{.published = {{"value", 1.35}}, .tolerance = kTwo},
+      // 7 in logarithms: a third is 1.913, three times 343.
+      seven{.published = {{"value", 7}}, .tolerance = kText},
+      about{.kind = "value", .tolerance = {{"from", "about"}, {"relative", 0.25}}},
+      order{.kind = "value", .tolerance = {{"from", "order"}, {"factor", std::sqrt(10)}}};
+  for (const auto& [asked, low, value, high, verdict] :
+       {std::tuple{ahead, 1.0, 1.0, 1.0, V::not_reproduced},
+        {ahead, 1.0, 1.1, 1.2, V::consistent},
+        {ahead, 1.01, 1.1, 1.2, V::reproduced},
+        {ahead, 0.8, 0.9, 1.2, V::not_reproduced},
+        {small, 1.0, 1.0, 1.0, V::not_reproduced},
+        {small, 1.05, 1.2, 1.9, V::reproduced},
+        {seven, 1.07, 1.08, 1.09, V::not_reproduced},
+        {seven, 1.9, 1.91, 1.95, V::not_reproduced},
+        {seven, 1.9, 1.92, 1.95, V::partly},
+        {seven, 300.0, 342.0, 345.0, V::partly},
+        {seven, 300.0, 344.0, 345.0, V::not_reproduced},
+        {seven, 0.99, 1.92, 1.95, V::not_reproduced},
+        {about, 7.5, 10.0, 12.5, V::reproduced},
+        {about, 7.5, 10.0, 12.6, V::consistent},
+        {order, 3.17, 10.0, 31.6, V::reproduced},
+        {order, 3.16, 10.0, 31.6, V::consistent}})
+    EXPECT_EQ(verdict_on(over(low, value, high), asked), verdict)
+        << asked.published << ": " << low << " " << value << " " << high;
 }
 
 TEST(Claims, OfFewerThanSixSeedsAreConsistentOrAtOdds) {
@@ -160,15 +174,6 @@ TEST(Claims, OfOnePublishedRunAreComparedWithWhereOneFurtherRunOfOursWouldLie) {
   EXPECT_EQ(verdict_on(six, asked), Verdict::consistent);
 }
 
-TEST(Claims, AllowWhatWordsLeaveOpen) {
-  const Asked about{.kind = "value", .tolerance = {{"from", "about"}, {"relative", 0.25}}};
-  EXPECT_EQ(verdict_on(over(7.5, 10, 12.5), about), Verdict::reproduced);
-  EXPECT_EQ(verdict_on(over(7.5, 10, 12.6), about), Verdict::consistent);
-  const Asked order{.kind = "value", .tolerance = {{"from", "order"}, {"factor", std::sqrt(10)}}};
-  EXPECT_EQ(verdict_on(over(3.17, 10, 31.6), order), Verdict::reproduced);
-  EXPECT_EQ(verdict_on(over(3.16, 10, 31.6), order), Verdict::consistent);
-}
-
 TEST(Quantities, AreThoseWorkedOutByHand) {
   const std::vector<Real> at = {1, 10, 100};
   EXPECT_EQ(quantity_of("greatest", {3, 5, 4}, {}), 5);
@@ -181,6 +186,12 @@ TEST(Quantities, AreThoseWorkedOutByHand) {
   // log10 of the ratio: −1 at 1, 1 at 10: it passes 0 halfway in the logarithm, at √10.
   EXPECT_NEAR(quantity_of("crossing", {1, 10, 10, 10, 1, 1}, at), std::sqrt(10.0), 1e-12);
   EXPECT_TRUE(std::isinf(quantity_of("crossing", {1, 1, 1, 2, 2, 2}, at)));
+  // Of the ratios of two halves.
+  EXPECT_NEAR(quantity_of("ratio_slope", {1, 10, 100, 1, 1, 1}, at), 1, 1e-12);  // rounding
+  EXPECT_NEAR(quantity_of("ratio_slope", {1, 10, 100, 1, 10, 100}, at), 0, 1e-12);
+  EXPECT_EQ(quantity_of("trend", {2, 3, 4, 1, 1, 1}, at), 1);
+  EXPECT_EQ(quantity_of("trend", {2, 4, 3, 1, 1, 1}, at), 1.0 / 3);
+  EXPECT_EQ(quantity_of("trend", {5, 5, 5, 5, 5, 5}, at), 0);
 }
 
 TEST(Quantities, ASlopeReadOffAFigureIsUncertainByItsTwoEnds) {
@@ -360,26 +371,29 @@ TEST(Claims, OfIdentitiesAreCountedApartAsVerification) {
   EXPECT_EQ(verdicts_on_facts(judgements, true), std::vector{Verdict::reproduced});
   EXPECT_EQ(verdict_text(judgements[1]), "verified");
   const std::string text = claims_reading(judgements);
-  EXPECT_EQ(text.find("reproduced"), std::string::npos) << text;
-  EXPECT_NE(text.find("1 of 1 identities"), std::string::npos) << text;
+  EXPECT_FALSE(has(text, "reproduced")) << text;
+  EXPECT_TRUE(has(text, "1 of 1 identities")) << text;
 }
 
-TEST(Claims, WhoseSettingsWereNotPublishedAreUndecidableAndMeasured) {
-  Json claim = claim_of({});
-  claim["undecidable"] = "settings unpublished";
-  for (const auto& runs : {adam_and_sip(), std::vector<Record>()}) {
-    const Judgement judgement = judge(Json::array({claim}), runs)[0];
-    EXPECT_EQ(judgement.verdict, Verdict::undecidable);
-    EXPECT_EQ(judgement.why, "settings unpublished");
-    EXPECT_EQ(judgement.measured.has_value(), !runs.empty());
-    EXPECT_FALSE(is_decided(judgement.verdict));
+TEST(Claims, WhoseSourceTellsTooLittleOrCannotBeComparedAreMeasuredAllTheSame) {
+  for (const auto& [key, verdict] : {std::pair{"undecidable", Verdict::undecidable},
+                                     std::pair{"not_comparable", Verdict::not_comparable}}) {
+    Json claim = claim_of({});
+    claim[key] = "settings unpublished";
+    for (const auto& runs : {adam_and_sip(), std::vector<Record>()}) {
+      const Judgement judgement = judge(Json::array({claim}), runs)[0];
+      EXPECT_EQ(judgement.verdict, verdict);
+      EXPECT_EQ(judgement.why, "settings unpublished");
+      EXPECT_FALSE(is_decided(judgement.verdict));
+      EXPECT_EQ(judgement.measured ? judgement.measured->value : 0, runs.empty() ? 0 : 10);
+    }
   }
 }
 
 TEST(Claims, ReadOffAFigureSaySo) {
   EXPECT_TRUE(judgement_of({}, adam_and_sip()).reading.empty());
   const Judgement judgement = judgement_of({.tolerance = kFigure}, adam_and_sip());
-  EXPECT_NE(judgement.reading.find("Figure 1"), std::string::npos);
+  EXPECT_TRUE(has(judgement.reading, "Figure 1"));
   const std::vector<Reading> notes = claim_notes(judgement);
   EXPECT_TRUE(std::ranges::any_of(
       notes, [&](const Reading& note) { return note.text == judgement.reading; }));
@@ -397,15 +411,6 @@ TEST(Claims, TheLongestCompleteCellsCount) {
   runs.push_back(run_of("adam", 0, 5));
   runs.back().cell = "adam0-long";
   EXPECT_EQ(judge(Json::array({claim}), runs)[0].measured->value, 2.5);
-}
-
-TEST(Claims, WhoseSourceCannotBeComparedAreMeasuredBesideIt) {
-  Json claim = claim_of({});
-  claim["not_comparable"] = "their implementation";
-  const Judgement judgement = judge(Json::array({claim}), adam_and_sip())[0];
-  EXPECT_EQ(judgement.verdict, Verdict::not_comparable);
-  EXPECT_EQ(judgement.why, "their implementation");
-  EXPECT_EQ(judgement.measured->value, 10);
 }
 
 // Adam is 10 times as far as SIP: that it is 10 is true, and refuted once Adam is to be near too.
@@ -434,20 +439,104 @@ TEST(Claims, AreNoBetterThanWhatTheyAreHeldAgainst) {
 }
 
 TEST(Claims, OfAReportAreToldInEveryFormatByTheSameFigures) {
-  const Study study;
   const std::vector<Judgement> judgements = {judgement_of({}, adam_and_sip())};
   EXPECT_EQ(measured_text(judgements[0]), "10 (10–30), n = 3");
   const Section section = claims_section(judgements);
-  const Document document = document_of(compare_optimizers(study), judgements);
+  const Document document = document_of(compare_optimizers(kNoRuns), judgements);
   for (const std::string& text :
        {section_html(section), markdown_report(document), terminal_section(section)}) {
     for (const char* part :
          {"consistent, n = 3", "One is ahead of the other.", "10–30 (range of 3)", "±5 %"})
-      EXPECT_NE(text.find(part), std::string::npos) << part << " in " << text;
-    EXPECT_NE(text.find("1 fact in 1 claim: 1 consistent"), std::string::npos) << text;
+      EXPECT_TRUE(has(text, part)) << part << " in " << text;
+    EXPECT_TRUE(has(text, "1 fact in 1 claim: 1 consistent")) << text;
   }
   EXPECT_EQ(claims_json(judgements)[0].at("measured").at("value"), 10);
   EXPECT_TRUE(claims_section({}).is_empty());
+}
+
+// Two steps from (3, 4): to (3, 1), then to (1.5, −0.5). y is x, but for its last point.
+Record two_steps() {
+  Record record;
+  record.curve.iteration = {0, 1, 2};
+  record.curve.loss = {10, 7, 6};
+  record.curve.x_error = {5, 3, 1};
+  record.curve.step_norm = {0, 3, 2};
+  record.trajectory = Trajectory{.x = {{3, 4}, {3, 1}, {1.5, -0.5}}, .y = {{3, 4}, {3, 1}, {3, 4}}};
+  return record;
+}
+
+Real path_figure(const std::string& column, std::optional<std::int64_t> iteration = {},
+                 std::vector<std::vector<Real>> table = {}) {
+  return figure_of(two_steps(),
+                   {.column = column, .iteration = iteration, .seconds = {}, .table = table});
+}
+
+TEST(RunFigures, OfStepsAreThoseThatLedToTheIteration) {
+  EXPECT_EQ(path_figure("step_norm", 1), 3);
+  EXPECT_EQ(path_figure("step_2", 1), 3);
+  EXPECT_EQ(path_figure("step_2", 2), 1.5);
+  EXPECT_EQ(path_figure("relative_step_2", 1), 0.75);
+  EXPECT_EQ(path_figure("loss_drop", 1), 3);
+}
+
+TEST(RunFigures, OfPathsGoUpToTheIteration) {
+  EXPECT_EQ(path_figure("least_coordinate"), -0.5);
+  EXPECT_EQ(path_figure("least_coordinate", 1), 1);
+  EXPECT_EQ(path_figure("bend", 1), 0.75);
+  EXPECT_EQ(path_figure("deviation", {}, {{3, 2}, {1, 0}}), 1);
+  EXPECT_EQ(path_figure("mean_deviation", {}, {{3, 2}, {1, 0}}), 0.5);
+  // From (3, 4) to (3, 1): straight down, and the way to the origin has a cosine of 4/5 with it.
+  EXPECT_NEAR(path_figure("turn", 1), std::acos(0.8) * 180 / 3.14159265358979, 1e-9);  // rounding
+}
+
+// What claims must not be decided by: a run that made no step has none of these, and stays put.
+TEST(RunFigures, OfWhatMadeNoStepAreAbsentOrThoseOfTheStart) {
+  for (const char* column : {"step_2", "relative_step_2", "turn", "alignment", "slowdown"})
+    EXPECT_TRUE(std::isnan(path_figure(column, 0))) << column;
+  EXPECT_EQ(path_figure("bend", 0), 0);
+  EXPECT_EQ(path_figure("loss_drop", 0), 0);
+  EXPECT_EQ(path_figure("deviation", 0, {{3, 2}, {1, 0}}), 4);
+}
+
+// The error in x at every one of 90 iterations.
+Record curve_with(Real (*error)(Real iteration)) {
+  Record record;
+  for (std::int64_t i = 0; i <= 90; ++i) {
+    record.curve.iteration.push_back(i);
+    record.curve.loss.push_back(1);
+    record.curve.x_error.push_back(error(static_cast<Real>(i)));
+  }
+  return record;
+}
+
+Real slowdown_of(Real (*error)(Real iteration)) {
+  return figure_of(curve_with(error),
+                   {.column = "slowdown", .iteration = 90, .seconds = {}, .table = {}});
+}
+
+TEST(RunFigures, AnExponentialDoesNotSlowDownAndAHyperbolaDoes) {
+  EXPECT_NEAR(slowdown_of([](Real i) { return std::exp(-i / 10); }), 1, 1e-9);  // rounding
+  // ln 31 over the first third, ln (91/61) over the last.
+  EXPECT_NEAR(slowdown_of([](Real i) { return 1 / (1 + i); }), std::log(31) / std::log(91. / 61),
+              1e-9);
+  EXPECT_EQ(slowdown_of([](Real i) { return i < 40 ? 50 - i : 10; }), kNever);
+  EXPECT_TRUE(std::isnan(slowdown_of([](Real) { return 1.0; })));
+}
+
+TEST(Quantities, AShareCountsSeedsOfTheAlternativeThatSpeaksForTheMethod) {
+  const Term term{.figures = {{0, 1, 7, 0}, {7, 7, 7, 0}}, .at = 1};
+  EXPECT_EQ(measure("share", {term}, "test").value, 0.5);
+  Term worst = term;
+  worst.is_worst = true;
+  EXPECT_EQ(measure("share", {worst}, "test").value, 0.75);
+}
+
+TEST(Quantities, SignedOnesAreTiedAtZeroAndRatiosAtOne) {
+  for (const char* kind : {"slope", "ratio_slope", "order", "trend"})
+    EXPECT_EQ(neutral_of(kind), 0) << kind;
+  EXPECT_EQ(neutral_of("ratio"), 1);
+  for (const char* kind : {"value", "greatest", "share"})
+    EXPECT_FALSE(neutral_of(kind).has_value()) << kind;
 }
 
 }  // namespace

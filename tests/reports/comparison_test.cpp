@@ -7,8 +7,8 @@
 #include "core/errors.h"
 #include "core/json.h"
 #include "core/results/ranking.h"
-#include "core/results/targets.h"
-#include "reports/read/curves.h"
+#include "core/results/study.h"
+#include "reports/sections/figures.h"
 #include "reports/sections/sections.h"
 #include "reports/sections/words.h"
 #include "tests/reports/fixture.h"
@@ -29,9 +29,6 @@ TEST(Study, AnInvalidRecordIsListedAndNotFatal) {
   EXPECT_EQ(study.runs.size(), 1U);
   ASSERT_EQ(study.unreadable.size(), 4U);
   for (const Unreadable& file : study.unreadable) EXPECT_FALSE(file.reason.empty());
-}
-
-TEST(Study, AMissingFolderIsAUsageError) {
   EXPECT_THROW(read_study({"/no/such/folder"}), UsageError);
 }
 
@@ -72,12 +69,10 @@ TEST(Comparison, APartialPlanSaysWhatIsMissing) {
 // Work to 1e-6 is 30 · work_per_hit: 60, 120, 60 reached; two runs reach 1e-3 at most, one of them
 // crashed. Sorted: 60 60 120 ∞ ∞.
 TEST(Comparison, FailuresStayInTheDenominator) {
-  Study study;
-  study.runs = {record_of({.seed = 0}), record_of({.seed = 1, .work_per_hit = 4}),
-                record_of({.seed = 2}),
-                record_of({.seed = 3, .hits = 20, .status = Status::budget}),
-                record_of({.seed = 4, .hits = 3, .status = Status::crashed})};
-  const Comparison comparison = compare_optimizers(study);
+  const Compared comparison({record_of({.seed = 0}), record_of({.seed = 1, .work_per_hit = 4}),
+                             record_of({.seed = 2}),
+                             record_of({.seed = 3, .hits = 20, .status = Status::budget}),
+                             record_of({.seed = 4, .hits = 3, .status = Status::crashed})});
   const Cell& cell = comparison.cell(0, 0);
   EXPECT_EQ(cell.headline[kTightest].median, 120);
   EXPECT_EQ(cell.headline[1].unsolved, 1U);  // 1e-3 is index 15
@@ -87,10 +82,8 @@ TEST(Comparison, FailuresStayInTheDenominator) {
 }
 
 TEST(Comparison, TheLeastMedianWorkIsBestAndTiesAllAre) {
-  Study study;
-  study.runs = {record_of({.optimizer = "a"}), record_of({.optimizer = "b"}),
-                record_of({.optimizer = "c", .work_per_hit = 3})};
-  const Comparison comparison = compare_optimizers(study);
+  const Compared comparison({record_of({.optimizer = "a"}), record_of({.optimizer = "b"}),
+                             record_of({.optimizer = "c", .work_per_hit = 3})});
   std::map<std::string, bool> best;
   for (std::size_t s = 0; s < 3; ++s)
     best[comparison.optimizers[s].label] = comparison.cell(0, s).is_best[kTightest];
@@ -98,12 +91,11 @@ TEST(Comparison, TheLeastMedianWorkIsBestAndTiesAllAre) {
 }
 
 TEST(Comparison, AnInapplicableCellIsNoFailure) {
-  Study study;
-  study.runs = {record_of({.optimizer = "a"}), record_of({.optimizer = "b",
-                                                          .hits = 0,
-                                                          .status = Status::inapplicable,
-                                                          .message = "needs a Hessian"})};
-  const Comparison comparison = compare_optimizers(study);
+  const Compared comparison(
+      {record_of({.optimizer = "a"}), record_of({.optimizer = "b",
+                                                 .hits = 0,
+                                                 .status = Status::inapplicable,
+                                                 .message = "needs a Hessian"})});
   EXPECT_TRUE(comparison.failures.empty());
   EXPECT_EQ(comparison.cell(0, 1).inapplicable, "needs a Hessian");
   EXPECT_EQ(comparison.optimizers[1].applicable, 0U);
@@ -113,17 +105,15 @@ TEST(Comparison, AnInapplicableCellIsNoFailure) {
 // b is worse on the problem both have, and alone on its other: a was never asked there, and neither
 // is judged by it.
 TEST(Comparison, AProblemNeverPlannedDoesNotCountAgainstAMethod) {
-  Study study;
-  study.runs = {record_of({.problem = "heat", .optimizer = "a"}),
-                record_of({.problem = "heat", .optimizer = "b", .work_per_hit = 4}),
-                record_of({.problem = "wood", .optimizer = "b"})};
-  const Comparison comparison = compare_optimizers(study);
+  const Compared comparison({record_of({.problem = "heat", .optimizer = "a"}),
+                             record_of({.problem = "heat", .optimizer = "b", .work_per_hit = 4}),
+                             record_of({.problem = "wood", .optimizer = "b"})});
   EXPECT_EQ(comparison.optimizers[0].label, "a");
   EXPECT_EQ(comparison.optimizers[0].planned, 1U);
   EXPECT_EQ(comparison.optimizers[0].tightest().solved, 1U);
   EXPECT_EQ(comparison.profiles[kTightest].share(0, 1), 1);
   EXPECT_EQ(comparison.profiles[kTightest].share(1, 1), 0) << "compared where both were asked";
-  EXPECT_NE(remarks(comparison).front().find("wood: 1"), std::string::npos);
+  EXPECT_TRUE(has(remarks(comparison).front(), "wood: 1"));
 }
 
 TEST(Comparison, ThePrivilegedLeadOnlyAmongAll) {
@@ -135,7 +125,7 @@ TEST(Comparison, ThePrivilegedLeadOnlyAmongAll) {
           record_of({.problem = problem, .optimizer = optimizer, .work_per_hit = work}));
   for (Record& record : study.runs)
     if (record.request.optimizer.name == "seer") record.privileges = {"the solution"};
-  const Comparison c = compare_optimizers(study);
+  const Compared c(study);
   EXPECT_EQ(c.optimizers[c.decision->places[0].method].label, "seer");
   EXPECT_EQ(c.optimizers[c.open_decision->places[0].method].label, "fair");
   EXPECT_EQ(c.open_decision->places[0].share_first, 1);  // on every problem, so in every draw
@@ -186,16 +176,13 @@ TEST(Curves, TheGapIsWhatIsLeftOfTheDescent) {
   Record record = record_of({.hits = 2});
   record.minimum = 0.5;
   record.curve.loss = {1, 0.75};
-  Study study;
-  study.runs = {record};
-  const Comparison c = compare_optimizers(study);
+  const Compared c({record});
   EXPECT_EQ(median_curve(c, c.cell(0, 0), 10).gap, (std::vector<Real>{1, 0.5}));
 }
 
 TEST(Comparison, TwoGridsOfOneEquationAreOneProblem) {
-  Study study;
-  study.runs = {record_of({.problem = "heat[N=8]"}), record_of({.problem = "heat[N=16]"})};
-  EXPECT_EQ(headline(compare_optimizers(study)),
+  EXPECT_EQ(headline(Compared(
+                {record_of({.problem = "heat[N=8]"}), record_of({.problem = "heat[N=16]"})})),
             "1 optimizer on 1 problem (2 settings), 1 seed, 2 runs");
 }
 
@@ -203,13 +190,12 @@ TEST(Comparison, TwoGridsOfOneEquationAreOneProblem) {
 // two are even, on sine-x a is ahead: one draw in four has sine alone, where they share the lead,
 // so a keeps 7/8. Were the settings of sine drawn apart, it would keep 17/27.
 TEST(Comparison, SettingsOfOneProblemAreDrawnTogetherWhateverStandsBetweenThem) {
-  const Study study = study_of({{"sine", "a", 1},
-                                {"sine", "b", 100},
-                                {"sine-x", "a", 1},
-                                {"sine-x", "b", 2},
-                                {"sine[xi=32]", "a", 100},
-                                {"sine[xi=32]", "b", 1}});
-  const Comparison c = compare_optimizers(study);
+  const Compared c(study_of({{"sine", "a", 1},
+                             {"sine", "b", 100},
+                             {"sine-x", "a", 1},
+                             {"sine-x", "b", 2},
+                             {"sine[xi=32]", "a", 100},
+                             {"sine[xi=32]", "b", 1}}));
   EXPECT_EQ(c.names, 2U);
   EXPECT_EQ(c.optimizers[c.decision->places[0].method].label, "a");
   // Four standard errors of 1,000 draws.
@@ -220,9 +206,7 @@ TEST(Comparison, RatesFromAFileDoNotSplitAMethod) {
   Record tuned = record_of({.problem = "heat", .optimizer = "gd[rate=0.5]"});
   Record other = record_of({.problem = "square", .optimizer = "gd[rate=0.1]"});
   tuned.request.rates = other.request.rates = "benchmarks/rates/gd.json";
-  Study study;
-  study.runs = {tuned, other};
-  const Comparison comparison = compare_optimizers(study);
+  const Compared comparison({tuned, other});
   ASSERT_EQ(comparison.optimizers.size(), 1U);
   EXPECT_EQ(comparison.optimizers[0].label, "gd");
   EXPECT_EQ(comparison.optimizers[0].method, "gd");
@@ -262,19 +246,6 @@ TEST(Comparison, AnImportedRunIsMarkedAndMovesNobodysTargets) {
   EXPECT_EQ(c.runs[0].minimum, ours);
   study.runs[1].imported.reset();
   EXPECT_EQ(compare_optimizers(study).runs[0].minimum, ours - 5) << "as a run of ours it would";
-}
-
-TEST(Comparison, TimesTakenBesideOtherRunsAreMarked) {
-  Record shared = record_of({});
-  shared.provenance.run.concurrent_jobs = 4;
-  Record alone = record_of({.optimizer = "adam"});
-  alone.provenance.run.concurrent_jobs = 4;
-  alone.provenance.run.is_exclusive = true;
-  Study study;
-  study.runs = {alone, shared};
-  const Comparison comparison = compare_optimizers(study);
-  EXPECT_TRUE(comparison.runs[0].is_timed_alone);
-  EXPECT_FALSE(comparison.runs[1].is_timed_alone);
 }
 
 }  // namespace

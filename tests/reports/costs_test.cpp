@@ -1,12 +1,13 @@
 // Equivalent forward solves: raw counts at measured prices, and what does not depend on them.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "core/json.h"
-#include "core/results/targets.h"
+#include "core/results/study.h"
 #include "reports/report.h"
-#include "reports/sections/evidence.h"
+#include "reports/sections/sections.h"
 #include "tests/reports/fixture.h"
 
 namespace isoline::reports {
@@ -39,6 +40,7 @@ TEST(Costs, AreRawCountsAtMeasuredPrices) {
   EXPECT_EQ(prices.cost(counted()), 51 * 3.5);
   EXPECT_EQ(prices.hit_costs(counted())[30], 30 * 3.5);
   EXPECT_EQ(prices.curve_costs(counted())[10], 10 * 3.5);
+  EXPECT_EQ(counts_at(counted(), 60)[1], 30);
 }
 
 TEST(Costs, OfAnOracleThatWasNotMeasuredAreAtItsDeclaredPrice) {
@@ -68,53 +70,59 @@ TEST(Costs, InForwardSolvesBelowAMicrosecondAreDeclaredThroughout) {
   EXPECT_EQ(Prices(&sheet).cost(counted()), Real(counted().summary.work));
 }
 
-// At work 2 j − 1 the curve stands half way between its points.
-TEST(Costs, OfOlderRecordsAreReadBetweenThePointsOfTheCurve) {
-  Record older = counted();
-  older.hits->counts.clear();
-  older.hits->work[30] = 59;
-  const Sheet sheet = priced("square", 2.5);
-  EXPECT_EQ(Prices(&sheet).hit_costs(older)[30], 29.5 * 3.5);
-  EXPECT_EQ(Prices(&sheet).hit_costs(older)[29], 29 * 3.5);
-  EXPECT_EQ(counts_at(older, 59)[1], 30) << "whole calls: the first kept point from there on";
-  EXPECT_EQ(counts_at(counted(), 60)[1], 30);
-}
-
 TEST(Costs, WithoutMeasuredPricesAreTheDeclaredWork) {
   EXPECT_EQ(Prices(nullptr).hit_costs(counted())[30], 60);
   EXPECT_EQ(Prices(nullptr).cost(counted()), Real(counted().summary.work));
-  Study study;
-  study.runs = {counted()};
-  const Comparison c = compare_optimizers(study);
+  const Compared c({counted()});
   EXPECT_EQ(c.cell(0, 0).taken[Measure::cost][kTightest].median, 60);
-  EXPECT_NE(cost_unit(c).find("nominal"), std::string::npos);
+  EXPECT_TRUE(has(cost_unit(c), "nominal"));
   EXPECT_TRUE(prices_table(c).rows.empty());
 }
 
 TEST(Costs, AreNotAtThePricesOfOtherSettings) {
-  Study study;
-  study.runs = {counted()};
-  study.sheets = {priced("square[n=9]", 2.5)};
-  EXPECT_EQ(compare_optimizers(study).cell(0, 0).taken[Measure::cost][kTightest].median, 60);
-  study.sheets = {priced("square", 2.5)};
-  EXPECT_EQ(compare_optimizers(study).cell(0, 0).taken[Measure::cost][kTightest].median, 30 * 3.5);
+  for (const auto& [spec, cost] : {std::pair{"square[n=9]", 60.0}, {"square", 30 * 3.5}}) {
+    const Compared c(Study{.runs = {counted()}, .sheets = {priced(spec, 2.5)}});
+    EXPECT_EQ(c.cell(0, 0).taken[Measure::cost][kTightest].median, cost) << spec;
+  }
 }
 
 // 30 forward solves and 30 pullbacks at 2.5: 105.
 TEST(Costs, StandBesideTheRawCounts) {
-  Study study;
-  study.runs = {counted()};
-  study.sheets = {priced("square", 2.5)};
-  const Comparison c = compare_optimizers(study);
+  const Compared c(Study{.runs = {counted()}, .sheets = {priced("square", 2.5)}});
   const Table table = calls_table(c);
-  const auto column = std::ranges::find(table.columns, "pullback") - table.columns.begin();
-  EXPECT_EQ(table.rows[0][static_cast<std::size_t>(column)].text, "30");
-  EXPECT_NE(table.reading.find("60 forward solves at nominal cost, 105 in"), std::string::npos)
-      << table.reading;
-  EXPECT_NE(prices_table(c).rows[0].back().text.find("1 : 2.5 [2.5–2.5]"), std::string::npos);
+  EXPECT_EQ(at(table, "gd", "pullback"), "30");
+  EXPECT_TRUE(has(table.reading, "60 forward solves at nominal cost, 105 in")) << table.reading;
+  EXPECT_TRUE(has(prices_table(c).rows[0].back().text, "1 : 2.5 [2.5–2.5]"));
   const Json cell = parse_json(json_report(document_of(c)), "report.json").at("cells")[0];
   EXPECT_EQ(cell.at("costs").at("1e-6").at("median"), 105);
   EXPECT_EQ(cell.at("calls").at("pullback"), Json::array({30}));
+}
+
+// Pullbacks at 40 forward solves turn the order of two methods round.
+TEST(Costs, TellWhetherTheFirstIsTheSameAtMeasuredPrices) {
+  for (const auto& [pullback, is_kept] : {std::pair(1.1, true), std::pair(40.0, false)}) {
+    Study study;
+    for (const char* problem : {"p", "q", "r", "s", "t"}) {
+      for (const bool is_first : {true, false}) {
+        Record& record = study.runs.emplace_back(record_of({.problem = problem,
+                                                            .optimizer = is_first ? "a" : "b",
+                                                            .work_per_hit = is_first ? 2 : 3}));
+        record.prices[0] = record.prices[1] = 1;
+        for (std::int64_t j = 0; j < 51; ++j) {
+          record.hits->counts["forward"].push_back(is_first ? j : 3 * j);
+          record.hits->counts["pullback"].push_back(is_first ? j : 0);
+        }
+      }
+      study.sheets.push_back(priced(problem, pullback));
+      study.sheets.back().name = problem;
+      study.sheets.back().prices->forward_seconds = 1e-5;
+    }
+    const Compared c(std::move(study));
+    const auto cost = std::ranges::find(c.decision->choices, "cost", &Choice::value);
+    ASSERT_NE(cost, c.decision->choices.end());
+    EXPECT_EQ(cost->is_kept, is_kept) << pullback;
+    EXPECT_EQ(c.optimizers[cost->first.at(0)].label, is_kept ? "a" : "b");
+  }
 }
 
 }  // namespace

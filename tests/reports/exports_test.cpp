@@ -1,16 +1,13 @@
-// Results in the forms of others: CSV that reads back, and metrics with all that failed. What
-// COCO's folders must be is held by tests/exchange/coco_test.py, which reads them by the format's
-// rules.
-#include "reports/exports/exports.h"
-
+// Results in the forms of others: CSV that reads back. tests/exchange/coco_test.py holds what
+// COCO's folders must be: it reads them by the format's rules.
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
-#include <nlohmann/json.hpp>
 
 #include "core/json.h"
-#include "core/records/schema.h"
+#include "core/records/json_view.h"
+#include "reports/formats/formats.h"
 #include "tests/reports/fixture.h"
 
 namespace isoline::reports {
@@ -83,51 +80,9 @@ TEST(CurvesCsv, ARunWithoutACurveHasOneRow) {
   EXPECT_EQ(at(rows, 1, "loss"), "");
 }
 
-// The schema that Bencher publishes of its format, in our words.
-const Json kBencher = parse_json(R"({
-  "type": "object",
-  "additionalProperties": {
-    "type": "object",
-    "additionalProperties": {
-      "type": "object", "required": ["value"], "additionalProperties": false,
-      "properties": {"value": {"type": "number"}, "lower_value": {"type": "number"},
-                     "upper_value": {"type": "number"}}}}})",
-                                 "schema");
-
-TEST(Bencher, IsInTheFormOfItsFormat) {
-  const Study study = study_of({{"square", "gd", 2}, {"square", "adam", 0}, {"sine", "gd", 5}});
-  const Json json = parse_json(bencher_json(compare_optimizers(study)), "export");
-  EXPECT_EQ(schema_violations(json, kBencher), std::vector<std::string>{});
-  EXPECT_EQ(json.size(), 3U);
-  const Json& measures = json.at("square × gd");
-  EXPECT_EQ(measures.at("work-to-1e-6").at("value"), 60) << "2 a rung, 30 rungs";
-  EXPECT_EQ(measures.at("reached-1e-6").at("value"), 1);
-}
-
-TEST(Bencher, WhatWasNeverReachedIsLeftOutAndCounted) {
-  const Study study = study_of({{"square", "adam", 0}});
-  const Json json = parse_json(bencher_json(compare_optimizers(study)), "export");
-  const Json& measures = json.at("square × adam");
-  EXPECT_FALSE(measures.contains("work-to-1e-6"));
-  EXPECT_EQ(measures.at("reached-1e-6").at("value"), 0);
-  EXPECT_TRUE(measures.contains("work-to-1e-1"));
-}
-
-TEST(Bencher, IntervalsAreThoseOfTheSeeds) {
-  Study study;
-  for (const std::uint64_t seed : {0, 1, 2})
-    study.runs.push_back(
-        record_of({.seed = seed, .work_per_hit = static_cast<std::int64_t>(seed) + 1}));
-  const Json json = parse_json(bencher_json(compare_optimizers(study)), "export");
-  const Json& work = json.at("square × gd").at("work-to-1e-6");
-  EXPECT_EQ(work.at("lower_value"), 30);
-  EXPECT_EQ(work.at("value"), 60);
-  EXPECT_EQ(work.at("upper_value"), 90);
-}
-
 TEST(Coco, LeavesOutAndNamesWhatItCannotSay) {
   const Study study = study_of({{"square", "gd", 2}});
-  const CocoExport coco = coco_export(compare_optimizers(study));
+  const Export coco = coco_export(compare_optimizers(study));
   ASSERT_EQ(coco.left_out.size(), 1U);
   EXPECT_NE(coco.left_out[0].find("square"), std::string::npos);
   EXPECT_EQ(coco.files.size(), 1U) << "the list of functions alone";
@@ -137,11 +92,9 @@ TEST(Coco, FoldersOfMethodsAreToldApart) {
   Study study = study_of({{"square", "gd[rate=1]", 2}, {"square", "gd(rate=1)", 2}});
   study.sheets.push_back(
       {.kind = "problem", .name = "square", .spec = "square", .options_text = "[]", .unknowns = 1});
-  const CocoExport coco = coco_export(compare_optimizers(study));
-  std::set<std::string> names;
-  for (const ExportedFile& file : coco.files) EXPECT_TRUE(names.insert(file.name).second);
-  EXPECT_TRUE(names.contains("gd-rate-1/isoline_f1.info"));
-  EXPECT_TRUE(names.contains("gd-rate-1-2/isoline_f1.info"));
+  const Export coco = coco_export(compare_optimizers(study));
+  EXPECT_TRUE(coco.files.contains("gd-rate-1/isoline_f1.info"));
+  EXPECT_TRUE(coco.files.contains("gd-rate-1-2/isoline_f1.info"));
 }
 
 }  // namespace

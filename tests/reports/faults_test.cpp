@@ -276,6 +276,8 @@ std::vector<Fault> cell_faults() {
        })),
        kBad, kBad},
       {"other platform", in_all(rebuilt("platform", as_it_was)), kApart, kFine},
+      {"other platform, where a run fails", in_one(rebuilt("platform", ends_as(Status::failed))),
+       kBad, kBad},
       {"damaged file",
        {},
        kBad,

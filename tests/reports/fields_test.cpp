@@ -3,11 +3,10 @@
 
 #include <nlohmann/json.hpp>
 
-#include "core/digest.h"
 #include "core/files.h"
 #include "core/json.h"
 #include "reports/page/page.h"
-#include "reports/read/found_fields.h"
+#include "reports/sections/figures.h"
 #include "tests/reports/fixture.h"
 
 namespace isoline::reports {
@@ -184,13 +183,9 @@ TEST_F(ShownHistory, OfOlderRunsThatKeptXAloneIsNone) {
 // --- bytes
 
 TEST(Radix64, IsThatOfTheStandard) {  // the test vectors of RFC 4648, section 10
-  EXPECT_EQ(radix64(""), "");
-  EXPECT_EQ(radix64("f"), "Zg==");
-  EXPECT_EQ(radix64("fo"), "Zm8=");
-  EXPECT_EQ(radix64("foo"), "Zm9v");
-  EXPECT_EQ(radix64("foob"), "Zm9vYg==");
-  EXPECT_EQ(radix64("fooba"), "Zm9vYmE=");
-  EXPECT_EQ(radix64("foobar"), "Zm9vYmFy");
+  for (const auto& [bytes, text] :
+       {std::pair("", ""), {"fo", "Zm8="}, {"foob", "Zm9vYg=="}, {"foobar", "Zm9vYmFy"}})
+    EXPECT_EQ(radix64(bytes), text);
 }
 
 TEST(Cells, AreBytesAroundZeroUpToTwiceTheScale) {

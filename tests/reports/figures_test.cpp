@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <map>
 
-#include "core/digest.h"
 #include "core/files.h"
 #include "core/json.h"
 #include "reports/report.h"
@@ -46,24 +45,12 @@ Sheet sine_sheet(std::vector<Panel> panels) {
           .panels = std::move(panels)};
 }
 
-class Figures : public testing::Test {
- protected:
-  std::vector<Figure> drawn(const std::vector<Record>& records, const Panel& panel) {
-    for (const Record& record : records) folder.add(record);
-    folder.add(sine_sheet({panel}));
-    folder.add(plan_of(records));
-    study = read_study({folder.path()});
-    comparison = compare_optimizers(study);
-    return figures(comparison);
-  }
-
-  ResultFolder folder;
-  Study study;
-  Comparison comparison;
-};
+std::vector<Figure> drawn(const std::vector<Record>& records, const Panel& panel) {
+  return figures(Compared(Study{.runs = records, .sheets = {sine_sheet({panel})}}));
+}
 
 // The median over seeds over ξ, divided by ξ: by hand 2/1, 8/2, 12/4.
-TEST_F(Figures, SweepIsTheMedianErrorAtTheEndOverTheOption) {
+TEST(Figures, SweepIsTheMedianErrorAtTheEndOverTheOption) {
   std::vector<Record> records;
   for (const auto& [xi, errors] :
        std::map<Real, std::vector<Real>>{{1, {1, 2, 9}}, {2, {8, 7, 9}}, {4, {12, 12, 10}}})
@@ -80,40 +67,42 @@ TEST_F(Figures, SweepIsTheMedianErrorAtTheEndOverTheOption) {
   EXPECT_EQ(all[0].lines[0].high, (std::vector<Real>{9, 4.5, 3}));
 }
 
-TEST_F(Figures, CurveTakesOnlyTheProblemsThatItsPanelWants) {
+TEST(Figures, CurveTakesOnlyTheProblemsThatItsPanelWants) {
   const std::vector<Record> records = {learned({.xi = 1, .optimizer = "sip", .x_error = 2}),
                                        learned({.xi = 1, .optimizer = "adam", .x_error = 6}),
                                        learned({.xi = 32, .optimizer = "sip", .x_error = 3})};
   const auto all = drawn(records, {.title = "5b", .kind = "curve", .where = {{"xi", 1}}});
   ASSERT_EQ(all.size(), 1U);
   EXPECT_EQ(all[0].lines.size(), 2U);
-  EXPECT_NE(all[0].reading.find("sip has 2"), std::string::npos) << all[0].reading;
-  EXPECT_NE(all[0].reading.find("adam 6 (3×)"), std::string::npos) << all[0].reading;
+  EXPECT_TRUE(has(all[0].reading, "sip has 2")) << all[0].reading;
+  EXPECT_TRUE(has(all[0].reading, "adam 6 (3×)")) << all[0].reading;
 }
 
-TEST_F(Figures, ScatterAndDecadesReadTheSamples) {
+TEST(Figures, ScatterAndDecadesReadTheSamples) {
   Record record = learned({.optimizer = "sip"});
-  record.exhibit = Exhibit{.grid = 0, .target = {}, .x = {}, .truth = {}};
+  record.exhibit = Exhibit{.target = {}, .x = {}, .truth = {}};
   record.exhibit->target = Grid(1, 6, std::vector<Real>(6, 0.02));
   record.exhibit->truth = Grid(1, 6, {-5, -4, -3, -2, -1, 0});
   record.exhibit->x = Grid(1, 6, {-4.5, -3.5, -2.5, -1.5, -0.5, 0.5});
   const auto scatter = drawn({record}, {.title = "2", .kind = "scatter"});
   ASSERT_EQ(scatter.size(), 1U);
   EXPECT_EQ(scatter[0].lines[0].x.size(), 6U);
-  EXPECT_NE(scatter[0].reading.find("sip 0.5"), std::string::npos) << scatter[0].reading;
+  EXPECT_TRUE(has(scatter[0].reading, "sip 0.5")) << scatter[0].reading;
   const auto decades = drawn({record}, {.title = "2", .kind = "decades"});
   ASSERT_GE(decades.size(), 1U);
 }
 
-TEST_F(Figures, PicturesAreReadFromTheFileBesideTheRecord) {
+TEST(Figures, PicturesAreReadFromTheFileBesideTheRecord) {
   Record record = learned({.optimizer = "sip"});
   FieldFrames fields{.iterations = {0, 9}, .shape = {4, 2, 2}};
   fields.numbers = {1, 3, 2, 4, 9, 11, 10, 12, 0, 0, 0, 0, 5, 7, 6, 8};  // y*, x*, x at 0 and at 9
   fields.digest = digest(field_file(fields));
   record.fields = fields;
+  const ResultFolder folder;
   folder.add(record);
+  folder.add(sine_sheet({{.title = "6", .kind = "pictures"}}));
   write_text(field_path(folder.path() / "runs" / record.file_name()), field_file(fields));
-  const auto all = drawn({record}, {.title = "6", .kind = "pictures"});
+  const auto all = figures(Compared(read_study({folder.path()})));
   ASSERT_EQ(all.size(), 1U);
   ASSERT_EQ(all[0].pictures.size(), 3U);
   EXPECT_EQ(all[0].pictures[0].values, (std::vector<Real>{1, 3, 2, 4}));  // rows of the picture
@@ -123,17 +112,17 @@ TEST_F(Figures, PicturesAreReadFromTheFileBesideTheRecord) {
   EXPECT_EQ(all[0].pictures[2].values, (std::vector<Real>{9, 11, 10, 12}));
 }
 
-TEST_F(Figures, LearnedTablesNameWhereLossAndErrorRankDifferently) {
+TEST(Figures, LearnedTablesNameWhereLossAndErrorRankDifferently) {
   const std::vector<Record> records = {
       learned({.xi = 1, .optimizer = "sip", .x_error = 1, .loss = 1}),
       learned({.xi = 1, .optimizer = "adam", .x_error = 2, .loss = 2}),
       learned({.xi = 32, .optimizer = "sip", .x_error = 1, .loss = 5}),
       learned({.xi = 32, .optimizer = "adam", .x_error = 2, .loss = 3})};
-  drawn(records, {.title = "5b", .kind = "curve"});
+  const Compared comparison(records);
   const std::vector<Table> all = learned_section(comparison).tables;
   ASSERT_EQ(all.size(), 2U);
-  EXPECT_NE(all[0].reading.find("sip has both the least error"), std::string::npos);
-  EXPECT_NE(all[1].reading.find("rank methods differently"), std::string::npos);
+  EXPECT_TRUE(has(all[0].reading, "sip has both the least error"));
+  EXPECT_TRUE(has(all[1].reading, "rank methods differently"));
   EXPECT_NE(markdown_report(document_of(comparison)).find(all[1].reading.substr(0, 40)),
             std::string::npos);
 }

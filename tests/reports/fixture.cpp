@@ -1,24 +1,18 @@
 // Result folders and plain records for the tests of reports.
 #include "tests/reports/fixture.h"
 
-#include <fmt/format.h>
-#include <unistd.h>
-
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "core/files.h"
 #include "core/json.h"
-#include "core/ladder.h"
 #include "core/spec.h"
+#include "core/status.h"
 
 namespace isoline::reports {
 
 namespace {
-
-namespace fs = std::filesystem;
 
 Hits hits_of(const PlainRun& run) {
   Hits hits;
@@ -53,13 +47,9 @@ Curve curve_of(const PlainRun& run) {
 }  // namespace
 
 ResultFolder::ResultFolder() {
-  static std::atomic<int> count{0};
-  path_ = fs::temp_directory_path() / fmt::format("isoline-reports-{}-{}", ::getpid(), count++);
-  fs::create_directories(path_ / "runs");
-  fs::create_directories(path_ / "components");
+  for (const char* part : {"runs", "components"})
+    std::filesystem::create_directories(path() / part);
 }
-
-ResultFolder::~ResultFolder() { fs::remove_all(path_); }
 
 void ResultFolder::add(const Record& record) const {
   add_file("runs/" + record.file_name(), to_json(record).dump());
@@ -69,7 +59,7 @@ void ResultFolder::add(const Sheet& sheet) const {
 }
 void ResultFolder::add(const Plan& plan) const { add_file("plan.json", to_json(plan).dump()); }
 void ResultFolder::add_file(const std::string& name, const std::string& text) const {
-  write_text(path_ / name, text);
+  write_text(path() / name, text);
 }
 
 Record record_of(const PlainRun& run) {
@@ -117,6 +107,19 @@ Study study_of(const std::vector<Result>& results) {
                                     .hits = per_hit == 0 ? 10U : 51U,
                                     .work_per_hit = std::max(per_hit, 1)}));
   return study;
+}
+
+Compared::Compared(Study study_of_all, const Yardstick& by)
+    : OwnedStudy{std::move(study_of_all)}, Comparison(compare_optimizers(owned, by)) {}
+
+Compared::Compared(std::vector<Record> records, const Yardstick& by)
+    : Compared(Study{.runs = std::move(records)}, by) {}
+
+std::string at(const Table& table, const std::string& row, const std::string& column) {
+  const auto i = std::ranges::find(table.columns, column) - table.columns.begin();
+  for (const auto& cells : table.rows)
+    if (cells[0].text == row) return cells.at(static_cast<std::size_t>(i)).text;
+  return "no such row";
 }
 
 }  // namespace isoline::reports

@@ -7,7 +7,10 @@
 
 #include "core/records/record.h"
 #include "core/records/sheet.h"
+#include "core/results/ranking.h"
 #include "core/results/study.h"
+#include "reports/sections/section.h"
+#include "tests/temporary_folder.h"
 
 namespace isoline::reports {
 
@@ -17,18 +20,14 @@ using namespace results;
 class ResultFolder {
  public:
   ResultFolder();
-  ~ResultFolder();
-  ResultFolder(const ResultFolder&) = delete;
-  ResultFolder& operator=(const ResultFolder&) = delete;
-
-  const std::filesystem::path& path() const { return path_; }
+  const std::filesystem::path& path() const { return owned_.path(); }
   void add(const Record& record) const;
   void add(const Sheet& sheet) const;
   void add(const Plan& plan) const;
   void add_file(const std::string& name, const std::string& text) const;  // name within the folder
 
  private:
-  std::filesystem::path path_;
+  TemporaryFolder owned_;
 };
 
 // A run that reaches τ = 10^(−j/5) after j · work_per_hit forwards, until `hits` are reached.
@@ -52,11 +51,21 @@ struct Result {
 };
 Study study_of(const std::vector<Result>& results);
 
-// A study with something of everything: landscapes and paths on `square` and `sine`, learning
-// problems without a declared minimum, privileges, failures, inapplicable and missing cells.
-struct Size {
-  std::size_t problems = 16, optimizers = 33, seeds = 5, points = 64;
+// These records compared: a comparison that holds its study.
+struct OwnedStudy {
+  Study owned;
 };
-void write_sample_study(const std::filesystem::path& folder, const Size& size);
+struct Compared : OwnedStudy, Comparison {
+  explicit Compared(std::vector<Record> runs, const Yardstick& yardstick = {});
+  explicit Compared(Study study, const Yardstick& yardstick = {});
+  Compared(const Compared&) = delete;
+};
+
+inline bool has(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+// The text of the cell of a table, in the row that begins so, of this column.
+std::string at(const Table& table, const std::string& row, const std::string& column);
 
 }  // namespace isoline::reports

@@ -9,7 +9,6 @@
 #include <string>
 #include <vector>
 
-#include "reports/compare/baseline.h"
 #include "reports/compare/gate.h"
 #include "tests/reports/fixture.h"
 #include "tests/reports/true_record.h"
@@ -20,10 +19,6 @@ using Edit = std::function<void(Record&)>;
 using Edits = std::map<std::uint64_t, Edit>;  // by seed
 
 inline void as_it_was(Record&) {}
-
-inline bool has(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
 
 inline Edit loss_times(Real factor) {
   return [factor](Record& record) { end_at(record, record.summary.loss * factor); };

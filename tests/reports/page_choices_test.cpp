@@ -6,11 +6,11 @@
 #include <set>
 #include <sstream>
 
-#include "core/results/labels.h"
 #include "core/results/ranking.h"
-#include "reports/page/kinds.h"
+#include "core/results/table.h"
+#include "reports/page/page.h"
 #include "reports/report.h"
-#include "reports/sections/ranking.h"
+#include "reports/sections/sections.h"
 #include "tests/reports/fixture.h"
 
 namespace isoline::reports {
@@ -108,48 +108,42 @@ Record learned(const char* optimizer, std::vector<std::int64_t> work, std::vecto
   return record;
 }
 
+// The errors in x of adam and sip at the least work that any method was allowed: at 200 adam has 2,
+// at the end it would have 0.1. A run that failed before is infinite. One that diverged after two
+// of six steps counts with its last finite value, is marked, and lowers the work of no other.
 TEST(EqualWork, IsTheLeastThatAnyMethodWasAllowed) {
-  Study study;
-  study.runs = {learned("adam", {0, 100, 200, 300}, {4, 3, 2, 0.1}),
-                learned("sip", {0, 80, 160, 240}, {4, 2, 1, 0.5})};
-  const Comparison c = compare_optimizers(study);
-  const EqualWork equal = equal_work(c, 0);
-  EXPECT_EQ(equal.work, 240);
-  std::map<std::string, Real> errors;
-  for (std::size_t s = 0; s < c.optimizers.size(); ++s)
-    errors[c.optimizers[s].label] = equal.methods[s]->x_error.median;
-  EXPECT_EQ(errors["adam"], 2);  // at 200: at the end it would be 0.1
-  EXPECT_EQ(errors["sip"], 0.5);
-  EXPECT_EQ(c.optimizers[equal.nearest_first()[0]].label, "sip");
-  EXPECT_EQ(c.optimizers[ranking(c, 0)[0]].label, "sip");
-}
-
-TEST(EqualWork, OfARunThatFailedBeforeIsInfinite) {
-  Study study;
-  study.runs = {learned("adam", {0, 100}, {4, 3}), learned("sip", {0, 50, 200}, {4, 2, 1})};
-  study.runs[0].status = Status::crashed;
-  study.runs[0].request.budget.iterations = 3;
-  const Comparison c = compare_optimizers(study);
-  const EqualWork equal = equal_work(c, 0);
-  for (std::size_t s = 0; s < c.optimizers.size(); ++s)
-    EXPECT_EQ(equal.methods[s]->x_error.is_solved(), c.optimizers[s].label == "sip");
-}
-
-// It made two of six steps: the others are not compared at what these took. Its last finite value
-// counts, and is marked.
-TEST(EqualWork, OfARunThatDivergedIsItsLastFiniteValue) {
-  Study study;
-  study.runs = {learned("adam", {0, 100, 200, 300, 400, 500, 600}, {4, 3, 2, 1, 0.5, 0.3, 0.2}),
-                learned("sip", {0, 90, 180}, {4, 2, NAN})};
-  study.runs[1].status = Status::diverged;
-  study.runs[1].request.budget.iterations = 6;
-  const Comparison c = compare_optimizers(study);
-  const EqualWork equal = equal_work(c, 0);
-  EXPECT_EQ(equal.work, 540);
-  for (std::size_t s = 0; s < c.optimizers.size(); ++s) {
-    const bool is_sip = c.optimizers[s].label == "sip";
-    EXPECT_EQ(equal.methods[s]->x_error.median, is_sip ? 2 : 0.3);
-    EXPECT_EQ(equal.methods[s]->diverged, is_sip ? 1U : 0U);
+  const struct {
+    Record adam, sip;
+    Status adam_ends, sip_ends;
+    std::int64_t adam_steps, sip_steps;
+    Real work, adam_error, sip_error;
+  } cases[] = {{learned("adam", {0, 100, 200, 300}, {4, 3, 2, 0.1}),
+                learned("sip", {0, 80, 160, 240}, {4, 2, 1, 0.5}), Status::budget, Status::budget,
+                3, 3, 240, 2, 0.5},
+               {learned("adam", {0, 100}, {4, 3}), learned("sip", {0, 50, 200}, {4, 2, 1}),
+                Status::crashed, Status::budget, 3, 2, 0, kNever, 1},
+               {learned("adam", {0, 100, 200, 300, 400, 500, 600}, {4, 3, 2, 1, 0.5, 0.3, 0.2}),
+                learned("sip", {0, 90, 180}, {4, 2, NAN}), Status::budget, Status::diverged, 6, 6,
+                540, 0.3, 2}};
+  for (const auto& each : cases) {
+    Study study;
+    study.runs = {each.adam, each.sip};
+    study.runs[0].status = each.adam_ends;
+    study.runs[1].status = each.sip_ends;
+    study.runs[0].request.budget.iterations = each.adam_steps;
+    study.runs[1].request.budget.iterations = each.sip_steps;
+    const Comparison c = compare_optimizers(study);
+    const EqualWork equal = equal_work(c, 0);
+    if (each.work > 0) {
+      EXPECT_EQ(equal.work, each.work);
+    }
+    for (std::size_t s = 0; s < c.optimizers.size(); ++s) {
+      const bool is_sip = c.optimizers[s].label == "sip";
+      EXPECT_EQ(equal.methods[s]->x_error.median, is_sip ? each.sip_error : each.adam_error);
+      EXPECT_EQ(equal.methods[s]->diverged, is_sip && each.sip_ends == Status::diverged ? 1U : 0U);
+    }
+    const bool is_sip_nearest = each.sip_error < each.adam_error;
+    EXPECT_EQ(c.optimizers[equal.nearest_first()[0]].label, is_sip_nearest ? "sip" : "adam");
   }
 }
 

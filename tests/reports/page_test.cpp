@@ -1,4 +1,6 @@
 // What the page is made of: medians to targets as the tables have them, filters' attributes, size.
+#include "reports/page/page.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -7,7 +9,7 @@
 #include "core/files.h"
 #include "core/json.h"
 #include "core/oracle.h"
-#include "core/results/targets.h"
+#include "core/results/study.h"
 #include "reports/report.h"
 #include "reports/sections/words.h"
 #include "tests/reports/fixture.h"
@@ -67,7 +69,7 @@ TEST(Page, RowsSectionsAndCellsNameWhatTheyAreAbout) {
   const std::string page = html_report(document_of(compare_optimizers(study)));
   for (const char* part : {"<article class=\"problem one\" id=problem-1 data-p=1>",
                            "<article class=\"optimizer one\" id=optimizer-1 data-s=1>",
-                           "<tr data-p=1 data-s=1><th>b", "<g data-s=1", "<tr data-s=1"})
+                           "<tr data-s=1 data-p=1><th scope=row>b", "<g data-s=1", "<tr data-s=1"})
     EXPECT_TRUE(has(page, part)) << part;
 }
 
@@ -89,23 +91,18 @@ TEST(Page, IsToldTheMethodOfEachOptimizer) {
   }
 }
 
-TEST(Page, ShowsFormulasAsTheyAreWritten) {
+TEST(Page, IsTitledByItsSuitesAndShowsFormulasAsTheyAreWritten) {
   Study study;
   study.runs = {record_of({})};
+  study.plan.suites = {"quick"};
   study.sheets = {{.kind = "problem",
                    .name = "square",
                    .spec = "square",
                    .formula = "P(x) = x₁² / ‖x̃‖, Λ^(−κ) < 1",
                    .options_text = "[]"}};
-  EXPECT_TRUE(has(html_report(document_of(compare_optimizers(study))),
-                  "<p class=formula>P(x) = x₁² / ‖x̃‖, Λ^(−κ) &lt; 1</p>"));
-}
-
-TEST(Page, IsTitledByItsSuites) {
-  Study study;
-  study.runs = {record_of({})};
-  study.plan.suites = {"quick"};
-  EXPECT_TRUE(has(html_report(document_of(compare_optimizers(study))), "<title>quick"));
+  const std::string page = html_report(document_of(compare_optimizers(study)));
+  EXPECT_TRUE(has(page, "<title>quick"));
+  EXPECT_TRUE(has(page, "<p class=formula>P(x) = x₁² / ‖x̃‖, Λ^(−κ) &lt; 1</p>"));
 }
 
 // A sheet names the least that a method can do with; the page names what its runs asked for.
@@ -151,7 +148,7 @@ TEST(Page, ShowsEightLinesOfAProblemAtFirst) {
     study.sheets.push_back(std::move(sheet));
   }
   const Comparison c = compare_optimizers(study);
-  EXPECT_EQ(first_lines(c, 0).size(), 8U);
+  EXPECT_EQ(shown_at_first(c, ranking(c, 0)).size(), 8U);
   const std::string svg = curves_html(c, 0);
   std::size_t hidden = 0;
   for (std::size_t at = 0; (at = svg.find("class=off", at)) != std::string::npos; ++at) ++hidden;

@@ -10,6 +10,7 @@
 #include "core/json.h"
 #include "reports/report.h"
 #include "tests/reports/fixture.h"
+#include "tests/reports/synthetic.h"
 
 namespace isoline::reports {
 namespace {
@@ -119,7 +120,9 @@ Real rounding_of(const std::string& printed) {
 class SameFigures : public testing::Test {
  protected:
   SameFigures() {
-    write_sample_study(folder_.path(), {.problems = 9, .optimizers = 9, .seeds = 3, .points = 30});
+    write_synthetic_study(
+        folder_.path(),
+        {.problems = 9, .optimizers = 9, .seeds = 3, .points = 30, .is_sample = true});
     study_ = read_study({folder_.path()});
     document_ = document_of(compare_optimizers(study_));
     json_ = parse_json(json_report(document_), "report.json");
@@ -169,7 +172,7 @@ TEST_F(SameFigures, AreTheNumbersThatTheirTextsRound) {
           if (std::string(name) == "count" && named.contains("share")) continue;
           const Real value = (std::string(name) == "share" ? 100 : 1) * real_of(named[name]);
           if (!std::isfinite(value)) {
-            EXPECT_NE(text.find("✗"), std::string::npos) << table["id"] << ": " << text;
+            EXPECT_TRUE(has(text, "✗")) << table["id"] << ": " << text;
             continue;
           }
           EXPECT_NEAR(std::abs(value), std::stod(printed[0]), rounding_of(printed[0]))
@@ -178,6 +181,16 @@ TEST_F(SameFigures, AreTheNumbersThatTheirTextsRound) {
         }
       }
   EXPECT_GT(count, 200U) << "the numbers were not found";
+}
+
+TEST_F(SameFigures, AreOfWholeRowsWithFailedRunsAndAReading) {
+  for (const Table& table : document_.section("statistics").tables) {
+    EXPECT_FALSE(table.reading.empty()) << table.id;
+    EXPECT_TRUE(std::ranges::find(table.columns, "failed") != table.columns.end() ||
+                table.id == "prices" || table.id == "choices")
+        << table.id;
+    for (const auto& row : table.rows) EXPECT_EQ(row.size(), table.columns.size()) << table.id;
+  }
 }
 
 }  // namespace

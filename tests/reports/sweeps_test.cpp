@@ -1,11 +1,9 @@
 // Heat maps of two options, and spectra, from records made by hand.
-#include "reports/read/sweeps.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
-#include "core/digest.h"
+#include "core/files.h"
 #include "reports/sections/sections.h"
 #include "tests/reports/fixture.h"
 
@@ -38,22 +36,7 @@ Record swept(const Swept& given) {
   return record;
 }
 
-class Sweeps : public testing::Test {
- protected:
-  const Comparison& compared(const std::vector<Record>& records) {
-    for (const Record& record : records) folder.add(record);
-    folder.add(plan_of(records));
-    study = read_study({folder.path()});
-    comparison = compare_optimizers(study);
-    return comparison;
-  }
-
-  ResultFolder folder;
-  Study study;
-  Comparison comparison;
-};
-
-TEST_F(Sweeps, DrawTheMediansOverSeedsOfAllThatDiffersInTwoOptions) {
+TEST(Sweeps, DrawTheMediansOverSeedsOfAllThatDiffersInTwoOptions) {
   std::vector<Record> records;
   for (const Real kappa : {0.5, 1.0})
     for (const Real rate : {0.1, 1.0, 10.0})
@@ -63,7 +46,7 @@ TEST_F(Sweeps, DrawTheMediansOverSeedsOfAllThatDiffersInTwoOptions) {
                                  .loss = kappa * (1 + std::abs(std::log10(rate))) + Real(seed),
                                  .seed = seed}));
   records.push_back(swept({.rate = 100, .iterations = 7}));  // of another length
-  const Section section = sweeps_section(compared(records));
+  const Section section = sweeps_section(Compared(records));
   ASSERT_EQ(section.tables.size(), 1U);
   const Table& map = section.tables[0];
   EXPECT_EQ(map.title, "hig on chain: kappa × rate");
@@ -77,60 +60,55 @@ TEST_F(Sweeps, DrawTheMediansOverSeedsOfAllThatDiffersInTwoOptions) {
   EXPECT_EQ(map.reading,
             "The least median, 1.5, is at kappa = 0.5 and rate = 1; 6 of 6 settings lie within "
             "a factor of two of it.");
-  EXPECT_NE(map.caption.find("median over 3 seeds, 100 iterations each"), std::string::npos);
+  EXPECT_TRUE(has(map.caption, "median over 3 seeds, 100 iterations each"));
 }
 
-TEST_F(Sweeps, CountWhatDivergedAsInfinite) {
+TEST(Sweeps, CountWhatDivergedAsInfinite) {
   std::vector<Record> records;
   for (const Real kappa : {0.5, 1.0})
     for (const Real rate : {0.1, 1.0, 10.0})
       records.push_back(swept({.kappa = kappa,
                                .rate = rate,
                                .loss = rate > 1 ? std::numeric_limits<Real>::quiet_NaN() : rate}));
-  const Section section = sweeps_section(compared(records));
+  const Section section = sweeps_section(Compared(records));
   EXPECT_EQ(section.tables.at(0).rows[0][3].text, "✗");
   EXPECT_FALSE(section.tables[0].rows[0][3].shade);
   EXPECT_EQ(section.tables[0].rows[0][1].shade, 0);
 }
 
-TEST_F(Sweeps, OfFewCellsOrOfOneOptionAreNoGrid) {
+TEST(Sweeps, OfFewCellsOrOfOneOptionAreNoGrid) {
   std::vector<Record> records;
   for (const Real rate : {0.1, 1.0, 10.0, 100.0}) records.push_back(swept({.rate = rate}));
   records.push_back(swept({.kappa = 1, .rate = 1}));  // 5 of 8 cells
-  EXPECT_TRUE(sweep_grids(compared(records)).empty());
-  EXPECT_TRUE(sweeps_section(comparison).is_empty());
+  EXPECT_TRUE(sweeps_section(Compared(records)).is_empty());
 }
 
-TEST_F(Sweeps, OfBatchesCompareEqualNumbersOfSamples) {
+TEST(Sweeps, OfBatchesCompareEqualNumbersOfSamples) {
   std::vector<Record> records;
   for (const Index batch : {4, 8})
     for (const Real rate : {0.1, 1.0, 10.0})
       records.push_back(swept({.rate = rate, .batch = batch, .iterations = 1024 / batch}));
-  const std::vector<SweepGrid> grids = sweep_grids(compared(records));
-  ASSERT_EQ(grids.size(), 1U);
-  EXPECT_EQ(grids[0].samples, 1024);
-  EXPECT_EQ(grids[0].row, "batch");
-  EXPECT_NE(sweeps_section(comparison).tables[0].caption.find("1024 samples each"),
-            std::string::npos);
+  const Section section = sweeps_section(Compared(records));
+  ASSERT_EQ(section.tables.size(), 1U);
+  EXPECT_EQ(section.tables[0].columns[0], "batch / rate");
+  EXPECT_TRUE(has(section.tables[0].caption, "1024 samples each"));
 }
 
-TEST_F(Sweeps, SeeOptionsOfWhatStandsInside) {
+TEST(Sweeps, SeeOptionsOfWhatStandsInside) {
   std::vector<Record> records;
   for (const Real kappa : {0.5, 1.0})
     for (const char* inner : {"adam[rate=1e-4]", "adam[rate=1e-3]", "adam[rate=1e-2]"})
       records.push_back(swept({.kappa = kappa, .inner = inner}));
-  const std::vector<SweepGrid> grids = sweep_grids(compared(records));
-  ASSERT_EQ(grids.size(), 1U);
-  EXPECT_EQ(grids[0].column, "network-optimizer.rate");
-  EXPECT_EQ(grids[0].columns, (std::vector<Real>{1e-4, 1e-3, 1e-2}));
+  const Section section = sweeps_section(Compared(records));
+  ASSERT_EQ(section.tables.size(), 1U);
+  EXPECT_EQ(section.tables[0].columns,
+            (std::vector<std::string>{"kappa / network-optimizer.rate", "1e-4", "0.001", "0.01"}));
 }
 
-// --- spectra
-
-TEST_F(Sweeps, SpectraShowWhatTheStartSeesAndWhatStepsMakeOfIt) {
+TEST(Sweeps, SpectraShowWhatTheStartSeesAndWhatStepsMakeOfIt) {
   Record record = record_of({.problem = "square", .optimizer = "gd"});
   record.spectrum = {.iterations = {0, 1}, .sigma = {{10, 1, 1e-7}, {20, 4, 2}}};
-  const Section section = spectra_section(compared({record}));
+  const Section section = spectra_section(Compared({record}));
   ASSERT_EQ(section.plots.size(), 2U);
   EXPECT_EQ(section.plots[0].reading,
             "At the start 2 of 3 lie above 1e-6 of the largest; where gd ended, 3.");
@@ -139,16 +117,16 @@ TEST_F(Sweeps, SpectraShowWhatTheStartSeesAndWhatStepsMakeOfIt) {
   EXPECT_EQ(section.plots[1].reading, "From 1e8 at the start to 10 where gd ended.");
   for (const Plot& plot : section.plots) {
     EXPECT_TRUE(plot.is_log_x && plot.is_log_y) << plot.id;
-    EXPECT_NE(plot.caption.find("norm"), std::string::npos) << plot.id << " names none";
+    EXPECT_TRUE(has(plot.caption, "norm")) << plot.id << " names none";
   }
 }
 
-TEST_F(Sweeps, SpectraOfNoNumbersAreNotDrawn) {
+TEST(Sweeps, SpectraOfNoNumbersAreNotDrawn) {
   Record none = record_of({.problem = "square", .optimizer = "gd"});
   none.spectrum = Spectrum{};
   Record zero = record_of({.problem = "square", .optimizer = "adam"});
   zero.spectrum = {.iterations = {0}, .sigma = {{0, 0}}};
-  EXPECT_TRUE(spectra_section(compared({none, zero})).is_empty());
+  EXPECT_TRUE(spectra_section(Compared({none, zero})).is_empty());
 }
 
 }  // namespace

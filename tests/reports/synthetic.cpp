@@ -6,11 +6,17 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
+#include <fstream>
 #include <nlohmann/json.hpp>
+#include <thread>
 
-#include "core/ladder.h"
+#include "core/json.h"
 #include "core/random.h"
+#include "core/records/request.h"
+#include "core/records/sheet.h"
+#include "core/status.h"
 
 namespace isoline::reports {
 namespace {
@@ -155,21 +161,16 @@ void summarize(Record& record) {
 
 // One in a hundred; a method's fault, a machine's, or a limit's.
 void fail_some(Record& record, const SyntheticSize& size, std::size_t index) {
-  struct Fate {
-    Status status;
-    const char* message;
-  };
-  constexpr std::array<Fate, 4> kFates = {
+  constexpr std::array<std::pair<Status, const char*>, 4> kFates = {
       {{Status::crashed, "signal 11 (Segmentation fault)"},
        {Status::failed, "std::bad_alloc"},
        {Status::timeout, "killed at its hard limit of 60 s"},
        {Status::diverged, "the loss is not finite at iteration 17"}}};
   RandomStream random(size.random_seed, "synthetic", "fate", index);
   if (random.uniform() >= 0.01) return;
-  const Fate& fate = kFates[static_cast<std::size_t>(random.uniform(0, Real(kFates.size())))];
-  record.status = fate.status;
-  record.message = fate.message;
-  record.is_nondeterministic = fate.status == Status::timeout;
+  std::tie(record.status, record.message) =
+      kFates[static_cast<std::size_t>(random.uniform(0, Real(kFates.size())))];
+  record.is_nondeterministic = record.status == Status::timeout;
 }
 
 Provenance provenance_of(std::size_t index) {
@@ -184,13 +185,7 @@ Provenance provenance_of(std::size_t index) {
             .processor = "Intel(R) Xeon(R) Processor @ 2.70GHz",
             .cores = 16,
             .system = "Debian GNU/Linux 12 (bookworm), Linux 6.1.0-28-amd64",
-            .libraries = {{"Ceres", "2.1.0"},
-                          {"Eigen", "3.4.0"},
-                          {"NLopt", "2.7.1"},
-                          {"OpenBLAS", "0.3.21 Cooperlake"},
-                          {"fmt", "9.1.0"},
-                          {"nlohmann-json", "3.11.2"},
-                          {"oneDNN", "2.6.3"}}});
+            .libraries = {{"Ceres", "2.1.0"}, {"OpenBLAS", "0.3.21 Cooperlake"}}});
   return {build,
           {.started = fmt::format("2026-01-{:02}T{:02}:{:02}:{:02}Z", 1 + index / 86400 % 28,
                                   index / 3600 % 24, index / 60 % 60, index % 60),
@@ -224,6 +219,106 @@ Record synthetic_record(const SyntheticSize& size, std::size_t index) {
   fail_some(record, size, index);
   if (at.optimizer % kMethods.size() == kPrivileged) record.privileges = {"exact Hessian"};
   return record;
+}
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kLostOf = 200;  // of so many planned cells of a sample one is missing
+
+void save(const fs::path& file, const Json& json) { std::ofstream(file) << json.dump() << '\n'; }
+
+Sheet sheet_of(const std::string& kind, const Component& of) {
+  const bool is_problem = kind == "problem";
+  return {.kind = kind,
+          .name = of.name,
+          .spec = of.spec,
+          .title = is_problem ? "An invented inverse problem" : "An invented method",
+          .formula = is_problem ? "L = ½‖P(x) − y*‖²" : "θ ← θ + Δθ",
+          .source = "none: its runs are drawn",
+          .options_text = "[]",
+          .family = is_problem ? "" : "first-order",
+          .inverse = is_problem ? "none" : "",
+          .unknowns = is_problem ? 16 : 0,
+          .residuals = is_problem ? 16 : 0};
+}
+
+// Two of the problems of a sample are of two dimensions: their sheets have a landscape, and their
+// records a path through it.
+bool has_path(const SyntheticSize& size, std::size_t problem) {
+  return size.is_sample && problem < 2;
+}
+
+Landscape bowl() {
+  constexpr Index kGrid = 97;
+  Landscape bowl{{-0.5, 3.5, -0.5, 3.5}, Grid(kGrid, kGrid)};
+  const auto at = [](Index i) { return -0.5 + 4.0 * Real(i) / (kGrid - 1); };
+  for (Index j = 0; j < kGrid; ++j)
+    for (Index i = 0; i < kGrid; ++i) bowl.loss(i, j) = std::pow(at(i), 2) + std::pow(at(j), 4);
+  return bowl;
+}
+
+// A forward solve of some microseconds, a Jacobian dearer than declared, an inverse cheaper.
+MeasuredPrices prices_of(std::size_t problem) {
+  const Real factor = 1 + 0.1 * static_cast<Real>(problem % 7);
+  MeasuredPrices prices{"0123456789abcdef",
+                        "Intel(R) Xeon(R) Processor @ 2.70GHz",
+                        2e-6 * factor,
+                        {{"forward", 1, 1, 1, 1, 31, 620}}};
+  for (const auto& [oracle, declared, price] :
+       {std::tuple{"pullback", 1, 1.3}, {"jacobian", 2, 4.1}, {"inverse", 3, 0.7}})
+    prices.oracles.push_back(
+        {oracle, declared, price * factor, 0.9 * price * factor, 1.2 * price * factor, 31, 620});
+  return prices;
+}
+
+void write_sheets(const fs::path& folder, const SyntheticSize& size) {
+  const auto write = [&](const Sheet& sheet) {
+    save(folder / "components" / sheet.file_name(), to_json(sheet));
+  };
+  for (std::size_t p = 0; p < size.problems; ++p) {
+    Sheet sheet = sheet_of(
+        "problem", synthetic_record(size, p * size.optimizers * size.seeds).request.problem);
+    if (size.is_sample) sheet.prices = prices_of(p);
+    if (has_path(size, p)) {
+      sheet.landscape_x = sheet.landscape_y = bowl();
+      sheet.truth = sheet.target = {0, 0};
+    }
+    write(sheet);
+  }
+  for (std::size_t s = 0; s < size.optimizers; ++s)
+    write(sheet_of("optimizer", synthetic_record(size, s * size.seeds).request.optimizer));
+}
+
+}  // namespace
+
+void write_synthetic_study(const fs::path& folder, const SyntheticSize& size) {
+  for (const char* part : {"runs", "components"}) fs::create_directories(folder / part);
+  write_sheets(folder, size);
+  Plan plan{.suites = {"synthetic"}, .cells = std::vector<PlannedCell>(size.records())};
+  std::atomic<std::size_t> next{0};
+  const auto write_some = [&] {
+    for (std::size_t i = next++; i < plan.cells.size(); i = next++) {
+      Record record = synthetic_record(size, i);
+      const Request& request = record.request;
+      plan.cells[i] = {record.cell, request.problem.spec, request.optimizer.spec, request.seed};
+      if (size.is_sample && i % kLostOf == kLostOf - 1) continue;
+      if (has_path(size, place_of(size, i).problem) && !record.curve.loss.empty()) {
+        record.trajectory.emplace();
+        for (const Real error : record.curve.x_error) {
+          record.trajectory->x.push_back({3 * std::min(error, 1.0), 2 * std::min(error, 1.0)});
+          record.trajectory->y.push_back({3 * std::min(error, 1.0), 4 * error * error});
+        }
+      }
+      save(folder / "runs" / record.file_name(), to_json(record));
+    }
+  };
+  {
+    const std::jthread other(write_some);
+    write_some();
+  }
+  save(folder / "plan.json", to_json(plan));
 }
 
 }  // namespace isoline::reports

@@ -12,6 +12,7 @@ struct SyntheticSize {
   std::size_t problems = 100, optimizers = 50, seeds = 20;
   std::size_t points = 64;        // of every curve, in 12 columns
   std::uint64_t random_seed = 0;  // of all that is drawn
+  bool is_sample = false;  // with measured prices, landscapes and paths, and some cells missing
 
   std::size_t records() const { return problems * optimizers * seeds; }
 };

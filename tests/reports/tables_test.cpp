@@ -2,29 +2,21 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include "reports/report.h"
-#include "reports/sections/evidence.h"
+#include "reports/sections/sections.h"
 #include "tests/reports/fixture.h"
+#include "tests/reports/synthetic.h"
 
 namespace isoline::reports {
 namespace {
 
-bool has(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
-
-std::string at(const Table& table, const std::string& row, const std::string& column) {
-  const auto i = std::ranges::find(table.columns, column) - table.columns.begin();
-  for (const auto& cells : table.rows)
-    if (cells[0].text == row) return cells.at(static_cast<std::size_t>(i)).text;
-  return "no such row";
-}
-
 // Work 30, 300 and never: a third within 100, two thirds within 1000.
 TEST(Tables, DataProfileCountsForwardSolvesAndKeepsFailures) {
-  const Study study = study_of({{"p", "a", 1}, {"q", "a", 10}, {"r", "a", 0}});
-  const Table table = data_profile_table(compare_optimizers(study));
+  const Table table =
+      data_profile_table(Compared(study_of({{"p", "a", 1}, {"q", "a", 10}, {"r", "a", 0}})));
   EXPECT_EQ(at(table, "a", "≤ 10"), "0 %");
   EXPECT_EQ(at(table, "a", "≤ 100"), "33 %");
   EXPECT_EQ(at(table, "a", "≤ 1000"), "67 %");
@@ -47,10 +39,9 @@ TEST(Tables, ProfilesAreRightForNegativeLosses) {
 
 // One of two seeds gets there, after 60 of 102 spent in all by each... the other spends its 20.
 TEST(Tables, ExpectedRunningTimeCountsWhatFailedRunsSpent) {
-  Study study;
-  study.runs = {record_of({.seed = 0, .work_per_hit = 2}),
-                record_of({.seed = 1, .hits = 10, .work_per_hit = 2, .status = Status::budget})};
-  const Table table = restart_table(compare_optimizers(study));
+  const Table table = restart_table(
+      Compared({record_of({.seed = 0, .work_per_hit = 2}),
+                record_of({.seed = 1, .hits = 10, .work_per_hit = 2, .status = Status::budget})}));
   EXPECT_TRUE(at(table, "gd", "square").starts_with("78 [60–")) << at(table, "gd", "square");
   EXPECT_TRUE(at(table, "gd", "square").ends_with("(1/2)")) << at(table, "gd", "square");
 }
@@ -70,47 +61,59 @@ TEST(Tables, NobodyHasTheLargestAreaWhereAllAreZero) {
     }
 }
 
-TEST(Tables, RestartsSayThatTheyDrawOtherInstances) {
-  const Study study = study_of({{"p", "a", 1}});
-  const Comparison c = compare_optimizers(study);
-  EXPECT_TRUE(has(restart_table(c).caption, "has another start"));
-}
-
 // Two sizes of one problem are two settings of it: a count of rows says so.
 TEST(Tables, CountsOfSettingsAreNotCalledProblems) {
-  const Study study = study_of({{"p[N=8]", "a", 1}, {"p[N=16]", "a", 1}});
-  const Comparison c = compare_optimizers(study);
+  const Compared c(study_of({{"p[N=8]", "a", 1}, {"p[N=16]", "a", 1}}));
   EXPECT_EQ(at(data_profile_table(c), "a", "n settings"), "2");
   EXPECT_EQ(std::ranges::count(data_profile_table(c).columns, "n problems"), 0);
 }
 
-TEST(Tables, EveryFormatPrintsTheSameFigures) {
-  const ResultFolder folder;
-  write_sample_study(folder.path(), {.problems = 5, .optimizers = 6, .seeds = 3, .points = 30});
-  const Study study = read_study({folder.path()});
-  const Document document = document_of(compare_optimizers(study));
-  const std::string html = html_report(document), markdown = markdown_report(document),
-                    latex = latex_report(document);
-  std::size_t count = 0;
-  for (const Table& table : document.section("statistics").tables) {
-    EXPECT_FALSE(table.reading.empty()) << table.id;
-    EXPECT_TRUE(std::ranges::any_of(table.columns,
-                                    [](const std::string& name) { return name == "failed"; }) ||
-                table.id == "prices" || table.id == "choices")
-        << table.id;
-    for (const auto& row : table.rows) {
-      ASSERT_EQ(row.size(), table.columns.size()) << table.id;
-      for (const TableCell& each : row) {
-        const std::string& cell = each.text;
-        const bool is_figure = cell.find_first_not_of("0123456789.e-") == std::string::npos;
-        if (!is_figure || cell.empty()) continue;
-        for (const std::string* text : {&html, &markdown, &latex})
-          EXPECT_TRUE(has(*text, cell)) << table.id << ": " << cell;
-        ++count;
-      }
-    }
-  }
-  EXPECT_GT(count, 40U);
+// Loss 10^(−j/5) at the j-th point, 1 at the start; its error in x is that to the power, of a
+// solution of norm 1.
+Record run_of(const char* problem, const char* optimizer, Real power, std::size_t points = 51) {
+  Record record = record_of({.problem = problem, .optimizer = optimizer, .hits = points});
+  record.minimum = 0;
+  record.scale = record.x_scale = 1;
+  for (std::size_t j = 0; j < points; ++j)
+    record.curve.x_error[j] = std::pow(record.curve.loss[j], power);
+  record.summary.x_error = record.curve.x_error.back();
+  return record;
+}
+
+Sheet sheet_of(const char* problem, Real condition) {
+  Sheet sheet{.kind = "problem", .name = problem, .spec = problem, .options_text = "[]"};
+  sheet.unknowns = 2;
+  sheet.condition = condition;
+  return sheet;
+}
+
+// On p all but x are found: its error falls as the loss to the power 1/20. On q both are.
+Study both_kinds() {
+  return {.runs = {run_of("p", "gd", 0.05), run_of("q", "gd", 1), run_of("p", "newton", 0.05, 11),
+                   run_of("q", "newton", 0.5, 35)},
+          .sheets = {sheet_of("p", 3e7), sheet_of("q", std::numeric_limits<Real>::infinity())}};
+}
+
+TEST(LossWithoutX, IsCountedByMethodWithTheConditionNumberBeside) {
+  const Table table = loss_without_x_table(Compared(both_kinds()));
+  EXPECT_EQ(at(table, "gd", "n settings"), "2");
+  EXPECT_EQ(at(table, "gd", "loss"), "2");
+  EXPECT_EQ(at(table, "gd", "x"), "1");
+  EXPECT_EQ(at(table, "gd", "loss, not x"), "1");
+  EXPECT_EQ(at(table, "gd", "nor near"), "1");
+  EXPECT_EQ(at(table, "gd", "loss, not x, on"), "p (3e7)");
+  // Its loss is not reached on p; on q its x is near, to 1e-3, and not found to 1e-6.
+  EXPECT_EQ(at(table, "newton", "loss"), "1");
+  EXPECT_EQ(at(table, "newton", "loss, not x"), "1");
+  EXPECT_EQ(at(table, "newton", "nor near"), "0");
+  EXPECT_EQ(at(table, "newton", "loss, not x, on"), "q (singular)");
+  EXPECT_TRUE(has(table.reading, "3 reach the loss to 1e-6 and 1 find x")) << table.reading;
+}
+
+TEST(LossWithoutX, SaysWhereNeitherCanBeTold) {
+  const Table table = loss_without_x_table(Compared({record_of({})}));  // no solution is known
+  EXPECT_TRUE(table.rows.empty());
+  EXPECT_TRUE(has(table.reading, "No result has both"));
 }
 
 }  // namespace

@@ -2,8 +2,8 @@
 // loss and its hits follow from its losses, and its verdicts from its last point.
 #pragma once
 
-#include "core/ladder.h"
-#include "core/records/integrity.h"
+#include "core/records/record.h"
+#include "core/status.h"
 
 namespace isoline {
 

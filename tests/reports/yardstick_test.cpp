@@ -2,9 +2,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 
+#include "core/json.h"
+#include "core/records/json_view.h"
 #include "core/results/ranking.h"
-#include "core/results/targets.h"
+#include "core/results/study.h"
+#include "reports/report.h"
+#include "reports/sections/sections.h"
 #include "tests/reports/fixture.h"
 
 namespace isoline::reports {
@@ -19,12 +24,9 @@ TEST(Yardstick, AHugeStartMakesNoLossSmall) {
   record.curve.loss = {1.6e107, 1.6e91};
   record.summary.start_loss = 1.6e107;
   record.summary.loss = record.summary.best_loss = 1.6e91;
-  Study study;
-  study.runs = {record};
-  const Comparison c = compare_optimizers(study);
+  const Compared c({record});
   EXPECT_EQ(c.taken(c.runs[0], Measure::work, 0), kNever);
   EXPECT_EQ(c.optimizers[0].standings[0].solved, 0U);
-  EXPECT_DOUBLE_EQ(c.runs[0].goal(0.5), 0.562);
 }
 
 // The loss falls ten decades, the error in x to a third at most.
@@ -38,9 +40,7 @@ Record lost_in_x() {
 }
 
 TEST(Yardstick, AProblemThatWantsXIsNotSolvedByASmallLoss) {
-  Study study;
-  study.runs = {lost_in_x()};
-  const Comparison c = compare_optimizers(study);
+  const Compared c({lost_in_x()});
   const reports::Run& run = c.runs[0];
   EXPECT_EQ(run.loss_met, 51U);
   EXPECT_EQ(run.x_met, 3U);  // 0.4 is met, 0.35 is the floor
@@ -55,9 +55,7 @@ TEST(Yardstick, XIsFoundWhereItsErrorIsATenthOfTheSolution) {
   Record record = record_of({});
   record.aim = Aim::x;
   record.x_scale = 1;
-  Study study;
-  study.runs = {record};
-  const Comparison c = compare_optimizers(study);
+  const Compared c({record});
   EXPECT_EQ(c.taken(c.runs[0], Measure::work, 0), 20);
   EXPECT_EQ(c.taken(c.runs[0], Measure::iterations, 0), 10);
   EXPECT_FALSE(c.cell(0, 0).is_bound[0]) << "no point was skipped";
@@ -76,9 +74,7 @@ TEST(Yardstick, BetweenKeptPointsAFigureIsABound) {
   record.aim = Aim::x;
   record.x_scale = 1;
   for (std::size_t i = 10; i < record.curve.iteration.size(); ++i) record.curve.iteration[i] += 5;
-  Study study;
-  study.runs = {record};
-  const Comparison c = compare_optimizers(study);
+  const Compared c({record});
   EXPECT_TRUE(c.runs[0].targets[kTolerances[0].rung].is_bound);
   EXPECT_TRUE(c.cell(0, 0).is_bound[0]);
 }
@@ -106,15 +102,70 @@ TEST(Yardstick, WhatIsCountedDecidesWhoIsBest) {
   Record a = record_of({.optimizer = "a"}), b = record_of({.optimizer = "b", .work_per_hit = 5});
   for (auto* steps : {&b.hits->iteration, &b.curve.iteration})
     for (std::int64_t& step : *steps) step /= 2;
-  Study study;
-  study.runs = {a, b};
-  const Comparison by_work = compare_optimizers(study, yardstick_at(Measure::work, 1e-4)),
-                   by_steps = compare_optimizers(study, yardstick_at(Measure::iterations, 1e-4));
+  const Compared by_work({a, b}, yardstick_at(Measure::work, 1e-4)),
+      by_steps({a, b}, yardstick_at(Measure::iterations, 1e-4));
   EXPECT_EQ(by_work.optimizers[0].label, "a");
   EXPECT_EQ(by_work.cell(0, 0).headline[kTightest].median, 40);
   EXPECT_EQ(by_steps.optimizers[0].label, "b");
   EXPECT_EQ(by_steps.cell(0, 0).headline[kTightest].median, 10);
   EXPECT_EQ(median_costs(by_steps, kTightest, Measure::work)[0][0], 100);
+}
+
+// a takes fewer forward solves, b fewer iterations and less time, on each of five problems.
+Study crossed() {
+  Study study;
+  for (const char* problem : {"p", "q", "r", "s", "t"}) {
+    Record a = record_of({.problem = problem, .optimizer = "a", .work_per_hit = 1});
+    Record b = record_of({.problem = problem, .optimizer = "b", .work_per_hit = 8});
+    for (auto& seconds : a.hits->wall_seconds) seconds *= 100;
+    for (auto& iteration : a.hits->iteration) iteration *= 3;
+    for (Record* record : {&a, &b}) {
+      record->provenance.run.is_exclusive = true;
+      record->provenance.run.concurrent_jobs = 1;
+      study.runs.push_back(*record);
+    }
+  }
+  return study;
+}
+
+// To 1e-4, the 20th target, b takes 8 · 20 = 160 forward solves and 1.6 ms.
+TEST(OtherYardsticks, EveryFormatTellsItsMeasureAndItsTolerance) {
+  const Study study = crossed();
+  const Document work = document_of(compare_optimizers(study, yardstick_at(Measure::work, 1e-4)));
+  const Document time = document_of(compare_optimizers(study, yardstick_at(Measure::time, 1e-4)));
+  for (const auto text : {html_report, markdown_report, latex_report, terminal_table}) {
+    EXPECT_TRUE(has(text(work), "1e-4"));
+    EXPECT_TRUE(has(text(work), "160"));
+    EXPECT_FALSE(has(text(work), "wall time to"));
+    EXPECT_TRUE(has(text(time), "wall time"));
+    EXPECT_TRUE(has(text(time), "1.6"));
+  }
+  EXPECT_TRUE(has(csv_report(work), ",work_to_1e-4"));
+  const Json json = parse_json(json_report(time), "report");
+  EXPECT_EQ(json["yardstick"]["by"], "time");
+  EXPECT_EQ(json["yardstick"]["tolerances"][2]["name"], "1e-4");
+  const Json schema =
+      read_json(std::filesystem::path(ISOLINE_SOURCE_DIR) / "benchmarks/schemas/report.json");
+  EXPECT_EQ(schema_violations(json, schema), std::vector<std::string>());
+}
+
+TEST(OtherYardsticks, ThePageStartsAtTheTolerancesOfTheReport) {
+  const Study study = crossed();
+  const std::string page =
+      html_report(document_of(compare_optimizers(study, yardstick_at(Measure::iterations, 1e-4))));
+  EXPECT_TRUE(has(page, "\"by\":\"iterations\"")) << "what its scripts count";
+  EXPECT_TRUE(has(page, "\"rungs\":[5,15,20]"));
+  EXPECT_TRUE(has(page, "<output id=\"tau\">1e-4</output>"));
+}
+
+TEST(OtherYardsticks, TimesTakenBesideOtherRunsAreMarked) {
+  Study study = crossed();
+  for (Record& record : study.runs) record.provenance.run.concurrent_jobs = 2;
+  for (Record& record : study.runs) record.provenance.run.is_exclusive = false;
+  const Document document =
+      document_of(compare_optimizers(study, yardstick_at(Measure::time, 1e-6)));
+  EXPECT_TRUE(has(markdown_report(document), "2.4≈"));
+  EXPECT_TRUE(has(terminal_table(document), "≈"));
 }
 
 }  // namespace

@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "core/draws.h"
-#include "core/results/tests.h"
+#include "core/results/statistics.h"
 
 namespace isoline::results {
 namespace {
@@ -80,8 +80,8 @@ TEST(Decision, VariantsOfOneProblemAreOneWitness) {
     evidence.families.push_back(evidence.families[p]);
   }
   const auto twice = decide(evidence);
-  EXPECT_EQ(once->pair_p, twice->pair_p);
   for (std::size_t i = 0; i < once->places.size(); ++i) {
+    EXPECT_EQ(once->places[i].p, twice->places[i].p);
     EXPECT_EQ(once->places[i].adjusted, twice->places[i].adjusted);
     EXPECT_NEAR(once->places[i].interval.low, twice->places[i].interval.low, kRounding);
   }
@@ -131,8 +131,7 @@ TEST(Decision, NamesTheChoicesThatWouldPutAnotherFirst) {
   evidence.others = {{Varied::measure, "time", {{2, 9}, {2, 9}, {2, 9}}},
                      {Varied::tolerance, "0.1", {{9, 2}, {9, 2}, {9, 2}}}};
   for (const auto& row : evidence.costs)
-    evidence.repetitions.push_back(
-        {{.instance = 0, .start = 0, .costs = row}, {.instance = 1, .start = 1, .costs = {5, 1}}});
+    evidence.repetitions.push_back({{.seed = 0, .costs = row}, {.seed = 1, .costs = {5, 1}}});
   const auto decision = decide(evidence);
   ASSERT_EQ(decision->places[0].method, 0U);
   EXPECT_FALSE(is_kept(*decision, Varied::profile_end, "16"));
@@ -154,15 +153,11 @@ TEST(Decision, TheBootstrapSharesTies) {
   EXPECT_NEAR(decision->places[0].share_first + decision->places[1].share_first, 1, kRounding);
 }
 
-// Two instances of two starts. On the first instance the first method is ahead, on the second the
-// other and by less: the median of four is the mean of the middle two. A sample of instances 1, 1
-// (a quarter) alone puts the other first, whatever the starts.
-TEST(Decision, TheBootstrapDrawsInstancesAndThenStarts) {
+// Two seeds. On the first the first method is ahead, on the second the other and by less: the
+// median is their mean. A sample of seeds 1, 1 (a quarter) alone puts the other first.
+TEST(Decision, TheBootstrapDrawsSeeds) {
   Evidence evidence{.costs = {{10, 20}}, .families = {"a"}};
-  evidence.repetitions = {{{.instance = 0, .start = 0, .costs = {10, 40}},
-                           {.instance = 0, .start = 1, .costs = {10, 40}},
-                           {.instance = 1, .start = 0, .costs = {10, 9}},
-                           {.instance = 1, .start = 1, .costs = {10, 9}}}};
+  evidence.repetitions = {{{.seed = 0, .costs = {10, 40}}, {.seed = 1, .costs = {10, 9}}}};
   const auto decision = decide(evidence);
   EXPECT_NEAR(decision->places[0].share_first, 0.75, 4 * 0.014);  // four standard errors
 }

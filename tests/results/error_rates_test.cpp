@@ -1,9 +1,7 @@
-// What decisions promise, held by simulation with fixed random streams: errors
-// of the group of the best at 5 %, coverage of intervals at 95 %, power at 80
-// %. The short version takes seconds; the whole tables, with their figures
-// printed, are made by
-//   ISOLINE_LONG_TESTS=1 build/release/tests/results_tests
-//   --gtest_filter='ErrorRates.*'
+// What decisions promise, held by simulation with fixed random streams: errors of the group of the
+// best at 5 %, coverage of intervals at 95 %, power at 80 %. The short version takes seconds; the
+// whole tables, with their figures printed, are made by
+//   ISOLINE_LONG_TESTS=1 build/release/tests/results_tests --gtest_filter='ErrorRates.*'
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,22 +14,28 @@
 #include "core/draws.h"
 #include "core/json.h"
 #include "core/results/decisions.h"
-#include "core/results/tests.h"
+#include "core/results/statistics.h"
 
 namespace isoline::results {
 namespace {
 
 bool is_long() { return std::getenv("ISOLINE_LONG_TESTS") != nullptr; }
 
-// A share of n samples whose true value is at most `most` exceeds this in one
-// of 30,000 tables: four standard errors.
+// A share of n samples whose true value is at most `most` exceeds this in one of 30,000 tables:
+// four standard errors.
 Real at_most(Real most, Real n) { return most + 4 * std::sqrt(most * (1 - most) / n); }
+
+// Whether one of the first so many methods is not in the group of the best.
+bool sets_apart(const FlipLevels& levels, std::size_t methods) {
+  for (std::size_t s = 0; s < methods; ++s)
+    if (!levels.is_in_group(s)) return true;
+  return false;
+}
 
 // --- errors of the group
 
-// log2 of costs: noise of `doublings` about a common value for the methods that
-// tie for the best, about `behind` doublings more for the others; methods of
-// odd number have the second noise.
+// log2 of costs: noise of `doublings` about a common value for the methods that tie for the best,
+// about `behind` doublings more for the others; methods of odd number have the second noise.
 struct Null {
   std::string name;
   std::size_t methods = 2, tied = 2, problems = 10;
@@ -61,25 +65,19 @@ Rows drawn_sums(const Null& null, Draws& random) {
   return sums;
 }
 
-// The share of data sets of which the decision errs: a method that ties for the
-// best is said to be worse than it, be it by the confidence set or by a lead of
-// another.
+// The share of data sets of which the decision errs: a method that ties for the best is said to be
+// worse than it, be it by the confidence set or by a lead of another.
 Real error_of(const Null& null, std::size_t samples) {
   std::size_t errors = 0;
   for (std::size_t sample = 0; sample < samples; ++sample) {
     Draws random(sample, null.name, "null");
-    const FlipLevels levels = flip_levels(drawn_sums(null, random));
-    bool is_wrong = false;
-    for (std::size_t s = 0; s < null.tied; ++s)
-      is_wrong = is_wrong || (null.tied > 1 && !levels.is_in_group(s));
-    errors += is_wrong;
+    errors += sets_apart(flip_levels(drawn_sums(null, random)), null.tied);
   }
   return Real(errors) / Real(samples);
 }
 
-// Scores are relative to the least cost, so methods of unequal noise differ in
-// the mean at equal medians: the shift at which they do not, by bisection over
-// one fixed stream.
+// Scores are relative to the least cost, so methods of unequal noise differ in the mean at equal
+// medians: the shift at which they do not, by bisection over one fixed stream.
 Real balancing_shift(Null null) {
   Real low = -3, high = 3;
   constexpr int kHalvings = 12, kSamples = 300;
@@ -187,10 +185,7 @@ TEST(ErrorRates, PermutedLabelsOfRealResultsSetNoMethodApart) {
         std::swap(sums.back()[s - 1],
                   sums.back()[static_cast<std::size_t>(random.uniform() * Real(s))]);
     }
-    const FlipLevels levels = flip_levels(sums);
-    bool is_wrong = false;
-    for (std::size_t s = 0; s < sums[0].size(); ++s) is_wrong = is_wrong || !levels.is_in_group(s);
-    errors += is_wrong;
+    errors += sets_apart(flip_levels(sums), sums[0].size());
   }
   const Real error = Real(errors) / Real(samples);
   EXPECT_LE(error, at_most(0.05, Real(samples)));
@@ -209,8 +204,7 @@ Real drawn_score(int kind, Real family, Draws& random) {
     case 0:
       return std::clamp(0.5 + 0.25 * z, 0.0, 1.0);  // in the middle
     case 1:
-      return std::clamp(1.05 - 0.225 * std::abs(z), 0.0,
-                        1.0);  // first or nearly so
+      return std::clamp(1.05 - 0.225 * std::abs(z), 0.0, 1.0);  // first or nearly so
     case 2:
       return rank_of(z) < 0.3 ? 0 : std::clamp(0.75 + 0.2 * own, 0.0, 1.0);  // some unsolved
     case 3:
@@ -255,8 +249,7 @@ TEST(ErrorRates, IntervalsOfScoresCoverTheirStatedShare) {
   }
 }
 
-// Five values of one source, and a sixth: on the scale on which they are
-// normal.
+// Five values of one source, and a sixth: on the scale on which they are normal.
 TEST(ErrorRates, PredictionIntervalsHoldTheNextValue) {
   const int samples = is_long() ? 100000 : 4000;
   for (const std::size_t n : {2U, 3U, 6U, 10U}) {
@@ -310,8 +303,7 @@ TEST(ErrorRates, WhatIsCalledDetectableIsFoundInFourFifthsOfSamples) {
       }
       const Real share = Real(found) / samples;
       if (is_long()) std::printf("power, n = %zu, kind %d: %.3f\n", n, kind, share);
-      // Tails differ: 0.75 to 0.91 at n = 7 to 17, against 0.56 to 0.79 without
-      // the correction.
+      // Tails differ: 0.75 to 0.91 at n = 7 to 17, against 0.56 to 0.79 without the correction.
       EXPECT_GE(share, 0.75 - 4 * 0.4 / std::sqrt(samples)) << n << ", " << kind;
       EXPECT_LE(share, 0.92 + 4 * 0.27 / std::sqrt(samples)) << n << ", " << kind;
     }

@@ -1,10 +1,13 @@
-// Tests by ranks against SciPy 1.10.1 and enumeration. Samples: numpy.random.default_rng(7),
-// normal, rounded to three digits.
+// Tests by ranks and by flips of signs against SciPy 1.10.1 and enumeration, and verdicts on times
+// over simulated jobs. Samples: numpy.random.default_rng(7), normal, rounded to three digits.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <map>
 
-#include "core/results/tests.h"
+#include "core/random.h"
+#include "core/results/decisions.h"
+#include "core/results/statistics.h"
 
 namespace isoline::results {
 namespace {
@@ -118,6 +121,159 @@ TEST(RankTests, TheIntervalOfAMedianLeavesOutWhatTheTestOfSignsRejects) {
   // Beyond 1,000 by the normal law, which agrees with the exact one there.
   EXPECT_EQ(interval_of_first(3000).low, 1446);  // ⌊1500 − 1.96 √3000 / 2⌋
   EXPECT_NEAR(interval_of_first(1000).low, interval_of_first(1001).low, 1);
+}
+
+// Two methods that differ by these in each family.
+Real sign_flip_p(const std::vector<Real>& differences) {
+  std::vector<std::vector<Real>> sums;
+  for (const Real difference : differences) sums.push_back({difference, 0});
+  return flip_levels(sums).pairs[0][1];
+}
+
+// All eight signs of 1, 2, 3: |sum| is 6 twice, 4 twice, 2 twice and 0 twice.
+TEST(SignFlips, CountAllSignsOfAFew) {
+  EXPECT_EQ(sign_flip_p({1, 2, 3}), 0.25);
+  EXPECT_EQ(sign_flip_p({-1, 2, 3}), 0.5);
+  EXPECT_EQ(sign_flip_p({1, 2, -3}), 1);
+  EXPECT_EQ(sign_flip_p({1.5, -0.25, 3, 2, 2}), sign_flip_p({-1.5, 0.25, -3, -2, -2}));
+  EXPECT_EQ(sign_flip_p({0, 1, 0, 2, 3}), sign_flip_p({1, 2, 3})) << "zeros say nothing";
+  EXPECT_EQ(sign_flip_p({0, 0}), 1);
+  EXPECT_EQ(sign_flip_p(std::vector<Real>(8, 0.3)), 2 / 256.0) << "unanimity gives the least p";
+  EXPECT_EQ(sign_flip_p(std::vector<Real>(20, -2)), std::exp2(-19));
+}
+
+// scipy.stats.t.ppf(0.975, 11) + t.ppf(0.8, 11) = 2.20098516 + 0.87552998, and 2/9 more.
+TEST(SignFlips, WhatTheyFindGrowsWithTheSpread) {
+  EXPECT_NEAR(detectable_mean(1.7, 12), 11 / 9.0 * 3.07651514 * 1.7 / std::sqrt(12), 1e-7);
+  EXPECT_EQ(detectable_mean(1, 5), INFINITY) << "no p of five pairs is below 0.0625";
+  EXPECT_NEAR(deviation_of({1, 2, 3, 4}), std::sqrt(5 / 3.0), kRounding);
+}
+
+// scipy.stats.t.ppf, to its digits.
+TEST(Student, HasTheQuantilesOfSciPy) {
+  EXPECT_NEAR(student_quantile(0.975, 1), 12.7062047364, 1e-9);
+  EXPECT_NEAR(student_quantile(0.975, 2), 4.30265272991, 1e-9);
+  EXPECT_NEAR(student_quantile(0.975, 5), 2.57058183661, 1e-9);
+  EXPECT_NEAR(student_quantile(0.975, 10), 2.22813885196, 1e-9);
+  EXPECT_NEAR(student_quantile(0.8, 11), 0.875529978, 1e-8);
+}
+
+// Mean 2, variance 1, t(2) = 4.30265273: ±4.30265273 √(4/3).
+TEST(Prediction, AddsBothVariances) {
+  const Interval interval = prediction_interval({1, 2, 3});
+  const Real half = 4.30265273 * std::sqrt(4 / 3.0);
+  EXPECT_NEAR(interval.low, 2 - half, 1e-7);
+  EXPECT_NEAR(interval.high, 2 + half, 1e-7);
+  EXPECT_EQ(prediction_interval({1}).high, INFINITY);
+}
+
+constexpr std::size_t kPairs = 100;  // of jobs
+
+// Noise as seen on shared machines: repetitions vary by some percent, one in ten is delayed by up
+// to a quarter, and a whole job runs faster or slower than another, the more so a single cell of
+// it.
+struct Noise {
+  Real repetition = 0.03, delayed = 0.1, job = 0.015, cell = 0.01;
+};
+
+std::vector<Real> repetitions(RandomStream& random, const Noise& noise, Real seconds) {
+  seconds *= std::exp(noise.cell * random.normal());
+  std::vector<Real> all;
+  for (std::size_t i = 0; i < kLeastRepetitions; ++i) {
+    const Real delay = random.uniform() < noise.delayed ? 0.25 * random.uniform() : 0;
+    all.push_back(seconds * std::exp(noise.repetition * random.normal()) * (1 + delay));
+  }
+  return all;
+}
+
+// Two jobs of twenty cells; the first cell of the second takes `factor` times as long.
+std::vector<TimedCell> two_jobs(std::uint64_t pair, const Noise& noise, Real factor) {
+  RandomStream random(pair, "timing", "jobs");
+  const Real before = std::exp(noise.job * random.normal());
+  const Real after = std::exp(noise.job * random.normal());
+  std::vector<TimedCell> cells;
+  for (std::size_t i = 0; i < kMostTimed; ++i) {
+    const Real seconds = std::pow(10.0, random.uniform(-4, 0));
+    const std::string key = std::to_string(pair) + "/" + std::to_string(i);
+    cells.push_back({.key = key,
+                     .title = key,
+                     .before = repetitions(random, noise, before * seconds),
+                     .after = repetitions(random, noise, after * seconds * (i == 0 ? factor : 1))});
+  }
+  return cells;
+}
+
+struct Tally {
+  std::size_t false_pairs = 0, found = 0;
+};
+
+Tally tally_of(const Noise& noise, Real factor) {
+  Tally tally;
+  for (std::uint64_t pair = 0; pair < kPairs; ++pair) {
+    bool is_false = false;
+    for (const TimeVerdict& verdict : judge_times(two_jobs(pair, noise, factor), kLeastNoise)) {
+      const bool is_planted = factor != 1 && verdict.key.ends_with("/0");
+      if (is_planted)
+        tally.found += verdict.change == 1;
+      else
+        is_false = is_false || verdict.change != 0;
+    }
+    tally.false_pairs += is_false;
+  }
+  return tally;
+}
+
+TEST(Timing, AtMostFiveOfAHundredPairsOfEqualJobsAreCalledDifferent) {
+  EXPECT_LE(tally_of({}, 1).false_pairs, 5U);
+  EXPECT_LE(tally_of({.repetition = 0.1, .delayed = 0.2}, 1).false_pairs, 5U) << "a noisy machine";
+  EXPECT_LE(tally_of({.repetition = 0.002, .delayed = 0}, 1).false_pairs, 5U) << "a quiet one";
+}
+
+TEST(Timing, ASlowdownOfThirtyPercentIsFoundInNinetyFiveOfAHundred) {
+  const Tally usual = tally_of({}, 1.3);
+  EXPECT_GE(usual.found, 95U);
+  EXPECT_LE(usual.false_pairs, 5U);
+  EXPECT_GE(tally_of({.repetition = 0.05}, 1.3).found, 95U);
+}
+
+TEST(Timing, ASpeedupIsFasterAndTheWorstComesFirst) {
+  std::vector<TimedCell> cells = two_jobs(1, {.delayed = 0}, 1.5);
+  for (Real& seconds : cells[1].after) seconds /= 2;
+  const std::vector<TimeVerdict> verdicts = judge_times(cells, kLeastNoise);
+  EXPECT_EQ(verdicts.front().key, "1/0");
+  EXPECT_EQ(verdicts.front().change, 1);
+  EXPECT_EQ(verdicts.back().key, "1/1");
+  EXPECT_EQ(verdicts.back().change, -1);
+}
+
+// Halves of {1 … 1} agree; halves of a sample that spreads by a factor of ten do not.
+TEST(Timing, NoiseIsWhatTheRepetitionsShow) {
+  const std::vector<Real> still(9, 1.0), wild = {1, 2, 3, 4, 5, 6, 7, 8, 10};
+  EXPECT_EQ(split_noise({{"a", "a", still, still}}), 0);
+  EXPECT_GT(split_noise({{"a", "a", wild, wild}}), 0.3);
+  EXPECT_EQ(split_noise({{"a", "a", {1}, {1}}}), kNever);
+}
+
+TEST(Timing, IsTheSameEachTime) {
+  const std::vector<TimedCell> cells = two_jobs(3, {}, 1.1);
+  const auto first = judge_times(cells, kLeastNoise), second = judge_times(cells, kLeastNoise);
+  for (std::size_t i = 0; i < first.size(); ++i) EXPECT_EQ(first[i].noise, second[i].noise);
+}
+
+// A rank that equals no other must end the search for its equals.
+TEST(Timing, RanksOfWhatIsNotANumberEnd) {
+  const std::vector<Real> with_nan = {0.1, std::nan(""), 0.2};
+  EXPECT_LE(mann_whitney_p(with_nan, {0.1, 0.3, 0.4}), 1);
+}
+
+// Among all orders of the blocks after the first, those whose sums of ranks differ as much.
+TEST(Friedman, CountsOrPermutesTheOrdersOfBlocks) {
+  EXPECT_NEAR(friedman_p({{3, 2, 1}, {9, 5, 4}}), 1 / 6.0, kRounding);
+  EXPECT_NEAR(friedman_p({{3, 2, 1}, {9, 4, 4}}), 1 / 3.0, kRounding);
+  EXPECT_EQ(friedman_p({{1, 2}, {1, 2}, {1, 2}, {1, 2}, {1, 2}}), 0.0625);
+  EXPECT_EQ(friedman_p({{1, 1, 1}, {2, 2, 2}}), 1);
+  EXPECT_EQ(friedman_p({{1, 2}}), 1);
+  EXPECT_EQ(friedman_p(std::vector<std::vector<Real>>(6, {1, 2, 3, 4, 5, 6, 7, 8})), 1e-4);
 }
 
 }  // namespace

@@ -22,37 +22,38 @@ const Catalog& catalog() {
   return all;
 }
 
-// Stems of the files of a room that register something, underscores as hyphens.
-std::vector<std::string> component_files(const std::string& room) {
-  std::vector<std::string> names;
+// The files of a room that register something.
+std::vector<Source> component_files(const std::string& room) {
+  std::vector<Source> files;
   for (const Source& source : sources()) {
     if (source.room() != room || source.is_header()) continue;
     if (source.text.find("void register_" + source.stem() + "(") == std::string::npos) continue;
-    std::string name = source.stem();
-    std::ranges::replace(name, '_', '-');
-    names.push_back(name);
+    files.push_back(source);
   }
-  return names;
+  return files;
 }
 
-// A file is named after its entry; where it adds a family, its entries begin with its name.
-bool belongs(const std::string& entry, const std::string& file) {
-  return entry == file || entry.starts_with(file + "-");
+// A file is named after its entry, or its entries begin with its name, or it quotes their names.
+bool belongs(const std::string& entry, const Source& file) {
+  std::string name = file.stem();
+  std::ranges::replace(name, '_', '-');
+  return entry == name || entry.starts_with(name + "-") ||
+         file.text.find("\"" + entry + "\"") != std::string::npos;
 }
 
 template <class Entries>
 void expect_files_and_entries_agree(const std::string& room, const Entries& entries) {
-  const std::vector<std::string> files = component_files(room);
+  const std::vector<Source> files = component_files(room);
   EXPECT_GE(files.size(), 3U) << room << ": the components were not found";
   for (const auto& [name, entry] : entries)
     EXPECT_TRUE(std::ranges::any_of(files, [&](const auto& file) { return belongs(name, file); }))
-        << name << " is in no file of its name in " << room;
-  for (const std::string& file : files)
+        << name << " is in no file of " << room;
+  for (const Source& file : files)
     EXPECT_TRUE(std::ranges::any_of(entries, [&](const auto& e) { return belongs(e.first, file); }))
-        << room << "/" << file << " adds nothing of its name";
+        << room << "/" << file.stem() << " names nothing that it adds";
 }
 
-TEST(Components, AreNamedAfterTheirFiles) {
+TEST(Components, AreInFilesThatNameThem) {
   expect_files_and_entries_agree("problems", catalog().problems);
   expect_files_and_entries_agree("optimizers", catalog().optimizers);
   expect_files_and_entries_agree("networks", network_registry());
@@ -69,6 +70,10 @@ void expect_described(const Entry& entry) {
     EXPECT_TRUE(options.insert(option.name).second) << entry.name << ": " << option.name;
     EXPECT_NE(option.name, "lr") << entry.name << ": the option is `rate` everywhere";
   }
+  if (entry.needs_argument.empty())
+    return;  // else it is not meant by "*", and says how it is named
+  EXPECT_FALSE(entry.in_all) << entry.name;
+  EXPECT_TRUE(entry.needs_argument.starts_with(entry.name + "[")) << entry.needs_argument;
 }
 
 TEST(Components, HaveATitleAFormulaASourceAndDocumentedOptions) {
@@ -83,18 +88,6 @@ TEST(Components, DefaultsAreWithinTheirOwnRanges) {
     const OptionValues defaults = complete_optimizer(catalog(), name, OptionValues()).options;
     EXPECT_NO_THROW(complete_optimizer(catalog(), name, defaults)) << name;
   }
-}
-
-template <class Entry>
-void expect_kept_out_of_all(const Entry& entry) {
-  if (entry.needs_argument.empty()) return;
-  EXPECT_FALSE(entry.in_all) << entry.name;
-  EXPECT_TRUE(entry.needs_argument.starts_with(entry.name + "[")) << entry.needs_argument;
-}
-
-TEST(Components, ThatNeedAnArgumentSayHowAndAreNotMeantByAll) {
-  for (const auto& [name, entry] : catalog().problems) expect_kept_out_of_all(entry);
-  for (const auto& [name, entry] : catalog().optimizers) expect_kept_out_of_all(entry);
 }
 
 // A component that vanishes is missed here.
@@ -112,11 +105,15 @@ const std::string kOptimizers =
     "nlopt-lbfgs nlopt-var2 nlopt-tnewton nlopt-slsqp nlopt-mma nlopt-ccsaq nlopt-bobyqa "
     "nlopt-cobyla nlopt-neldermead nlopt-sbplx levenberg-marquardt-cg process";
 
+template <class Entries>
+void expect_all_there(const std::string& names, const Entries& entries) {
+  std::istringstream all(names);
+  for (std::string name; all >> name;) EXPECT_TRUE(entries.contains(name)) << name;
+}
+
 TEST(Components, AllThatWereFoundedAreThere) {
-  std::istringstream problems(kProblems), optimizers(kOptimizers);
-  for (std::string name; problems >> name;) EXPECT_TRUE(catalog().problems.contains(name)) << name;
-  for (std::string name; optimizers >> name;)
-    EXPECT_TRUE(catalog().optimizers.contains(name)) << name;
+  expect_all_there(kProblems, catalog().problems);
+  expect_all_there(kOptimizers, catalog().optimizers);
 }
 
 TEST(Components, ANameRegisteredTwiceIsAnError) {

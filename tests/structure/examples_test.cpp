@@ -2,9 +2,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <regex>
 #include <sstream>
 
-#include "benchmarks/cli/command_line.h"
+#include "benchmarks/cli/verb.h"
 #include "core/errors.h"
 
 namespace isoline::benchmarks {
@@ -13,20 +14,11 @@ namespace {
 // Words as a shell has them, as far as the examples go: single quotes, and no others. What follows
 // two blanks or more tells what the command is for.
 std::vector<std::string> example_words(const std::string& line) {
-  std::vector<std::string> words(1);
-  bool is_quoted = false;
-  for (std::size_t i = 0; i < line.size(); ++i) {
-    if (line[i] == '\'') {
-      is_quoted = !is_quoted;
-    } else if (line[i] == ' ' && !is_quoted) {
-      if (line.compare(i, 2, "  ") == 0) break;
-      words.emplace_back();
-    } else {
-      words.back() += line[i];
-    }
-  }
-  const auto redirection = std::ranges::find(words, ">");
-  words.erase(redirection, words.end());
+  static const std::regex word("(?:'[^']*'|[^ '])+");
+  const std::string command = line.substr(0, std::min(line.find("  "), line.find(" > ")));
+  std::vector<std::string> words;
+  for (std::sregex_iterator it(command.begin(), command.end(), word), end; it != end; ++it)
+    std::erase(words.emplace_back(it->str()), '\'');
   return words;
 }
 

@@ -1,17 +1,66 @@
-// Layering: which folder may include which, and which file is the only adapter to a
-// library.
+// Layering: which folder may include which, which file is the only adapter to a library or prints,
+// and how many files may parse each heavy header, since compile time is a feature.
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <deque>
+#include <map>
+#include <optional>
 #include <regex>
 #include <set>
+#include <sstream>
 
-#include "tests/structure/includes.h"
+#include "tests/structure/sources.h"
 
 namespace isoline {
 namespace {
 
 using Set = std::set<std::string>;
+
+struct Include {
+  std::string name;
+  bool is_quoted;
+};
+
+// The includes of every file of ours, read once.
+const std::map<std::string, std::vector<Include>>& included() {
+  static const std::map<std::string, std::vector<Include>> all = [] {
+    static const std::regex pattern(R"re(^\s*#\s*include\s*(["<])([^">]+)[">])re");
+    std::map<std::string, std::vector<Include>> found;
+    for (const Source& source : sources()) {
+      std::vector<Include>& own = found[source.path];
+      std::smatch match;
+      for (const std::string& line : source.lines)
+        if (std::regex_search(line, match, pattern)) own.push_back({match[2], match[1] == "\""});
+    }
+    return found;
+  }();
+  return all;
+}
+
+const std::vector<Include>& includes_of(const Source& source) { return included().at(source.path); }
+
+// How a source reaches a header of a library whose name begins so: the source, headers of ours,
+// then that header; nothing where it does not. The shortest way counts.
+std::optional<std::vector<std::string>> way_to(const Source& source, const std::string& header) {
+  std::map<std::string, std::string> from = {{source.path, ""}};  // by whom each was included
+  std::deque<std::string> open = {source.path};
+  for (; !open.empty(); open.pop_front()) {
+    const std::string file = open.front();
+    if (!included().contains(file)) continue;  // generated
+    for (const Include& include : included().at(file)) {
+      if (include.is_quoted) {
+        if (from.emplace(include.name, file).second) open.push_back(include.name);
+      } else if (include.name.starts_with(header)) {
+        std::vector<std::string> way = {include.name};
+        for (std::string at = file; !at.empty(); at = from.at(at)) way.push_back(at);
+        std::ranges::reverse(way);
+        return way;
+      }
+    }
+  }
+  return std::nullopt;
+}
 
 // A folder may include itself and these; a file's name stands for that header alone.
 const std::map<std::string, Set> kAllowed = {
@@ -30,23 +79,16 @@ const std::map<std::string, Set> kAllowed = {
      {"core", "core/foreign", "core/records", "problems", "optimizers", "benchmarks/plan"}},
     {"benchmarks/audit",
      {"core", "core/records", "problems", "optimizers", "benchmarks/plan", "benchmarks/run"}},
-    {"benchmarks/merge", {"core", "core/records"}},
+    {"benchmarks/merge", {"core", "core/records", "benchmarks/run/process_group.h"}},
     {"benchmarks/shard",
      {"core", "core/records", "problems", "optimizers", "benchmarks/plan", "benchmarks/run"}},
-    {"reports/read", {"core", "core/records", "core/results"}},
-    {"reports/sections", {"core", "core/records", "reports/read", "core/results"}},
+    {"reports/sections", {"core", "core/records", "core/results"}},
     {"reports/formats", {"core", "core/records", "core/results", "reports/sections"}},
-    {"reports/exports",
-     {"core", "core/records", "core/results", "reports/read", "reports/sections"}},
     {"reports/page",
-     {"core", "core/records", "core/results", "reports/read", "reports/sections",
-      "reports/formats"}},
+     {"core", "core/records", "core/results", "reports/sections", "reports/formats"}},
     {"reports/compare",
-     {"core", "core/records", "reports/read", "core/results", "reports/sections",
-      "reports/formats"}},
-    {"reports",
-     {"core", "core/results", "reports/read", "reports/sections", "reports/formats",
-      "reports/page"}}};
+     {"core", "core/records", "core/results", "reports/sections", "reports/formats"}},
+    {"reports", {"core", "core/results", "reports/sections", "reports/formats", "reports/page"}}};
 
 // These see every room.
 bool is_free(const std::string& folder) {
@@ -116,12 +158,10 @@ bool declares_main(const Source& source) {
 // The types of CLI11 that the verbs' interface names, without its headers.
 bool declares_parser(const Source& source) { return source.path == "benchmarks/cli/verb.h"; }
 
-bool is_in_c(const Source& source) { return source.path == "core/foreign/isoline.h"; }
-
 TEST(Layering, EveryFileStandsInTheNamespaceOfItsRoom) {
   static const std::regex opening(R"re(^(?:inline )?namespace ([\w:]+) \{)re");
   for (const Source& source : sources()) {
-    if (source.is_test() || is_in_c(source)) continue;
+    if (source.is_test() || source.path == "core/foreign/isoline.h") continue;  // in C
     const std::string own = source.folder() == "core/results" ? "isoline::results"
                             : source.room() == "core"         ? "isoline"
                                                               : "isoline::" + source.room();
@@ -148,12 +188,12 @@ const std::vector<std::pair<std::string, std::string>> kDoors = {
     {"fftw3.h", R"(core/fourier\.cpp|benchmarks/micro/.*\.cpp)"},
     {"lapacke.h", R"(core/decompose\.cpp|benchmarks/micro/.*\.cpp)"},
     {"openblas_config.h", R"(core/(decompose|threads)\.cpp)"},
-    {"cblas.h", R"(core/(product|threads)\.cpp|benchmarks/micro/.*\.cpp)"},
-    {"oneapi/dnnl/", R"(core/convolution\.cpp|benchmarks/micro/.*\.cpp)"},
+    {"cblas.h", R"(core/(product|threads)\.cpp)"},
+    {"oneapi/dnnl/", R"(core/convolution\.cpp)"},
     {"omp.h", R"(core/threads\.cpp)"},
     {"Random123/", R"(core/random\.cpp)"},
     {"simdjson.h", R"(core/records/json_view\.(h|cpp))"},
-    {"valijson/", R"(core/records/schema\.cpp)"},
+    {"valijson/", R"(core/records/json_view\.cpp)"},
     {"ceres/", R"(optimizers/ceres\.cpp|benchmarks/micro/.*\.cpp)"},
     {"glog/", R"(optimizers/ceres\.cpp|benchmarks/micro/.*\.cpp)"},
     {"nlopt.h", R"(optimizers/nlopt\.cpp|benchmarks/micro/.*\.cpp)"},
@@ -162,7 +202,7 @@ const std::vector<std::pair<std::string, std::string>> kDoors = {
     {"gtest/", R"(tests/.*)"},
     {"fmt/", R"(.*\.cpp)"},
     {"nlohmann/json_fwd.hpp", R"(.*)"},
-    {"nlohmann/json.hpp", R"(.*\.cpp|tests/.*)"},
+    {"nlohmann/json.hpp", R"(.*\.cpp|core/records/fields\.h|tests/.*)"},
     {"Eigen/Core", R"((?!reports/|core/records/|core/results/).*)"},
     {"Eigen/",
      R"((?!reports/|core/records/|core/results/).*\.cpp)"}};  // heavy headers stay out of ours
@@ -188,6 +228,97 @@ TEST(Layering, EveryLibraryStaysBehindItsDoor) {
       EXPECT_TRUE(std::regex_match(source.path, std::regex(door->second)))
           << source.path << " includes <" << include.name << ">";
     }
+}
+
+// --- text that others wrote leaves by one function: what reaches a terminal is printable, and what
+// becomes JSON is valid
+
+bool is_product(const Source& source) {
+  return !source.is_test() && !source.path.starts_with("benchmarks/micro/");
+}
+
+Set users_of(const std::regex& call) {
+  Set users;
+  for (const Source& source : sources())
+    for (const std::string& line : source.lines)
+      if (is_product(source) && std::regex_search(without_comment(line), call))
+        users.insert(source.path);
+  return users;
+}
+
+TEST(Doors, WhatAUserReadsIsSaidByOneFunction) {
+  const std::regex printing(
+      R"(\bfmt::print\b|\bstd::(cout|cerr|clog|puts|printf|fprintf|fputs|perror)\b|\bfwrite\b)");
+  EXPECT_EQ(users_of(printing), (Set{"benchmarks/run/progress.cpp", "core/text.cpp"}))
+      << "say(stdout, …) of core/text.h prints; the live line clears itself besides";
+}
+
+TEST(Doors, JsonIsWrittenByOneFunction) {
+  EXPECT_EQ(users_of(std::regex(R"((\.|->)dump\()")), Set{"core/json.cpp"})
+      << "json_text of core/json.h never throws on text";
+}
+
+// --- heavy headers, parsed directly or through ours
+
+struct HeavyHeader {
+  std::string name;   // or how its name begins
+  std::string files;  // which of ours are counted
+  std::size_t most;
+  std::string reason;  // for that number
+};
+
+const std::string kProduct = "(?!tests/|benchmarks/micro/).*";
+const std::string kTests = "(tests|benchmarks/micro)/.*";
+
+const std::vector<HeavyHeader> kHeavyHeaders = {
+    {"CLI/", kProduct, 1, "the command line is read in one file"},
+    {"nlohmann/json.hpp", kProduct, 63, "files that read or write JSON themselves"},
+    {"nlohmann/json.hpp", kTests, 73, "tests that look into JSON or make it"},
+    {"simdjson.h", kProduct, 1, "JSON is read by the hundred thousand through one view"},
+    {"valijson/", ".*", 1, "schemas are checked in one file"},
+    {"Eigen/", "reports/.*", 0, "a report holds plain numbers"},
+    {"Eigen/", "core/records/.*", 0, "records and sheets hold plain numbers"},
+    {"Eigen/", "benchmarks/(cli|verbs)/.*", 3,
+     "check, infer and train compute; other verbs do not"},
+    {"Eigen/SVD", kProduct, 0, "decompositions are LAPACK's, in core/decompose.cpp"},
+    {"Eigen/Dense", ".*", 0, "the same"},
+    {"fmt/ranges.h", ".*", 15, "texts that join lists; fmt/format.h does for all else"},
+    {"fmt/chrono.h", ".*", 0, "instants are those of core/clock.h"},
+    {"ceres/", kProduct, 1, "one adapter"},
+    {"oneapi/dnnl/", kProduct, 1, "one adapter"},
+    {"regex", kProduct, 0, "its matches recurse, a level a character: texts are read by hand"}};
+
+TEST(HeavyHeaders, AreParsedByNoMoreFilesThanNeedThem) {
+  for (const HeavyHeader& header : kHeavyHeaders) {
+    const std::regex counted(header.files);
+    std::size_t count = 0;
+    std::ostringstream ways;
+    for (const Source& source : sources()) {
+      if (source.is_header() || !std::regex_match(source.path, counted)) continue;
+      const auto way = way_to(source, header.name);
+      if (!way) continue;
+      ++count;
+      ways << "\n ";
+      for (const std::string& file : *way) ways << " -> " << file;
+    }
+    EXPECT_LE(count, header.most) << header.name << " in " << header.files << " (" << header.reason
+                                  << "): include a lighter header, or raise the number"
+                                  << ways.str();
+    RecordProperty("parsed " + header.name + " in " + header.files, int(count));
+  }
+}
+
+// The reader of includes follows headers: else every count above would be 0.
+TEST(HeavyHeaders, AreFoundThroughOurOwnHeaders) {
+  std::size_t direct = 0, all = 0;
+  for (const Source& source : sources()) {
+    const auto way = way_to(source, "Eigen/Core");
+    if (!way || source.is_header()) continue;
+    ++all;
+    direct += way->size() == 2;
+  }
+  EXPECT_GT(all, 100U);
+  EXPECT_LT(direct, all / 2);
 }
 
 }  // namespace

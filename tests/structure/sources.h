@@ -2,10 +2,11 @@
 #pragma once
 
 #include <filesystem>
-#include <fstream>
 #include <sstream>
 #include <string>
 #include <vector>
+
+#include "core/files.h"
 
 namespace isoline {
 
@@ -23,24 +24,18 @@ struct Source {
 
 inline std::vector<std::string> lines_of(const std::string& text) {
   std::vector<std::string> lines;
-  std::size_t begin = 0;
-  while (begin < text.size()) {
-    const std::size_t end = std::min(text.find('\n', begin), text.size());
-    lines.push_back(text.substr(begin, end - begin));
-    begin = end + 1;
-  }
+  std::istringstream all(text);
+  for (std::string line; std::getline(all, line);) lines.push_back(line);
   return lines;
+}
+
+inline std::string without_comment(const std::string& line) {
+  return line.substr(0, line.find("//"));
 }
 
 inline const std::filesystem::path& root() {
   static const std::filesystem::path path = ISOLINE_SOURCE_DIR;
   return path;
-}
-
-inline std::string file_text(const std::filesystem::path& path) {
-  std::ostringstream text;
-  text << std::ifstream(path, std::ios::binary).rdbuf();
-  return text.str();
 }
 
 // Every .h and .cpp of every room.
@@ -52,7 +47,7 @@ inline const std::vector<Source>& sources() {
       for (const auto& entry : std::filesystem::recursive_directory_iterator(root() / room)) {
         const std::string extension = entry.path().extension();
         if (extension != ".h" && extension != ".cpp") continue;
-        const std::string text = file_text(entry.path());
+        const std::string text = read_text(entry.path());
         found.push_back(
             {std::filesystem::relative(entry.path(), root()).string(), text, lines_of(text)});
       }

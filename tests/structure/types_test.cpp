@@ -2,19 +2,57 @@
 // and over the symbols of the compiled objects.
 #include <gtest/gtest.h>
 
-#include <array>
-#include <cstdio>
+#include <algorithm>
+#include <cstdlib>
+#include <fstream>
 #include <map>
 #include <regex>
 #include <set>
 #include <sstream>
 
-#include "tests/structure/code.h"
+#include "tests/structure/sources.h"
+#include "tests/temporary_folder.h"
 
 namespace isoline {
 namespace {
 
 using Set = std::set<std::string>;
+
+struct Type {
+  std::string name;  // isoline::reports::Point; of a nested one the outer alone is listed
+  std::size_t line;
+  bool is_anonymous;
+  bool is_defined;  // or only declared
+};
+
+// Types at namespace scope, which clang-format puts at the beginning of a line.
+std::vector<Type> types_of(const Source& source) {
+  static const std::regex space(R"re(^(inline )?namespace ?([\w:]*) ?\{)re");
+  static const std::string kind = "(?:struct|class|enum class|enum|union) (?:alignas\\([^)]*\\) )?";
+  static const std::regex type("^(?:template <.*> )?" + kind +
+                               R"re((\w+)( final)?( :.*| \{.*|;.*)?$)re");
+  std::vector<std::string> spaces;
+  std::vector<Type> types;
+  for (std::size_t i = 0; i < source.lines.size(); ++i) {
+    std::smatch match;
+    const std::string& line = source.lines[i];
+    if (std::regex_search(line, match, space)) {
+      spaces.push_back(match[2]);
+    } else if (line.starts_with("}  // namespace") && !spaces.empty()) {
+      spaces.pop_back();
+    } else if (std::regex_match(line, match, type)) {
+      const std::string rest = without_comment(match[3].str());
+      const bool is_declaration =
+          rest.find(';') != std::string::npos && rest.find('{') == std::string::npos;
+      std::string name;
+      for (const std::string& each : spaces)
+        if (!each.empty()) name += each + "::";
+      const bool is_anonymous = std::ranges::find(spaces, "") != spaces.end();
+      types.push_back({name + match[1].str(), i + 1, is_anonymous, !is_declaration});
+    }
+  }
+  return types;
+}
 
 std::string list_of(const Set& names) {
   std::string text;
@@ -65,21 +103,15 @@ struct Symbol {
 // What the objects of our libraries define for one another: the upper-case symbols of nm.
 std::vector<Symbol> symbols() {
   static const std::regex pattern(R"re(^(\S.*\.o): ?[0-9a-f]* +([A-Z]) (.*)$)re");
-  const std::string command = "nm -AC --defined-only " ISOLINE_ARCHIVES;
-  FILE* lines = popen(command.c_str(), "r");
+  const TemporaryFolder folder;
+  const std::string file = (folder.path() / "symbols").string();
+  EXPECT_EQ(std::system(("nm -AC --defined-only " ISOLINE_ARCHIVES " > " + file).c_str()), 0);
   std::vector<Symbol> found;
-  std::string line;
-  std::array<char, 4096> part{};
-  while (std::fgets(part.data(), part.size(), lines) != nullptr) {
-    line += part.data();
-    if (!line.ends_with('\n')) continue;
-    line.pop_back();
-    std::smatch match;
+  std::ifstream lines(file);
+  std::smatch match;
+  for (std::string line; std::getline(lines, line);)
     if (line.find("isoline::") != std::string::npos && std::regex_match(line, match, pattern))
       found.push_back({match[1], match[3], match[2] == "W" || match[2] == "V"});
-    line.clear();
-  }
-  pclose(lines);
   return found;
 }
 

@@ -17,27 +17,24 @@ using problems::Draw;
 using problems::problem_entry;
 using problems::ProblemParts;
 
-// y = (sinh x1, x1 x2), y* = (1, 1).
-class Twist : public DensePhysics {
+void do_nothing() {}
+void throw_on_purpose() { throw std::runtime_error("it's on purpose"); }
+
+// y = (sinh x1, x1 x2), y* = (1, 1), after something else.
+template <void (*before)()>
+class Twist final : public DensePhysics {
  public:
   Twist() : DensePhysics(2, 2) {}
-  void value(VectorRef x, VectorOut y) const override { y << std::sinh(x[0]), x[0] * x[1]; }
+  void value(VectorRef x, VectorOut y) const override {
+    before();
+    y << std::sinh(x[0]), x[0] * x[1];
+  }
   void derivative(VectorRef x, BatchOut J) const override { J << std::cosh(x[0]), 0, x[1], x[0]; }
 };
 
-class Thrower final : public Twist {
- public:
-  void value(VectorRef, VectorOut) const override { throw std::runtime_error("it's on purpose"); }
-};
-
-class Aborter final : public Twist {
- public:
-  void value(VectorRef, VectorOut) const override { std::abort(); }
-};
-
-template <class Physics>
+template <void (*before)()>
 ProblemParts parts(const NoOptions&, const Draw& draw) {
-  return {.physics = std::make_unique<Physics>(),
+  return {.physics = std::make_unique<Twist<before>>(),
           .start = draw.start(Eigen::Vector2d(2, 2)),
           .target = Vector::Ones(2),
           .minimum = 0};
@@ -45,15 +42,13 @@ ProblemParts parts(const NoOptions&, const Draw& draw) {
 
 Catalog with_mine() {
   Catalog catalog = benchmarks::builtin_catalog();
-  catalog.problems.add(problem_entry(
-      {.name = "twist", .title = "Twist", .formula = "(sinh x₁, x₁ x₂)", .source = "here"},
-      parts<Twist>));
-  catalog.problems.add(
-      problem_entry({.name = "thrower", .title = "Thrower", .formula = "none", .source = "here"},
-                    parts<Thrower>));
-  catalog.problems.add(
-      problem_entry({.name = "aborter", .title = "Aborter", .formula = "none", .source = "here"},
-                    parts<Aborter>));
+  const auto add = [&](const char* name, const char* title, auto make) {
+    catalog.problems.add(problem_entry(
+        {.name = name, .title = title, .formula = "(sinh x₁, x₁ x₂)", .source = "here"}, make));
+  };
+  add("twist", "Twist", parts<do_nothing>);
+  add("thrower", "Thrower", parts<throw_on_purpose>);
+  add("aborter", "Aborter", parts<std::abort>);
   return catalog;
 }
 

@@ -1,0 +1,246 @@
+// Methods whose step is V f(σ) Uᵀ w over the stacked Jacobian J = U diag(σ) Vᵀ.
+//
+// gauss-newton: θ ← θ − η J⁺ (y − y*), Gauss (1809); Nocedal, Wright (2006), eq. 10.23. J⁺ by a
+// complete orthogonal factorization, never by the normal equations, which would square the
+// condition number; of least norm where J lacks rank. The factor 1/√B of r = (y − y*)/√B cancels.
+// The other ways truncate the spectrum of J, not the pivots.
+//
+// hig: half-inverse gradients, Schnell, Holl, Thuerey (2022): Δθ = −η V f(σ) Uᵀ g, g = ∂L/∂y,
+// f(σ) = σ^(−κ). κ = 1 is Gauss-Newton, ½ the published method, −1 gradient descent. Singular
+// values not above the cut-off, relative to the largest, are discarded, as published; or, against
+// which the book argues, clamped to it. hig-damped is our own: f(σ) = σ/(σ² + μ)^((κ+1)/2) with μ
+// as a share of σ₁² is the same for large σ and decays for small ones, as a Tikhonov filter does
+// for κ = 1, instead of growing up to a cut-off.
+//
+// spring: SPRING, Goldshlager, Abrahamsen, Lin (2024), arXiv 2401.10190: the step that the
+// regularized least squares of this batch leave nearest to the last one,
+//   Δ ← μ Δ₋ − Jᵀ (K + λ)⁻¹ (r + μ J Δ₋),  θ ← θ + η Δ,  K = JJᵀ, r = y − y*,
+// so that what the batch says nothing of goes on as it went. λ is a share of the mean diagonal of
+// K, where the paper's is absolute in units of its wave function, and the paper's bound on ‖ηΔ‖ is
+// left out.
+#include <algorithm>
+#include <limits>
+
+#include "optimizers/optimizer.h"
+#include "optimizers/spectral_step.h"
+
+namespace isoline::optimizers {
+namespace {
+
+struct GaussNewton {
+  static constexpr bool kIsOnResidual = true;  // w = y − y*, else ∂L/∂y
+  Real rate = 1, cutoff = 0;
+  std::string way = "orthogonal";
+  KrylovLimits krylov;
+
+  SpectralFilter filter(Index longest) const {
+    const Real rounding = std::numeric_limits<Real>::epsilon() * static_cast<Real>(longest);
+    return power_filter(1, std::max(cutoff, rounding));
+  }
+};
+
+struct HalfInverse {
+  static constexpr bool kIsOnResidual = false;
+  Real rate = 1, kappa = 0.5, cutoff = 1e-6;
+  std::string small, way = "auto";
+  KrylovLimits krylov;
+
+  SpectralFilter filter(Index) const {
+    return {.kappa = kappa, .cutoff = cutoff, .clamps = small == "clamp"};
+  }
+};
+
+struct DampedHalfInverse {
+  static constexpr bool kIsOnResidual = false;
+  Real rate = 1, kappa = 0.5, damping = 1e-8;
+  std::string way = "auto";
+  KrylovLimits krylov;
+
+  SpectralFilter filter(Index) const { return decaying_filter(kappa, damping); }
+};
+
+template <class Options>
+struct Spectral : Options {
+  struct State {
+    Linearization at;
+    SpectralStep spectral;
+    Matrix w;  // (m, B)
+  };
+  static void persist(State& s, Archive& archive) { s.spectral.persist(archive); }
+  State init(Meter& f, const Vector&) const {
+    State s{.at = {}, .spectral = SpectralStep(way_named(this->way), this->krylov), .w = {}};
+    s.spectral.start(f);
+    return s;
+  }
+  Status step(Meter& f, Vector& theta, State& s) const {
+    f.linearize(theta, s.at);
+    if (Options::kIsOnResidual)
+      s.w = s.at.y() - f.target();
+    else
+      s.at.cotangent(s.w);
+    const SpectralFilter filter = this->filter(std::max(s.w.size(), theta.size()));
+    const bool is_taken = s.spectral.add(f, s.at, filter, s.w.reshaped(), -this->rate, theta);
+    return is_taken ? Status::running : Status::stalled;
+  }
+};
+
+template <class Options>
+OptimizerEntry spectral_entry(OptimizerEntry entry) {
+  entry.needs_for = [](const OptionValues& options, const Problem& problem) {
+    const auto o = read_options<Options>(options);
+    return needs_of(way_named(o.way), o.filter(0), problem);
+  };
+  entry.objection = [](const OptionValues& options, const Problem& problem) {
+    return objection_to(way_named(read_options<Options>(options).way), problem);
+  };
+  return stepper_entry<Spectral<Options>>(std::move(entry));
+}
+
+void fields(GaussNewton& o, auto& field) {
+  field("rate", o.rate, above(0), "step length η");
+  field("cutoff", o.cutoff, between(0, 1),
+        "pivots, or singular values, up to this share of the first count as zero; at least those "
+        "within rounding do");
+  field("way", o.way, Choices{"orthogonal", "svd", "qr", "gram", "layers"},
+        "how J⁺ is applied: by a complete orthogonal factorization with pivots; by the thin SVD "
+        "of J; by QR and the SVD of R; by the smaller Gram matrix of J; or by JJᵀ formed layer by "
+        "layer");
+}
+
+void first_fields(auto& o, auto& field) {
+  field("rate", o.rate, above(0), "step length η");
+  field("kappa", o.kappa, between(-1, 1), "exponent κ of the inversion");
+}
+void way_fields(auto& o, auto& field) {
+  field("way", o.way, Choices{"auto", "svd", "qr", "gram", "layers", "split", "lanczos"},
+        "how the step is computed: by the thin SVD of J; by QR and the SVD of R; by the smaller "
+        "Gram matrix of J; by JJᵀ formed layer by layer, or that and again from the part of J that "
+        "belongs to its small eigenvalues; or by products with J and Jᵀ alone; "
+        "auto: by size and accuracy, never by products");
+  field("krylov-tolerance", o.krylov.tolerance, between(0, 1),
+        "of way=lanczos: where to end, as an estimate of the relative error of the step");
+  field("krylov-vectors", o.krylov.vectors, between(1, 1e5),
+        "of way=lanczos: most vectors kept, within 512 MiB");
+}
+
+void fields(HalfInverse& o, auto& field) {
+  first_fields(o, field);
+  field("cutoff", o.cutoff, between(0, 1),
+        "singular values up to this share of the largest are discarded");
+  field("small", o.small, Choices{"", "clamp"}, "clamp: they count as the cut-off instead");
+  way_fields(o, field);
+}
+
+void fields(DampedHalfInverse& o, auto& field) {
+  first_fields(o, field);
+  field("damping", o.damping, above(0), "damping μ, as a share of the largest σ²");
+  way_fields(o, field);
+}
+
+struct Spring {
+  Real rate = 1, momentum = 0.9, damping = 1e-3;
+
+  struct State {
+    Linearization at;
+    SpectralStep spectral;
+    Vector step;      // (n) Δ
+    Matrix pushed;    // (m, B) J Δ₋
+    Vector residual;  // (m·B)
+  };
+  static void persist(State& s, Archive& archive) {
+    s.spectral.persist(archive);
+    archive(s.step);
+  }
+  State init(Meter&, const Vector& theta) const {
+    State s;
+    s.step = Vector::Zero(theta.size());
+    return s;
+  }
+  Status step(Meter& f, Vector& theta, State& s) const {
+    f.linearize(theta, s.at);
+    s.step *= momentum;
+    s.pushed.resize(s.at.y().rows(), s.at.y().cols());
+    s.at.pushforward(s.step, s.pushed);
+    s.residual = (s.at.y() - f.target() + s.pushed).reshaped();
+    if (!s.spectral.add(f, s.at, tikhonov_filter(damping), s.residual, -1, s.step))
+      return Status::stalled;
+    theta += rate * s.step;
+    return Status::running;
+  }
+};
+
+void fields(Spring& o, auto& field) {
+  field("rate", o.rate, above(0), "step length η");
+  field("momentum", o.momentum, between(0, 1), "share μ of the last step");
+  field("damping", o.damping, above(0), "damping λ, as a share of the mean diagonal of JJᵀ");
+}
+
+OracleSet needs_of_spring(const OptionValues&, const Problem& problem) {
+  OracleSet needs = needs_of(Way::automatic, tikhonov_filter(1), problem);
+  needs.add(Oracle::pushforward);
+  return needs;
+}
+
+}  // namespace
+
+void register_spectral_methods(OptimizerRegistry& registry) {
+  registry.add(spectral_entry<GaussNewton>(
+      {.name = "gauss-newton",
+       .title = "Gauss-Newton",
+       .family = Family::curvature,
+       .kind = Kind::least_squares,
+       .formula = "θ ← θ − η J⁺ (y − y*)",
+       .source = "Gauss (1809); Nocedal, Wright (2006), eq. 10.23",
+       .note = "Without safeguards. Acts on the residual y − y*, whatever the loss. In single "
+               "precision, singular values of a network's Jacobian below about 1e-6 of the largest "
+               "are noise: see cutoff.",
+       .needs = {Oracle::forward},
+       .is_input_scale_invariant = true,
+       .most_rank = 2048,
+       .tunable = {.option = "rate", .below = 5}}));
+  registry.add(spectral_entry<HalfInverse>(
+      {.name = "hig",
+       .title = "Half-inverse gradients",
+       .family = Family::inversion,
+       .kind = Kind::half_inverse,
+       .formula = "θ ← θ − η V Λ^(−κ) Uᵀ g,  J = U Λ Vᵀ,  g = ∂L/∂y",
+       .source = "Schnell, Holl, Thuerey (2022)",
+       .note =
+           "Scales with the loss as c, with y as s^(1−κ), with B equal samples as B^(−(1+κ)/2). "
+           "Uses a Gram matrix if the cut-off is at least 1e-7 and the step loses no digits (for "
+           "networks of dense layers formed layer by layer, and split in two if needed). Otherwise "
+           "uses QR, and with small=clamp the SVD of J. way=lanczos is for Jacobians too large for "
+           "all of these.",
+       .needs = {Oracle::forward},
+       .most_rank = 2048,
+       .tunable = {.option = "rate", .below = 4}}));
+  registry.add(spectral_entry<DampedHalfInverse>(
+      {.name = "hig-damped",
+       .title = "Half-inverse gradients, damped",
+       .family = Family::inversion,
+       .kind = Kind::half_inverse,
+       .formula = "θ ← θ − η V Λ (Λ² + μ)^(−(κ+1)/2) Uᵀ g,  J = U Λ Vᵀ,  g = ∂L/∂y",
+       .source = "after Schnell, Holl, Thuerey (2022); μ as in Tikhonov's filter",
+       .note =
+           "Our own: the half-inverse decays where singular values vanish, where the published "
+           "one grows up to its cut-off. With κ = 1 it is the Levenberg-Marquardt step with fixed "
+           "damping. Scales as hig does.",
+       .needs = {Oracle::forward},
+       .most_rank = 2048,
+       .tunable = {.option = "rate", .below = 4}}));
+  registry.add(stepper_entry<Spring>(
+      {.name = "spring",
+       .title = "SPRING",
+       .family = Family::curvature,
+       .kind = Kind::least_squares,
+       .formula = "Δ ← μ Δ − Jᵀ (JJᵀ + λ)⁻¹ (y − y* + μ J Δ),  θ ← θ + η Δ",
+       .source = "Goldshlager, Abrahamsen, Lin (2024)",
+       .note = "Damped Gauss-Newton with projected momentum. λ is relative to the mean diagonal of "
+               "JJᵀ; without the paper's bound on the length of a step.",
+       .needs = {Oracle::forward, Oracle::pushforward},
+       .most_rank = 2048,
+       .tunable = {.option = "rate", .below = 4},
+       .needs_for = needs_of_spring}));
+}
+
+}  // namespace isoline::optimizers
