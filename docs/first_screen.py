@@ -86,7 +86,7 @@ def animation(frames):
 
 def picture(results):
     found = heat_records(results)
-    truth, target = (next(iter(found.values()))[1][1], next(iter(found.values()))[1][0])
+    target, truth = next(iter(found.values()))[1][:2]
     low, high = min(map(min, truth)), max(map(max, truth))
     parts = panel(0, "observed y*", [png(target, low, high)], [()])
     parts += panel(1, "unknown x*", [png(truth, low, high)], [()])
@@ -98,15 +98,13 @@ def picture(results):
         work_at = dict(zip(record["curve"]["iteration"], record["curve"]["work"]))
         done = [work_at[i] for i in record["fields"]["iterations"]]
         latest = [max(i for i, work in enumerate(done) if work <= max(now, done[0])) for now in works]
-        images = [png(x, low, high) for x in arrays[2:]]
-        parts += panel(column, title, images,
-                       [{f for f in range(FRAMES) if latest[f] == i} for i in range(len(images))])
-        for i, x in enumerate(arrays[2:]):
+        shown = [{f for f in range(FRAMES) if latest[f] == i} for i in range(len(done))]
+        parts += panel(column, title, [png(x, low, high) for x in arrays[2:]], shown)
+        for x, frames in zip(arrays[2:], shown):
             error = math.sqrt(sum((a - b) ** 2 for r, s in zip(x, truth) for a, b in zip(r, s))) / norm
-            shown = {f for f in range(FRAMES) if latest[f] == i}
             place = 10 + column * (SIDE + 14) + SIDE / 2
             parts.append(f'<text x="{place}" y="{SIDE + 48}" text-anchor="middle" opacity="0">'
-                         f'error {100 * error:.0f} %{animation(shown)}</text>')
+                         f'error {100 * error:.0f} %{animation(frames)}</text>')
     for frame, work in enumerate(works):
         parts.append(f'<text x="10" y="{SIDE + 48}" opacity="0">{min(work, most)} forward solves'
                      f'{animation({frame})}</text>')
