@@ -81,6 +81,7 @@ TEST(Spec, AnyTextComesBackFromTheSpecThatIsMadeOfIt) {
 
 TEST(Spec, AnAliasIsReadAsTheOptionItStandsFor) {
   EXPECT_EQ(options_of(parse_spec("gd[lr=2]")), options_of(parse_spec("gd[rate=2]")));
+  EXPECT_EQ(options_of(parse_spec("hig[way=qr]")), options_of(parse_spec("hig[factorization=qr]")));
   EXPECT_THROW(options_of(parse_spec("gd[lr=1,rate=2]")), UsageError);
 }
 

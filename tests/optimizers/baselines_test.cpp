@@ -51,16 +51,17 @@ Vector damped_inverse(const Matrix& J, Real share, const Vector& w) {
 
 TEST(FixedDamping, IsItsFormulaWideAndTall) {
   for (const char* batch : {"5", "80"})
-    for (const char* way : {"auto", "orthogonal", "cholesky"}) {
+    for (const char* factorization : {"auto", "orthogonal", "cholesky"}) {
       const Problem problem = network(batch);
       const Linearized at = linearized(problem, problem.start());
       const Vector theta = run(problem,
                                "levenberg-marquardt[damping=fixed,initial-damping=1e-2,rate=0.3,"
-                               "way=" +
-                                   std::string(way) + "]",
+                               "factorization=" +
+                                   std::string(factorization) + "]",
                                iterations(1))
                                .theta;
-      expect_near(theta - problem.start(), -0.3 * damped_inverse(at.J, 1e-2, at.r), 1e-9, way);
+      expect_near(theta - problem.start(), -0.3 * damped_inverse(at.J, 1e-2, at.r), 1e-9,
+                  factorization);
     }
 }
 
@@ -71,7 +72,7 @@ TEST(LevenbergMarquardt, StepsAlikeByQrAndByCholesky) {
       for (const char* damping : {"1e-2", "1e-6"}) {
         const Problem problem = network(std::string(samples) + ",data=" + samples);
         const std::string spec = std::string("levenberg-marquardt[initial-damping=") + damping +
-                                 ",scaling=" + scaling + ",way=";
+                                 ",scaling=" + scaling + ",factorization=";
         expect_near(run(problem, spec + "cholesky]", iterations(5)).theta,
                     run(problem, spec + "orthogonal]", iterations(5)).theta, 1e-7, spec);
       }

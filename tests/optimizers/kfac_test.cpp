@@ -165,8 +165,9 @@ TEST(Kfac, IsForDenseLayersAndConvolutionsOfUpToSomeThousandInputs) {
 
 // JJᵀ layer by layer is of dense layers, whose rows are outer products.
 TEST(Kfac, AloneTakesConvolutionsByTheirMoments) {
-  EXPECT_EQ(why("hig[way=layers]", published("poisson-hig[mode=learn,network=unet[levels=3]]")),
-            "the problem has no network of dense layers");
+  EXPECT_EQ(
+      why("hig[factorization=layers]", published("poisson-hig[mode=learn,network=unet[levels=3]]")),
+      "the problem has no network of dense layers");
 }
 
 // They end at a thirtieth and at a thirteenth of their start.
