@@ -414,7 +414,7 @@ struct Frames {
 void register_round_trips() {
   // Promised are 15 and 40 µs of a round trip, where bare frames were measured to take 6 and 17.
   for (const auto& [n, ratio] : {std::pair<Index, double>{2, 15.0 / 6}, {4096, 40.0 / 17}})
-    register_pair(fmt::format("door/forward/n={}", n), 201, {.ratio = ratio}, [n = n] {
+    register_pair(fmt::format("adapter/forward/n={}", n), 201, {.ratio = ratio}, [n = n] {
       const auto problem = std::make_shared<const Problem>(
           make_problem("process[command=" + quoted(command_of("echo.py", n)) + "]"));
       const auto bare = std::make_shared<Frames>(n);
