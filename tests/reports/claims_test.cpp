@@ -1,4 +1,4 @@
-// Verdicts on claims against figures worked out by hand, and what false claims come to.
+// Verdicts on claims against numbers computed by hand, and on false claims.
 #include "reports/sections/claims.h"
 
 #include <gtest/gtest.h>
@@ -168,7 +168,7 @@ TEST(Claims, OfOnePublishedRunAreComparedWithWhereOneFurtherRunOfOursWouldLie) {
   EXPECT_EQ(verdict_on(six, asked), Verdict::consistent) << "more than three times as great";
   asked.published["value"] = 7;
   EXPECT_EQ(verdict_on(six, asked), Verdict::not_reproduced);
-  // Of a ratio it must be settled who is ahead.
+  // A ratio is reproduced only if the order is statistically significant.
   asked.kind = "ratio";
   asked.published["value"] = 2;
   EXPECT_EQ(verdict_on(six, asked), Verdict::consistent);
