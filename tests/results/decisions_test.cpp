@@ -1,5 +1,5 @@
-// The decision: who leads, who is not significantly worse than the best, and what hangs on choice.
-// Small cases by hand, levels against enumeration.
+// The decision: the leading method, the group not significantly worse than the best, and
+// sensitivity. Small cases by hand, levels against enumeration.
 #include "core/results/decisions.h"
 
 #include <gtest/gtest.h>
@@ -113,7 +113,7 @@ TEST(Decision, NothingIsDecidedWhereNothingIsSolved) {
   EXPECT_FALSE(decide({}));
 }
 
-// --- what hangs on choice
+// --- sensitivity to choices
 
 bool is_kept(const Decision& decision, Varied varied, const std::string& value) {
   const auto choice = std::ranges::find_if(decision.choices, [&](const Choice& each) {

@@ -1,4 +1,4 @@
-// What decisions promise, held by simulation with fixed random streams: errors of the group of the
+// Error rates of decisions, by simulation with fixed random streams: errors of the group of the
 // best at 5 %, coverage of intervals at 95 %, power at 80 %. The short version takes seconds; the
 // whole tables, with their figures printed, are made by
 //   ISOLINE_LONG_TESTS=1 build/release/tests/results_tests --gtest_filter='ErrorRates.*'

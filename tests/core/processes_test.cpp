@@ -1,21 +1,104 @@
-// Every piece of shared work is done once, and what it throws reaches the caller. The processor's
-// features, and the kernel that is chosen for them.
-#include "core/threads.h"
-
+// A command in a record means the same when it is typed again; processor time of an external
+// program counts for the run; threads.
 #include <gtest/gtest.h>
+#include <poll.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <Eigen/Core>
 #include <atomic>
+#include <cstdio>
 #include <cstdlib>
+#include <ctime>
 #include <map>
+#include <memory>
 #include <optional>
 #include <stdexcept>
 #include <string>
 #include <thread>
 #include <vector>
 
+#include "core/clock.h"
+#include "core/errors.h"
+#include "core/foreign/foreign.h"
+#include "core/shell.h"
+#include "core/threads.h"
+
 namespace isoline {
 namespace {
+
+std::string shell_command(const std::vector<std::string>& words) {
+  std::string command;
+  for (const std::string& word : words) command += (command.empty() ? "" : " ") + shell_word(word);
+  return command;
+}
+
+TEST(Shell, WordsAreQuotedOnlyWhereTheyMustBe) {
+  EXPECT_EQ(shell_word("--out=results/a.b"), "--out=results/a.b");
+  EXPECT_EQ(shell_word(""), "''");
+  EXPECT_EQ(shell_word("it's"), R"('it'\''s')");
+  EXPECT_EQ(shell_word("sine[xi=1|3]"), "'sine[xi=1|3]'");
+}
+
+TEST(Shell, WordsOfACommandAreSplitAsAShellSplitsThem) {
+  using Words = std::vector<std::string>;
+  EXPECT_EQ(shell_words("python3  mine.py\t-x\n"), (Words{"python3", "mine.py", "-x"}));
+  EXPECT_EQ(shell_words(R"(a' b 'c"d \e\"f" \g '' $HOME *)"),
+            (Words{"a b cd \\e\"f", "g", "", "$HOME", "*"}));
+  for (const char* open : {"", "  ", "a 'b", "a \"b", "a \\"})
+    EXPECT_THROW(shell_words(open), UsageError) << open;
+}
+
+// What `sh` makes of it, each word on a line of its own.
+std::string read_back(const std::string& command) {
+  const std::unique_ptr<FILE, int (*)(FILE*)> pipe(popen(("printf '<%s>' " + command).c_str(), "r"),
+                                                   pclose);
+  std::string text;
+  for (int letter = std::fgetc(pipe.get()); letter != EOF; letter = std::fgetc(pipe.get()))
+    text += static_cast<char>(letter);
+  return text;
+}
+
+TEST(Shell, ReadsEveryWordBackAsItWas) {
+  const std::vector<std::string> words = {"it's", "a b", "$HOME", "`date`",    "\\", "\"",
+                                          "*",    "~",   "a;b",   "#",         "",   "–ξ’",
+                                          "'",    "!x",  "(a|b)", "two\nlines"};
+  std::string expected;
+  for (const std::string& word : words) expected += "<" + word + ">";
+  EXPECT_EQ(read_back(shell_command(words)), expected);
+  EXPECT_EQ(shell_words(shell_command(words)), words);
+}
+
+// Beside that of this process itself.
+double counted_beside() {
+  timespec own{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &own);
+  return processor_seconds() - static_cast<double>(own.tv_sec) -
+         1e-9 * static_cast<double>(own.tv_nsec);
+}
+
+TEST(CountedProcess, ItsTimeIsThatOfWhomItComputesForAndStaysWhenItHasGone) {
+  constexpr double kEnough = 0.05;  // seconds, much more than two clocks read in turn differ by
+  const double before = counted_beside();
+  double counted = 0;
+  {
+    const ChildProgram busy({.command = "sh -c 'while :; do :; done'"});
+    for (int look = 0; look < 6000 && counted < kEnough; ++look) {
+      poll(nullptr, 0, 5);
+      counted = counted_beside() - before;
+    }
+    EXPECT_GE(counted, kEnough);
+  }
+  EXPECT_GE(counted_beside() - before, 0.9 * counted);
+  const pid_t forked = fork();  // a fork starts without counted processes
+  if (forked == 0) _exit(counted_beside() < 0.9 * kEnough ? 0 : 1);
+  int status = 1;
+  waitpid(forked, &status, 0);
+  EXPECT_EQ(status, 0);
+}
+
+// Each piece of shared work is done once, and the caller receives its exception. The processor's
+// features and the kernel chosen for them.
 
 TEST(Share, DoesEachPieceOnce) {
   for (const std::size_t count : {0, 1, 7, 1000}) {
@@ -53,7 +136,7 @@ TEST(LibraryKernel, IsNotBelowTheProcessorUnlessAUserSaysSo) {
 }
 
 #ifndef ISOLINE_PORTABLE
-// In a process of its own that Google Test starts anew: OpenBLAS reads its environment but once.
+// In a separate process that Google Test starts: OpenBLAS reads its environment only once.
 [[noreturn]] void leave_if(bool is_so) { std::_Exit(is_so ? 0 : 1); }
 
 bool is_kernel(const std::string& name, const std::string& chosen_by) {
