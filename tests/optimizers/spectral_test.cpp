@@ -2,13 +2,10 @@
 #include <gtest/gtest.h>
 
 #include "optimizers/spectral_step.h"
-#include "run.h"
-#include "trial_problems.h"
+#include "tests/optimizers/run.h"
+#include "tests/optimizers/trial_problems.h"
 
 namespace isoline::optimizers {
-
-using problems::Point;
-using problems::Problem;
 namespace {
 
 SpectralFilter clamped(Real kappa, Real cutoff) {
@@ -17,8 +14,8 @@ SpectralFilter clamped(Real kappa, Real cutoff) {
 
 // Three layers in double; `batch` samples of two outputs each make J wide up to 98.
 Problem network(const std::string& batch, const std::string& activation = "tanh") {
-  return published("sine[mode=learn,xi=2,network=mlp[layers=12-12,precision=double,activation=" +
-                   activation + "],batch=" + batch + ",data=" + batch + "]");
+  return make("sine[mode=learn,xi=2,network=mlp[layers=12-12,precision=double,activation=" +
+              activation + "],batch=" + batch + ",data=" + batch + "]");
 }
 
 constexpr OracleSet kAll{Oracle::forward, Oracle::jacobian, Oracle::pullback, Oracle::pushforward,
@@ -143,7 +140,7 @@ TEST(SpectralStep, OfThePublishedProblemsAgreesWithTheSvd) {
                    std::string("steps by QR and the SVD of R")},
         {"coupled-oscillators[mode=learn,batch=32]", 1e-6, "hig[rate=2]", split},
         {"quantum-dipole[mode=learn,batch=2]", 1e-5, "hig[rate=0.5,cutoff=1e-5]", split}}) {
-    const Problem problem = published(spec);
+    const Problem problem = make(spec);
     for (const int steps : {0, 100}) {
       const Vector theta =
           steps > 0 ? run(problem, method, iterations(steps)).theta : problem.start();
@@ -298,12 +295,7 @@ TEST(SpectralStep, ScalesWithMinusHalfOf1PlusKappaOfEqualSamples) {
 
 TEST(SpectralStep, KappaMinusOneIsTheGradient) {
   const Problem problem = network("8");
-  Point at;
-  Matrix g(problem.outputs(), problem.samples());
-  Vector gradient(problem.unknowns());
-  problem.forward(problem.start(), at);
-  problem.cotangent(at, g);
-  problem.pullback(g, gradient, at);
+  const Vector gradient = gradient_at(problem, problem.start());
   for (const Way way : {Way::svd, Way::qr, Way::gram, Way::layers, Way::lanczos})
     expect_near(step_of(problem, problem.start(), way, power_filter(-1, 0)).step, -gradient, 1e-10,
                 "gradient");
