@@ -337,7 +337,7 @@ std::string complaint_of_json(const std::string& text) {
   return refusal([&] { parse_json(text, "given.json"); });
 }
 
-// 200,000 levels overflow the stack of whoever copies, compares or writes such a tree.
+// 200,000 levels overflow the stack of a function that copies, compares or writes such a tree.
 TEST(Json, ThatNestsWithoutEndIsRefused) {
   for (const std::string opening : {"[", "{\"a\":"}) {
     std::string text;
