@@ -198,7 +198,7 @@ Json table_json(const Table& table) {
 }
 
 Json plot_json(const Plot& plot, const Comparison& c) {
-  constexpr const char* kKinds[] = {"steps", "dots", "bars", "lines"};
+  constexpr const char* kKinds[] = {"steps", "lines"};
   const auto series_json = [&](const PlotSeries& one) -> Json {
     return {{"optimizer", c.optimizers[one.optimizer.value()].label},
             {"name", one.name},
@@ -215,7 +215,6 @@ Json plot_json(const Plot& plot, const Comparison& c) {
           {"x_label", plot.x_label},
           {"y_label", plot.y_label},
           {"log_x", plot.is_log_x},
-          {"rows", list_of(plot.rows, [](const PlotRow& row) { return row.name; })},
           {"series", list_of(plot.series, series_json)}};
 }
 
