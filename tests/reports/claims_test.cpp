@@ -454,6 +454,19 @@ TEST(Claims, OfAReportAreToldInEveryFormatByTheSameFigures) {
   EXPECT_TRUE(claims_section({}).is_empty());
 }
 
+TEST(Claims, OfEachVerdictStandInTheSummaryFromTheRefutedToTheUndecided) {
+  std::vector<Judgement> judgements(kVerdictNames.size(), judgement_of({}, adam_and_sip()));
+  for (std::size_t i = 0; i < judgements.size(); ++i) {
+    judgements[i].verdict = static_cast<Verdict>(i);
+    judgements[i].id = kVerdictNames[i];
+  }
+  const Section section = claims_summary(judgements);
+  const auto& rows = section.tables.at(0).rows;
+  ASSERT_EQ(rows.size(), judgements.size());
+  EXPECT_EQ(rows.front().at(0).text, name_of(Verdict::not_reproduced));
+  EXPECT_EQ(rows.back().at(0).text, name_of(Verdict::not_comparable));
+}
+
 // Two steps from (3, 4): to (3, 1), then to (1.5, −0.5). y is x, but for its last point.
 Record two_steps() {
   Record record;
