@@ -109,11 +109,11 @@ std::string overview_html(const Document& document) {
         "<p class=alert><b>{} failed</b>{} — <a href=\"#failures\">which, and why</a></p>\n",
         counted(c.failures.size(), "run"),
         unread > 0 ? fmt::format(", {} unreadable", counted(unread, "file")) : "");
-  if (const std::vector<std::string> sentences = verdict(c); !sentences.empty()) {
-    html += fmt::format("<p class=verdict>{}</p>\n", html_text(short_verdict(c)));
+  if (const auto& sentences = document.section("standings").readings; !sentences.empty()) {
+    html += fmt::format("<p class=verdict>{}</p>\n", html_text(sentences[0].text));
     html += "<details><summary>All that these runs say</summary>";
-    for (const std::string& sentence : sentences)
-      html += fmt::format("<p class=lead>{}</p>\n", html_text(sentence));
+    for (const Reading& sentence : sentences)
+      html += fmt::format("<p class=lead>{}</p>\n", html_text(sentence.text));
     html += "</details>\n";
   }
   html += "<dl class=settled>";

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "core/results/statistics.h"
 #include "core/results/study.h"
@@ -38,16 +37,6 @@ Calls calls_of(const Comparison& c, std::size_t s) {
   return calls;
 }
 
-const MeasuredPrice* price_of(const MeasuredPrices& prices, std::string_view oracle) {
-  const auto at = std::ranges::find(prices.oracles, oracle, &MeasuredPrice::oracle);
-  return at == prices.oracles.end() ? nullptr : &*at;
-}
-
-// Also those that are not used.
-const MeasuredPrices* prices_of(const ProblemAxis& problem) {
-  return problem.has_own_sheet() && problem.sheet->prices ? &*problem.sheet->prices : nullptr;
-}
-
 TableCell price_cell(const MeasuredPrices& prices, std::string_view oracle) {
   const MeasuredPrice* price = price_of(prices, oracle);
   if (price == nullptr) return "";
@@ -62,6 +51,15 @@ TableCell price_cell(const MeasuredPrices& prices, std::string_view oracle) {
 }
 
 }  // namespace
+
+const MeasuredPrice* price_of(const MeasuredPrices& prices, std::string_view oracle) {
+  const auto at = std::ranges::find(prices.oracles, oracle, &MeasuredPrice::oracle);
+  return at == prices.oracles.end() ? nullptr : &*at;
+}
+
+const MeasuredPrices* prices_of(const ProblemAxis& problem) {
+  return problem.has_own_sheet() && problem.sheet->prices ? &*problem.sheet->prices : nullptr;
+}
 
 Table calls_table(const Comparison& c) {
   Table table = worded_table("calls", tau_name(c), priced_unit(c));

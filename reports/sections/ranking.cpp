@@ -204,11 +204,6 @@ std::vector<std::string> verdict(const Comparison& c) {
   return all;
 }
 
-std::string short_verdict(const Comparison& c) {
-  const std::vector<std::string> sentences = verdict(c);
-  return sentences.empty() ? "" : sentences[0];
-}
-
 std::vector<Reading> ranking_facts(const Comparison& c) {
   std::vector<Reading> facts;
   if (has_order(c) && c.decision)

@@ -55,7 +55,6 @@ std::string headline(const Comparison& comparison);
 std::string missing_text(const Comparison& comparison);
 std::vector<std::string> remarks(const Comparison& comparison);
 std::vector<std::string> verdict(const Comparison& comparison);    // what the decision says
-std::string short_verdict(const Comparison& comparison);           // its first sentence
 std::vector<Reading> ranking_facts(const Comparison& comparison);  // the group, how robust, not run
 // Which methods were run on some of the common settings only; empty where none was.
 std::string unranked_sentence(const Comparison& comparison);
@@ -105,6 +104,9 @@ Measure cost_measure(const Comparison& comparison);
 std::string cost_unit(const Comparison& comparison);
 // "equivalent forward solves at measured cost", …
 std::string priced_unit(const Comparison& comparison);
+// The prices that the component metadata of this very problem hold, used or not; null where none.
+const MeasuredPrices* prices_of(const ProblemAxis& problem);
+const MeasuredPrice* price_of(const MeasuredPrices& prices, std::string_view oracle);
 Real in_units(Measure by, Real value);  // as tables and axes have it: times in ms
 
 // Two methods over the families of problems that both were run on and one of them solves.

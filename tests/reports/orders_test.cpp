@@ -167,7 +167,7 @@ TEST(Orders, AllSentencesFollowFromOneDecision) {
   EXPECT_FALSE(c.decision->is_lead);
   EXPECT_TRUE(c.decision->places[1].is_in_group);
   EXPECT_FALSE(c.decision->places[2].is_in_group);
-  const std::string first = short_verdict(c);
+  const std::string first = verdict(c).at(0);
   EXPECT_LE(std::ranges::count(first, ' '), 59) << first;
   EXPECT_EQ(leader_table(c).reading, first);
   const std::vector<Reading> facts = ranking_facts(c);
@@ -185,7 +185,7 @@ TEST(Orders, OneAlgorithmTwiceIsTiedOnTheFirstScreen) {
   const Comparison c = compare_optimizers(study);
   EXPECT_EQ(c.decision->tied, 2U);
   EXPECT_FALSE(c.decision->is_lead);
-  EXPECT_TRUE(has(short_verdict(c), "tied")) << short_verdict(c);
+  EXPECT_TRUE(has(verdict(c).at(0), "tied")) << verdict(c).at(0);
   const Section section = standings_section(c);
   const Table& table = section.tables[0];
   EXPECT_EQ(table.rows[0][0].text, "1");
