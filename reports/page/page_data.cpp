@@ -97,14 +97,13 @@ std::string problem_json(const Comparison& c, std::size_t p,
   std::vector<std::size_t> asked;
   for (std::size_t s = 0; s < c.optimizers.size(); ++s)
     if (c.cell(p, s).planned > 0) asked.push_back(s);
+  const std::vector<std::size_t> ranked = ranking(c, p);
   return fmt::format(
              "{{\"spec\":{},\"name\":{},\"group\":\"{}\",\"isOrdered\":{},\"cells\":{},"
              "\"order\":{},\"lines\":{}",
              json_quoted(problem_name(problem)), json_quoted(problem.name), problem.group(),
              is_ordered(c, p), json_list(asked, [&](std::size_t s) { return cell_json(c, p, s); }),
-             indices(ranking(c, p)),
-             json_list(shown_at_first(c, ranking(c, p)),
-                       [](std::size_t s) { return std::to_string(s); })) +
+             indices(ranked), indices(shown_at_first(c, ranked))) +
          origins_json(c, p) + learned_json(c, p) +
          (fields ? ",\"fields\":" + fields_json(*fields) : "") + "}";
 }
