@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "reports/formats/formats.h"
-#include "reports/sections/figures.h"
 #include "reports/sections/words.h"
 
 namespace isoline::reports {

@@ -49,7 +49,7 @@ function standingsAt(measure, target) {
   const flat = DATA.standings[measure][same], all = [];
   for (let i = 0; i < flat.length; i += 6) {
     const [s, score, solved, wins, typical, reached] = flat.slice(i, i + 6), [settings, runs, failed] = DATA.given[s];
-    all.push({s, score, solved, wins, typical: typical ?? Infinity, reached, settings, runs, failed, isApart: !DATA.ranked.includes(s)});
+    all.push({s, score, solved, wins, typical: typical ?? Infinity, reached, settings, runs, failed});
   }
   return all;
 }

@@ -21,7 +21,7 @@ function trackOf(s, score) {
 }
 
 function standingRow({s, score, solved, settings, wins, typical, reached, runs, failed}, place, isRest) {
-  const row = element('tr', {className: isRest ? 'rest' : ''}, cellWith(place === undefined ? '–' : String(place + 1)),
+  const row = element('tr', {className: isRest ? 'rest' : ''}, cellWith(String(place + 1)),
       element('th', {scope: 'row'}, ...nameOfMethod(s)), trackOf(s, score), cellWith(score.toFixed(3)), cellWith(String(solved), `/${settings}`),
       cellWith(wins === 0 ? '·' : String(wins)), cellWith(multiple(typical)), cellWith(String(reached), `/${runs}`),
       cellWith(failed === 0 ? '·' : String(failed), '', {className: failed === 0 ? '' : 'lost'}));
@@ -36,7 +36,7 @@ function drawStandings(table) {
   if (rows.length === 0 || DATA.allLearned)
     return table.replaceChildren(element('caption', {}, 'No problem here is ranked by work; learned problems are compared by the error in x.'));
   filledTable(table, `Standings to ${tauName(view.target)} by ${measureNow().counted}`,
-      [element('tr', {}, ...heads.map((head) => element('th', {scope: 'col'}, head)))], rows.map((row) => standingRow(row, row.isApart ? undefined : rows.indexOf(row), shown.indexOf(row) >= SHOWN_AT_FIRST)));
+      [element('tr', {}, ...heads.map((head) => element('th', {scope: 'col'}, head)))], rows.map((row) => standingRow(row, rows.indexOf(row), shown.indexOf(row) >= SHOWN_AT_FIRST)));
   makeSortable(table);
 }
 
