@@ -58,13 +58,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
-void read_runs(Study& study, const std::vector<std::string>& folders, const Listener& listener) {
+void read_runs(Study& study, const std::vector<std::string>& folders, const Listener& listener,
+               const Trim& trim) {
   const std::vector<std::string> files = record_files(folders, study.unreadable);
   std::vector<std::string> reasons(files.size());
   std::vector<Record> runs(files.size());
   const auto read = [&](std::size_t i) {
     try {
       runs[i] = read_record(files[i]);
+      if (trim) trim(runs[i]);
     } catch (const std::exception& error) {
       reasons[i] = error.what();
     }
@@ -76,9 +78,18 @@ void read_runs(Study& study, const std::vector<std::string>& folders, const List
       marks[i] = mark_of(runs[i]);
     else
       study.unreadable.push_back({files[i], std::move(reasons[i])});
-  Newest newest =
-      newest_of(marks, [&](std::size_t i, std::size_t j) { return are_at_odds(runs[i], runs[j]); });
-  for (const std::size_t i : newest.kept) study.runs.push_back(std::move(runs[i]));
+  Newest newest = newest_of(marks, [&](std::size_t i, std::size_t j) {
+    return trim ? are_at_odds(read_record(files[i]), read_record(files[j]))
+                : are_at_odds(runs[i], runs[j]);
+  });
+  // In place, since two lists of records take twice the memory.
+  for (std::size_t k = 0; k < newest.kept.size(); ++k) {
+    std::size_t from = newest.kept[k];
+    while (from < k) from = newest.kept[from];  // where an earlier exchange has put it
+    if (from != k) std::swap(runs[k], runs[from]);
+  }
+  runs.resize(newest.kept.size());
+  study.runs = std::move(runs);
   study.superseded = newest.superseded;
   study.disputed = std::move(newest.disputed);
 }
@@ -209,7 +220,8 @@ std::optional<FieldFrames> Study::fields_of(const Record& record) const {
   return std::nullopt;
 }
 
-Study read_study(const std::vector<std::string>& folders, const Listener& listener) {
+Study read_study(const std::vector<std::string>& folders, const Listener& listener,
+                 const Trim& trim) {
   std::error_code unknown;
   for (const fs::path folder : folders) {
     require(!fs::is_regular_file(folder, unknown), [&] {
@@ -224,7 +236,7 @@ Study read_study(const std::vector<std::string>& folders, const Listener& listen
   std::set<std::string> known;
   for (const fs::path folder : folders) read_rest(study, folder, known);
   std::ranges::sort(study.audits, {}, &AuditedOptimizer::name);
-  read_runs(study, folders, listener);
+  read_runs(study, folders, listener, trim);
   return study;
 }
 

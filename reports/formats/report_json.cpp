@@ -364,7 +364,7 @@ std::string json_report(const Document& document) {
       {"pairs", list_of(all_pairs(c), [&](const MethodPair& pair) { return pair_json(c, pair); })},
       {"profiles", profiles_json(c)},
       {"statistics", statistics_json(document)},
-      {"cells", cells}};
+      {"cells", std::move(cells)}};
   return json_text(json, 1) + "\n";
 }
 

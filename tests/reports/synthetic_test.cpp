@@ -101,6 +101,22 @@ TEST(Report, OfThousandsOfRecordsCountsEachOnceAndStatesTheSameNumberOfFailuresE
   EXPECT_EQ(runs, kSize.records() - statuses_drawn()[Status::inapplicable]);
 }
 
+TEST(Report, OfTrimmedRecordsIsThatOfWholeOnes) {
+  const TemporaryFolder owned;
+  write_synthetic_study(owned.path(), {.problems = 4, .optimizers = 5, .seeds = 3});
+  const std::vector<std::string> twice(2, owned.path().string());  // each record has another
+  const Study whole = read_study(twice);
+  const Study trimmed =
+      read_study(twice, {}, [](Record& record) { trim_for_report(record, false); });
+  EXPECT_TRUE(std::ranges::all_of(
+      trimmed.runs, [](const Record& run) { return run.curve.gradient_norm.empty(); }));
+  EXPECT_EQ(trimmed.superseded, whole.runs.size());
+  const Document one = document_of(compare_optimizers(whole)),
+                 other = document_of(compare_optimizers(trimmed));
+  for (const Format& format : kFormats)
+    EXPECT_TRUE(format.text(one) == format.text(other)) << format.file;
+}
+
 TEST(Report, OfTenThousandCellsIsWholeAndItsPageBelowEightMegabytes) {
   constexpr std::uintmax_t kMostBytes = 8'000'000;
 #ifdef ISOLINE_SANITIZE
