@@ -41,7 +41,7 @@ std::string cell_html(const Table& table, const TableCell& cell, std::size_t col
   if (align == 'c' && !text.empty()) text = "<code>" + text + "</code>";
   if (!cell.link.empty()) text = fmt::format("<a href=\"{}\">{}</a>", html_text(cell.link), text);
   if (cell.is_best) text = "<b>" + text + "</b>";
-  if (!cell.remark.empty()) text += "<br><small>" + html_text(cell.remark) + "</small>";
+  if (!cell.remark.empty()) text += "<small>" + html_text(cell.remark) + "</small>";
   return fmt::format("<{}>{}", tag, text);
 }
 
