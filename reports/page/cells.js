@@ -4,6 +4,9 @@
 
 const DATA = JSON.parse(document.getElementById('data').textContent);
 
+// The sentence of a key, its names filled by values.
+const worded = (key, values = {}) => DATA.words[key].replace(/\{(\w+)\}/g, (_, name) => values[name]);
+
 // −k in a list of the report stands for k more of the number before it.
 function inFull(list) {
   const all = [];

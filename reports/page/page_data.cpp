@@ -204,6 +204,16 @@ std::string measures_json(const Comparison& c) {
   });
 }
 
+// The sentences that scripts fill, by key.
+std::string script_words() {
+  constexpr std::string_view kPrefix = "script.";
+  std::vector<std::string> all;
+  for (const auto& [key, sentence] : all_sentences())
+    if (key.starts_with(kPrefix))
+      all.push_back(json_quoted(key.substr(kPrefix.size())) + ":" + json_quoted(sentence.text));
+  return "{" + joined(all, ",") + "}";
+}
+
 }  // namespace
 
 std::vector<std::size_t> targets_of(const Comparison& c) {
@@ -235,13 +245,13 @@ std::string page_data(const Document& document, const AllFields& fields) {
   std::string text = fmt::format(
       "{{\"runs\":{},\"by\":\"{}\",\"allLearned\":{},\"shades\":{},\"measures\":{},\"isTimedTogether\":{},"
       "\"rungs\":{},\"targets\":{},{},\"given\":{},\"ranked\":{},\"common\":{},\"claims\":{},"
-      "\"standings\":{},\"problems\":[",
+      "\"words\":{},\"standings\":{},\"problems\":[",
       json_quoted(runs_address(document)), name_of(c.yardstick.by), is_all_learned(c),
       json_list(kShades, exact_figure), measures_json(c), c.is_any_timed_together,
       json_list(c.yardstick.tolerances,
                 [](const Tolerance& tolerance) { return std::to_string(tolerance.rung); }),
       indices(targets_of(c)), axes_json(c), given_json(c), indices(c.order.methods),
-      indices(c.order.settings), claims_about(document), standings_json(c));
+      indices(c.order.settings), claims_about(document), script_words(), standings_json(c));
   for (std::size_t p = 0; p < c.problems.size(); ++p)
     text += (p > 0 ? "," : "") + problem_json(c, p, fields[p]);
   std::string safe;  // no </script and no <!-- can stand in it

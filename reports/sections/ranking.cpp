@@ -23,7 +23,7 @@ Real doublings_of(Real a, Real b) {
 std::string names_text(const Comparison& c, const std::vector<std::size_t>& methods,
                        std::size_t most) {
   std::vector<std::string> names;
-  for (const std::size_t s : methods) names.push_back(optimizer_text(c, s));
+  for (const std::size_t s : methods) names.push_back(name_in_sentence(c.optimizers[s]));
   return first_of(std::move(names), most);
 }
 
@@ -36,27 +36,25 @@ std::string settings_text(const Comparison& c) {
     if (const Sheet* sheet = c.problems[p].sheet) unknowns = std::max(unknowns, sheet->unknowns);
   }
   const std::size_t settings = c.order.settings.size(), names = names_of(c, c.order);
-  std::string text = counted(names, "test problem");
-  if (names < settings) text = fmt::format("{} of {}", counted(settings, "setting"), text);
   std::vector<std::string> parts;
-  if (physics > 0) parts.push_back(fmt::format("{} from physics", physics));
-  if (unknowns > 0)
-    parts.push_back(fmt::format("at most {}", counted(std::size_t(unknowns), "unknown")));
+  if (physics > 0) parts.push_back(words("ranking.physics", physics));
+  if (unknowns > 0) parts.push_back(words("ranking.unknowns", unknowns));
   std::string about = joined(parts);
   if (c.seeds.size() > 1)
-    about += fmt::format("{}{} starting points each", about.empty() ? "" : "; ", c.seeds.size());
-  return text + (about.empty() ? "" : " (" + about + ")");
+    about += (about.empty() ? "" : "; ") + words("ranking.starts", c.seeds.size());
+  return words(names < settings ? "ranking.settings" : "ranking.problems", settings, names,
+               about.empty() ? "" : " (" + about + ")");
 }
 
 std::string decision_sentence(const Comparison& c, const Decision& decision) {
-  const auto score_text = [&](const results::Place& place, const std::string& more) {
-    return words("ranking.score", optimizer_text(c, place.method), place.score, place.solved, more);
+  const auto name = [&](const results::Place& place) {
+    return name_in_sentence(c.optimizers[place.method]);
   };
   const results::Place& first = decision.places[0];
   const std::string on = settings_text(c), measure(counted_name(c)), tau = tau_name(c);
   std::string text;
   if (decision.places.size() == 1) {
-    text = words("ranking.alone", on, score_text(first, ""));
+    text = words("ranking.alone", on, name(first), first.score, first.solved);
   } else if (decision.tied > 1) {
     std::vector<std::size_t> tied;
     for (std::size_t i = 0; i < decision.tied; ++i) tied.push_back(decision.places[i].method);
@@ -66,14 +64,16 @@ std::string decision_sentence(const Comparison& c, const Decision& decision) {
     const auto open =
         std::find_if(decision.places.begin() + 1, decision.places.end(),
                      [](const results::Place& place) { return place.p > kSignificant; });
-    const results::Place& rival = open == decision.places.end() ? decision.places[1] : *open;
-    text = words(decision.is_lead ? "ranking.lead" : "ranking.open", on, score_text(first, ""),
-                 measure, tau, score_text(rival, words("ranking.test", rival.p)));
+    const auto rival = open == decision.places.end() ? decision.places.begin() + 1 : open;
+    const auto rank = static_cast<std::size_t>(rival - decision.places.begin()) + 1;
+    text = words(decision.is_lead ? "ranking.lead" : "ranking.open", on, measure, tau, name(first),
+                 first.score, first.solved, name(*rival), rank == 2 ? "next" : ordinal(rank),
+                 rival->score, rival->solved, rival->p);
   }
   for (const Choice& choice : decision.choices)
     if (choice.varied == Varied::measure && choice.value == name_of(Measure::time) &&
         !choice.is_kept && !choice.first.empty())
-      text += " " + words("ranking.by-time", names_text(c, choice.first, 2));
+      text += " " + words("ranking.by-time", names_text(c, choice.first, 2), choice.first.size());
   return text;
 }
 
@@ -84,8 +84,8 @@ std::string group_text(const Comparison& c, const Decision& decision) {
 
 std::string robustness_text(const Comparison& c, const Decision& decision) {
   const results::Place& first = decision.places[0];
-  const auto share_text = [&](const results::Place& place, const char* between) {
-    return optimizer_text(c, place.method) + between + percent(place.share_first);
+  const auto share_text = [&](const char* key, const results::Place& place) {
+    return words(key, name_in_sentence(c.optimizers[place.method]), percent(place.share_first));
   };
   std::vector<results::Place> often = decision.places;
   std::ranges::stable_sort(often, std::ranges::greater{}, &results::Place::share_first);
@@ -97,12 +97,12 @@ std::string robustness_text(const Comparison& c, const Decision& decision) {
   for (const Choice& choice : decision.choices) {
     kept += choice.is_kept;
     if (!choice.is_kept && !choice.first.empty())
-      lost.push_back(fmt::format("{} {}", names_text(c, choice.first, 1), choice_text(choice)));
+      lost.push_back(names_text(c, choice.first, 1) + " " + choice_text(choice));
   }
-  return words("ranking.robustness", share_text(first, " ranks first in "),
-               has_other ? fmt::format(" ({})", share_text(*other, " in ")) : "", kept,
+  return words("ranking.robustness", share_text("ranking.share", first),
+               has_other ? " " + share_text("ranking.share-other", *other) : "", kept,
                decision.choices.size(),
-               lost.empty() ? "" : "; first otherwise: " + first_of(lost, 3));
+               lost.empty() ? "" : words("ranking.otherwise", first_of(lost, 3)));
 }
 
 std::string not_run(const Comparison& c) {
@@ -168,12 +168,13 @@ std::vector<MethodPair> all_pairs(const Comparison& c) {
 }
 
 std::string choice_text(const Choice& choice) {
-  constexpr std::array<const char*, 5> kBefore = {"with profile end ", "to accuracy ", "by ",
-                                                  "without ", "with seed "};
-  static_assert(static_cast<std::size_t>(Varied::seed) + 1 == kBefore.size());
-  const std::string before = kBefore[static_cast<std::size_t>(choice.varied)];
-  if (choice.varied != Varied::measure) return before + choice.value;
-  return before + std::string(counted_name(measure_of(choice.value).value_or(Measure::work)));
+  constexpr std::array<const char*, 5> kKeys = {"choice.end", "choice.tolerance", "choice.measure",
+                                                "choice.family", "choice.seed"};
+  static_assert(static_cast<std::size_t>(Varied::seed) + 1 == kKeys.size());
+  const bool is_measure = choice.varied == Varied::measure;
+  return words(kKeys[static_cast<std::size_t>(choice.varied)],
+               is_measure ? counted_name(measure_of(choice.value).value_or(Measure::work))
+                          : std::string_view(choice.value));
 }
 
 std::vector<std::string> verdict(const Comparison& c) {
@@ -190,12 +191,10 @@ std::vector<std::string> verdict(const Comparison& c) {
       all.push_back(fmt::format("{}: {}", problem_name(c.problems[p]), curve_reading(c, p)));
     return all;
   }
-  all = {decision_sentence(c, *c.decision),
-         "Not significantly worse than the best: " + group_text(c, *c.decision),
+  all = {decision_sentence(c, *c.decision), words("ranking.best-group", group_text(c, *c.decision)),
          robustness_text(c, *c.decision)};
   if (c.open_decision && c.open_decision->places[0].method != c.decision->places[0].method)
-    all.push_back("Among the methods without extra information: " +
-                  decision_sentence(c, *c.open_decision));
+    all.push_back(words("ranking.without-extra", decision_sentence(c, *c.open_decision)));
   if (c.yardstick.by == Measure::time && c.is_any_timed_together)
     all.push_back(words("ranking.shared-time"));
   all.push_back(unranked_sentence(c));
@@ -207,11 +206,11 @@ std::vector<std::string> verdict(const Comparison& c) {
 std::vector<Reading> ranking_facts(const Comparison& c) {
   std::vector<Reading> facts;
   if (has_order(c) && c.decision)
-    facts = {{"Not significantly worse than the best", group_text(c, *c.decision)},
-             {"Robustness", robustness_text(c, *c.decision)}};
+    facts = {{words("fact.group"), group_text(c, *c.decision)},
+             {words("fact.robustness"), robustness_text(c, *c.decision)}};
   else
-    facts = {{"Ranking", words("ranking.none")}};
-  facts.push_back({"Not run", not_run(c)});
+    facts = {{words("fact.ranking"), words("ranking.none")}};
+  facts.push_back({words("fact.not-run"), not_run(c)});
   return facts;
 }
 
@@ -221,7 +220,7 @@ std::string unranked_sentence(const Comparison& c) {
     const auto shared = static_cast<std::size_t>(std::ranges::count_if(
         c.order.settings, [&](std::size_t p) { return c.cell(p, s).planned > 0; }));
     if (c.optimizers[s].applicable > 0 && shared > 0 && shared < c.order.settings.size())
-      names.push_back(fmt::format("{} ({})", shown_spec(c.optimizers[s].label), shared));
+      names.push_back(words("ranking.run-on", name_in_sentence(c.optimizers[s]), shared));
   }
   return names.empty() ? "" : words("ranking.unranked", common_settings(c), joined(names));
 }
