@@ -11,6 +11,7 @@
 #include "core/records/json_view.h"
 #include "core/spec.h"
 #include "core/text.h"
+#include "problems/problem.h"
 #include "tests/benchmarks/builtin.h"
 
 namespace isoline::benchmarks {
@@ -68,41 +69,60 @@ TEST(Suites, WithNumbersThatNoTypeHoldsUnknownKeysOrEmptySelectionsAreRefused) {
   EXPECT_THROW(expand(catalog(), suite_from_json(empty, "here"), {}), UsageError);
 }
 
-TEST(Quick, MeetsEveryProblemWithEveryOptimizerOnThreeSeedsFor2000UnitsOfWorkUnlessItLearns) {
+bool is_learned(const Request& cell) {
+  return cell.problem.spec.find("mode=learn") != std::string::npos;
+}
+
+// Three methods take too long beyond 64 unknowns, and those that factorize a matrix on 64 × 64.
+TEST(Quick, MeetsEveryProblemWithEveryOptimizerOnThreeSeedsUnlessItLearns) {
   std::map<std::pair<std::string, std::string>, std::set<std::uint64_t>> seeds;
   const std::vector<Request> cells = cells_of("quick");
   for (const Request& cell : cells) {
+    if (is_learned(cell)) continue;
     seeds[{cell.problem.name, cell.optimizer.name}].insert(cell.seed);
-    if (cell.problem.spec.find("mode=learn") != std::string::npos) continue;
-    EXPECT_LE(cell.budget.work, 2000) << cell.problem.spec << " × " << cell.optimizer.spec;
+    EXPECT_LE(cell.budget.work, 12'000) << cell.problem.spec << " × " << cell.optimizer.spec;
   }
+  const std::set<std::string> slow = {"nlopt-slsqp", "nlopt-bobyqa", "nlopt-cobyla"},
+                              large = {"quantum-dipole", "navier-stokes"};
   for (const auto& [problem, sought] : catalog().problems)
     for (const auto& [optimizer, entry] : catalog().optimizers)
-      EXPECT_EQ((seeds[{problem, optimizer}]),
-                (sought.in_all && entry.in_all ? std::set<std::uint64_t>{0, 1, 2}
-                                               : std::set<std::uint64_t>()))
-          << problem << " × " << optimizer;
-  EXPECT_GE(cells.size(), 1500U);
+      if (sought.in_all && entry.in_all && !(slow.contains(optimizer) && large.contains(problem)))
+        EXPECT_EQ((seeds[{problem, optimizer}]), (std::set<std::uint64_t>{0, 1, 2}))
+            << problem << " × " << optimizer;
+  EXPECT_GE(cells.size(), 3000U);
 }
 
-// The order of all methods keeps its differential equations: everyone is asked 8 × 8.
-TEST(Quick, GivesEveryMethodTheSmallestGridsAndEachTheLargestThatItCanTreat) {
-  std::map<std::string, std::set<Index>> sides;
-  for (const Request& cell : cells_of("quick"))
-    if (cell.problem.name == "poisson" || cell.problem.name == "heat")
-      sides[cell.problem.name + " " + cell.optimizer.name].insert(
-          std::get<Index>(cell.problem.options.at("N")));
-  for (const char* problem : {"poisson", "heat"})
-    for (const auto& [name, entry] : catalog().optimizers.ready()) {
-      if (!entry.in_all) continue;
-      const std::set<Index>& asked = sides[std::string(problem) + " " + name];
-      EXPECT_TRUE(asked.contains(8)) << name;
-      const bool is_too_slow = name == "nlopt-slsqp";  // a fifth of the whole suite at 16 × 16
-      const bool has_larger = !is_selected(entry, "@derivative-free") && !is_too_slow;
-      EXPECT_EQ(asked.size(), has_larger ? 2U : 1U) << name;
-      EXPECT_EQ(asked.contains(16), is_selected(entry, "@factorizing") && !is_too_slow) << name;
-      EXPECT_EQ(asked.contains(64), is_selected(entry, "@matrix-free")) << name;
+// What a report of these records ranks: see core/results/ranking.h.
+TEST(Quick, RanksSixteenSettingsOfSixFamiliesOfPhysics) {
+  std::map<std::string, std::set<std::string>> methods;  // by problem
+  std::map<std::string, Component> settings;
+  std::set<std::string> all;
+  for (const Request& cell : cells_of("quick")) {
+    if (is_learned(cell) || cell.problem.is_learned) continue;
+    all.insert(cell.optimizer.name);
+    if (catalog().problems.at(cell.problem.name).group != problems::Group::physics) continue;
+    methods[cell.problem.spec].insert(cell.optimizer.name);
+    settings.emplace(cell.problem.spec, cell.problem);
+  }
+  std::set<std::string> families;
+  std::size_t ranked = 0;
+  for (const auto& [spec, component] : settings) {
+    std::vector<Real> goals;
+    for (const std::uint64_t seed : {0, 1, 2}) {
+      const Problem problem = make_problem(catalog(), component, seed);
+      const auto& batch = problem.batch();
+      goals.push_back(problem.aim() == Aim::loss
+                          ? 0
+                          : x_goal(0, 1, problem.x_floor(batch) / problem.x_scale(batch)));
     }
+    std::ranges::sort(goals);
+    if (3 * methods[spec].size() < 2 * all.size() || goals[1] > 0.1) continue;
+    ++ranked;
+    families.insert(component.name);
+  }
+  EXPECT_GE(ranked, 16U);
+  EXPECT_GE(families.size(), 6U);
+  EXPECT_FALSE(families.contains("heat")) << "even the best inverse is far off";
 }
 
 TEST(Defaults, AreTheCellsOfQuickWithEveryMethodAtItsDefaults) {

@@ -77,6 +77,21 @@ TEST(Oscillators, ApproachAnIndependentIntegrationAtFourthOrder) {
   }
 }
 
+// The same constant control, the same motion: T changes the steps and not their sum.
+TEST(Oscillators, LastAsLongInAnyNumberOfSteps) {
+  for (const char* name : {"linear-chain", "coupled-oscillators"}) {
+    std::vector<Matrix> ends;
+    for (const char* steps : {"48", "96", "192"}) {
+      const Problem problem = make(std::string(name) + "[steps=" + steps + "]", 1);
+      Point at;
+      problem.forward(Vector::Constant(problem.unknowns(), 0.3), at);
+      ends.push_back(at.y);
+    }
+    EXPECT_LT((ends[1] - ends[2]).norm(), 1e-3) << name;
+    EXPECT_LT((ends[1] - ends[2]).norm(), (ends[0] - ends[1]).norm() / 8) << name;  // of order 4
+  }
+}
+
 TEST(Oscillators, GiveASampleTheSameBitsInWhateverBatch) {
   for (const Forces& forces : {kChain, kNonlinear}) {
     const Oscillators physics(forces, 12, 0.25);
