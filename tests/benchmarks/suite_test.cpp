@@ -80,7 +80,7 @@ TEST(Quick, MeetsEveryProblemWithEveryOptimizerOnThreeSeedsUnlessItLearns) {
   for (const Request& cell : cells) {
     if (is_learned(cell)) continue;
     seeds[{cell.problem.name, cell.optimizer.name}].insert(cell.seed);
-    EXPECT_LE(cell.budget.work, 12'000) << cell.problem.spec << " × " << cell.optimizer.spec;
+    EXPECT_LE(cell.budget.work, 8000) << cell.problem.spec << " × " << cell.optimizer.spec;
   }
   const std::set<std::string> slow = {"nlopt-slsqp", "nlopt-bobyqa", "nlopt-cobyla"},
                               large = {"quantum-dipole", "navier-stokes"};
