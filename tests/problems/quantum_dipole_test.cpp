@@ -113,23 +113,6 @@ TEST(QuantumDipole, StepsAreThoseOfADenseSolve) {
   EXPECT_NEAR(final_state(20 * u).norm(), 1, 1e-12);
 }
 
-// Fewer steps last as long and keep the norm: each phase turns by the step's own Δt.
-TEST(QuantumDipole, LastsAsLongInFewerSteps) {
-  for (const Index steps : {96, 192}) {
-    const ParticleInABox box(ParticleInABox::Output::state, steps);
-    const Real dt = kDt * static_cast<Real>(kSteps) / static_cast<Real>(steps);
-    const Complex once = (1.0 - kI * energy(1) * dt / 2.0) / (1.0 + kI * energy(1) * dt / 2.0);
-    Workspace w;
-    Matrix y(2 * kPoints, 1);
-    box.forward(Vector::Zero(steps), Matrix(), y, w);
-    const ComplexVector expected =
-        ParticleInABox::eigenstate(1).cast<Complex>() * std::pow(once, Real(steps));
-    EXPECT_LT((ComplexVector(complex_of(y)) - expected).norm(), 1e-12);
-    box.forward(20 * control(3).head(steps), Matrix(), y, w);
-    EXPECT_NEAR(y.norm(), 1, 1e-12);
-  }
-}
-
 TEST(QuantumDipole, HasThePublishedSizeAndLoss) {
   const Problem problem = make("quantum-dipole[mode=learn]", 1);
   EXPECT_EQ(problem.unknowns(), 9484);
