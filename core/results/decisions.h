@@ -34,12 +34,13 @@ struct Repetition {
   std::vector<std::optional<Real>> costs;  // [method]; nothing where no such run exists
 };
 
-enum class Varied { profile_end, tolerance, measure, family, seed };
+enum class Varied { profile_end, tolerance, measure, prices, family, seed };
 
-// Other costs of the same methods on the same settings: to another tolerance, or in time.
+// Other costs of the same methods on the same settings: to another tolerance, in time, or at other
+// prices.
 struct OtherCosts {
   Varied varied = Varied::tolerance;
-  std::string value;  // which tolerance, or which measure
+  std::string value;  // which tolerance, which measure, or which oracle at which factor
   Costs costs;
 };
 

@@ -301,6 +301,7 @@ bool is_told(const MeasuredPrices& prices, const MeasuredPrice& price) {
 
 Prices::Prices(const Sheet* sheet) {
   if (sheet == nullptr || !sheet->prices) return;
+  forward_seconds_ = sheet->prices->forward_seconds;
   for (const MeasuredPrice& each : sheet->prices->oracles)
     if (each.oracle != kInference && is_told(*sheet->prices, each))
       measured_[each.oracle] = each.price;
@@ -317,6 +318,15 @@ Real Prices::cost(const Record& record) const {
   for (std::size_t kind = 0; kind < kOracles; ++kind)
     sum += price(record, kind) * Real(record.counts[kind]);
   return sum;
+}
+
+std::optional<Real> Prices::seconds(const Record& record) const {
+  for (std::size_t kind = 0; kind < kOracles; ++kind)
+    if (record.counts[kind] > 0 && kOracleNames[kind] != "forward" &&
+        !is_measured(kOracleNames[kind]))
+      return std::nullopt;
+  if (forward_seconds_ < kShortestCall) return std::nullopt;
+  return forward_seconds_ * cost(record);
 }
 
 std::vector<Real> Prices::costs_of(const Record& record, const Columns& counts,
@@ -354,7 +364,8 @@ OracleCounts counts_at(const Record& record, Real work) {
       if (const auto* column = column_of(columns, kind); column && i < column->size())
         counts[kind] = (*column)[i];
   };
-  if (record.hits && !record.hits->counts.empty())
+  const auto is_hit = [&](std::int64_t each) { return Real(each) == work; };  // else one in x
+  if (record.hits && !record.hits->counts.empty() && std::ranges::any_of(record.hits->work, is_hit))
     read(record.hits->counts, record.hits->work);
   else
     read(record.curve.counts, record.curve.work);

@@ -156,18 +156,21 @@ class Prices {
   bool is_measured(std::string_view oracle) const { return measured_.contains(oracle); }
 
   Real cost(const Record& record) const;  // of all that the run asked
+  // The processor time of all that the run asked; nothing where some of it was not measured.
+  std::optional<Real> seconds(const Record& record) const;
+  Real price(const Record& record, std::size_t kind) const;
   // At each point of the curve.
   std::vector<Real> curve_costs(const Record& record) const;
   // At each hit, infinite where never reached.
   std::vector<Real> hit_costs(const Record& record) const;
 
  private:
-  Real price(const Record& record, std::size_t kind) const;
   // From counts by oracle in columns as long as `work`, which it is where nothing is measured.
   std::vector<Real> costs_of(const Record& record, const Columns& counts,
                              const std::vector<std::int64_t>& work) const;
 
   std::map<std::string, Real, std::less<>> measured_;  // by oracle
+  Real forward_seconds_ = 0;
 };
 
 // The raw counts when the declared work of the run was `work`: of its hit, or, in older records, of

@@ -358,6 +358,7 @@ std::string json_report(const Document& document) {
                           [](const Reading& reading) { return reading.text; })},
       {"claims", claims_json(document.claims)},
       {"audit", audit_json(document)},
+      {"ranked", list_of(c.order.settings, [&](std::size_t p) { return c.problems[p].spec; })},
       {"leader", decision_json(c, c.decision)},
       {"open_leader", decision_json(c, c.open_decision)},
       {"optimizers",

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <map>
 #include <set>
 #include <string_view>
@@ -179,6 +180,10 @@ std::string marks_html(const OptimizerAxis& axis) {
 std::string html_report(const Document& document) {
   const Comparison& c = document.comparison;
   const AllFields fields = all_found_fields(c);
+  Section order = document.section("standings"), apart{.id = "apart", .title = order.title};
+  const auto is_apart = [](const Table& table) { return table.id != "standings-table"; };
+  std::ranges::copy_if(order.tables, std::back_inserter(apart.tables), is_apart);
+  std::erase_if(order.tables, is_apart);
   Parts parts{{"title", html_text(title_of(c))},
               {"style", std::string(embedded_page_css()) + kind_rules(c)},
               {"scripts", std::string(embedded_page_js())},
@@ -190,7 +195,8 @@ std::string html_report(const Document& document) {
               {"overview", overview_html(document)},
               {"endings", endings_html(c)},
               {"remarks", remarks_html(document)},
-              {"order", section_html(document.section("standings"))},
+              {"order", section_html(order)},
+              {"apart", apart.is_empty() ? "" : section_html(apart)},
               {"matrix", section_html(document.section("problems"))},
               {"problems", problems_html(c, fields)},
               {"profile", profile_html(c)},

@@ -77,13 +77,18 @@ Table calls_table(const Comparison& c) {
   }
   for (std::size_t kind = 0; kind < kOracles; ++kind)
     if (is_asked[kind]) table.columns.emplace_back(kOracleNames[kind]);
-  for (const char* column : {"work", "cost", "n runs", "failed"}) table.columns.push_back(column);
+  for (const char* column : {"work", "cost", "own time", "n runs", "failed"})
+    table.columns.push_back(column);
   for (std::size_t s = 0; s < all.size(); ++s) {
     std::vector<TableCell> row = {count_cell(all[s].reached)};
     for (std::size_t kind = 0; kind < kOracles; ++kind)
       if (is_asked[kind]) row.push_back(number_cell("sum", all[s].counts[kind]));
     row.push_back(number_cell("sum", all[s].work));
     row.push_back(number_cell("sum", all[s].cost));
+    const Spread own = own_time(c, s);
+    row.push_back(
+        own.n == 0 ? TableCell("")
+                   : TableCell(percent(own.median), {{"median", own.median}, {"n", Real(own.n)}}));
     row.push_back(count_cell(all[s].runs));
     row.push_back(failed_cell(c, s));
     add_row(table, c, s, std::move(row));

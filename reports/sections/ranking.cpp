@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "core/results/statistics.h"
 #include "reports/sections/sections.h"
@@ -27,6 +28,13 @@ std::string names_text(const Comparison& c, const std::vector<std::size_t>& meth
   return first_of(std::move(names), most);
 }
 
+std::size_t ranked_seeds(const Comparison& c) {
+  std::set<std::uint64_t> seeds;
+  for (const Run& run : c.runs)
+    if (c.order.has_setting(run.problem)) seeds.insert(run.seed);
+  return seeds.size();
+}
+
 // "19 test problems (5 from physics, at most 64 unknowns; 3 starting points each)"
 std::string settings_text(const Comparison& c) {
   std::size_t physics = 0;
@@ -43,8 +51,8 @@ std::string settings_text(const Comparison& c) {
   if (unknowns > 0)
     parts.push_back(fmt::format("at most {}", counted(std::size_t(unknowns), "unknown")));
   std::string about = joined(parts);
-  if (c.seeds.size() > 1)
-    about += fmt::format("{}{} starting points each", about.empty() ? "" : "; ", c.seeds.size());
+  if (const std::size_t seeds = ranked_seeds(c); seeds > 1)
+    about += fmt::format("{}{} starting points each", about.empty() ? "" : "; ", seeds);
   return text + (about.empty() ? "" : " (" + about + ")");
 }
 
@@ -168,8 +176,8 @@ std::vector<MethodPair> all_pairs(const Comparison& c) {
 }
 
 std::string choice_text(const Choice& choice) {
-  constexpr std::array<const char*, 5> kBefore = {"with profile end ", "to accuracy ", "by ",
-                                                  "without ", "with seed "};
+  constexpr std::array<const char*, 6> kBefore = {
+      "with profile end ", "to accuracy ", "by ", "with ", "without ", "with seed "};
   static_assert(static_cast<std::size_t>(Varied::seed) + 1 == kBefore.size());
   const std::string before = kBefore[static_cast<std::size_t>(choice.varied)];
   if (choice.varied != Varied::measure) return before + choice.value;
@@ -184,10 +192,13 @@ std::vector<std::string> verdict(const Comparison& c) {
   });
   if (!is_any_solved) return {words("ranking.none-solved", tau_name(c))};
   std::vector<std::string> all;
+  std::string left_out = left_out_text(c);
+  if (!left_out.empty()) left_out = "Not ranked: " + left_out;
   if (!has_order(c) || !c.decision) {  // with few problems: a sentence on each
     constexpr std::size_t kFew = 4;
     for (std::size_t p = 0; p < c.problems.size() && p < kFew; ++p)
       all.push_back(fmt::format("{}: {}", problem_name(c.problems[p]), curve_reading(c, p)));
+    if (!left_out.empty()) all.push_back(std::move(left_out));
     return all;
   }
   all = {decision_sentence(c, *c.decision),
@@ -199,6 +210,7 @@ std::vector<std::string> verdict(const Comparison& c) {
   if (c.yardstick.by == Measure::time && c.is_any_timed_together)
     all.push_back(words("ranking.shared-time"));
   all.push_back(unranked_sentence(c));
+  all.push_back(std::move(left_out));
   for (std::string& sentence : learned_sentences(c)) all.push_back(std::move(sentence));
   std::erase(all, "");
   return all;
@@ -216,8 +228,23 @@ std::vector<Reading> ranking_facts(const Comparison& c) {
              {"Robustness", robustness_text(c, *c.decision)}};
   else
     facts = {{"Ranking", words("ranking.none")}};
+  if (const std::string left_out = left_out_text(c); !left_out.empty())
+    facts.push_back({"Not ranked", left_out});
   facts.push_back({"Not run", not_run(c)});
   return facts;
+}
+
+std::string left_out_text(const Comparison& c) {
+  std::vector<std::string> parts, ill_posed;
+  std::size_t sanity = 0;
+  for (std::size_t p = 0; p < c.problems.size(); ++p) {
+    sanity += is_sanity(c, p);
+    if (is_ill_posed(c, p)) ill_posed.push_back(problem_name(c.problems[p]));
+  }
+  if (sanity > 0) parts.push_back(words("ranking.sanity", sanity));
+  if (!ill_posed.empty())
+    parts.push_back(words("ranking.ill-posed", ill_posed.size(), first_of(ill_posed, 4)));
+  return joined(parts, " ");
 }
 
 std::string unranked_sentence(const Comparison& c) {
@@ -269,12 +296,83 @@ Table ranking_table(const Comparison& c) {
   return table;
 }
 
+// Classical and toy problems beside a ranking of physics: most solved first.
+Table sanity_table(const Comparison& c) {
+  Table table = worded_table("sanity", c.order.settings.size(), counted_name(c), tau_name(c));
+  Leading first;
+  const Measure by = c.yardstick.by;
+  const std::size_t rung = c.yardstick.tightest().rung;
+  std::vector<Ranked> all = standings_over(c, c.sanity, by, rung);
+  std::ranges::stable_sort(all, std::ranges::greater{},
+                           [](const Ranked& each) { return each.standing.solved; });
+  for (const auto& [s, standing] : all) {
+    std::vector<Real> medians;
+    for (const std::size_t p : c.sanity.settings) medians.push_back(c.cell(p, s).median(by, rung));
+    const Real median = median_of(std::move(medians));
+    add_row(table, c, s,
+            {{fmt::format("{}/{}", standing.solved, standing.settings),
+              {{"solved", Real(standing.solved)}, {"settings", Real(standing.settings)}}},
+             {amount(c, median), {{"median", median}}},
+             {fmt::format("{}/{}", standing.reached, standing.runs),
+              {{"reached", Real(standing.reached)}, {"runs", Real(standing.runs)}}}});
+    first.offer(Real(standing.solved), optimizer_text(c, s));
+  }
+  table.is_folded = true;
+  table.reading = words("sanity.reading", first.value, c.sanity.settings.size(), first.text());
+  return table;
+}
+
+// The error in x at a quarter, a half and all of the budget; the least at the end first.
+Table ill_posed_table(const Comparison& c) {
+  constexpr std::array<Real, 3> kShares = {0.25, 0.5, 1};
+  Table table = worded_table("ill-posed");
+  std::vector<std::size_t> settings;
+  for (std::size_t p = 0; p < c.problems.size(); ++p)
+    if (is_ill_posed(c, p)) settings.push_back(p);
+  for (const std::size_t p : settings) {
+    table.columns.push_back(words("ill-posed.setting", problem_name(c.problems[p]),
+                                  percent(c.problems[p].least_goal / x_goal(0, 1, 1))));
+  }
+  std::vector<Real> least(settings.size(), kNever);
+  for (std::size_t s = 0; s < c.optimizers.size(); ++s) {
+    std::vector<TableCell> row;
+    for (std::size_t i = 0; i < settings.size(); ++i) {
+      const Cell& cell = c.cell(settings[i], s);
+      TableCell& shown = row.emplace_back(cell.inapplicable.empty() ? "" : "n/a");
+      if (!cell.is_measured()) continue;
+      std::vector<std::string> texts;
+      for (const Real share : kShares) {
+        const Real error = x_error_at(c, settings[i], s, share).median;
+        texts.push_back(error == kNever ? "✗" : fmt::format("{:.3g}", error));
+        shown.numbers.push_back({fmt::format("at_{:g}", share), error});
+      }
+      shown.text = joined(texts, " · ");
+      least[i] = std::min(least[i], shown.numbers.back().second);
+    }
+    if (std::ranges::any_of(row, [](const TableCell& cell) { return !cell.numbers.empty(); }))
+      add_row(table, c, s, std::move(row));
+  }
+  for (auto& row : table.rows)
+    for (std::size_t i = 0; i < settings.size(); ++i)
+      row[i + 1].is_best =
+          !row[i + 1].numbers.empty() && row[i + 1].numbers.back().second <= least[i];
+  std::vector<std::string> readings;
+  for (std::size_t i = 0; i < settings.size(); ++i)
+    readings.push_back(fmt::format("{} {:.3g}", problem_name(c.problems[settings[i]]), least[i]));
+  table.is_folded = true;
+  table.reading = words("ill-posed.reading", joined(readings));
+  return table;
+}
+
 }  // namespace
 
 Section standings_section(const Comparison& c) {
   Section section = worded_section("standings", tau_name(c));
   for (std::string& sentence : verdict(c)) section.readings.push_back({"", std::move(sentence)});
   if (!c.order.settings.empty()) section.tables.push_back(ranking_table(c));
+  if (!c.sanity.settings.empty()) section.tables.push_back(sanity_table(c));
+  if (Table table = ill_posed_table(c); !table.rows.empty())
+    section.tables.push_back(std::move(table));
   return section;
 }
 
@@ -329,8 +427,8 @@ std::vector<std::string> limits_of_evidence(const Comparison& c) {
     if (decision.detectable < kNever)
       all.push_back(words("limits.detectable", decision.detectable));
   }
-  if (c.seeds.size() < kFewestForInterval)
-    all.push_back(words("limits.seeds", counted(c.seeds.size(), "seed")));
+  const std::size_t seeds = c.order.settings.empty() ? c.seeds.size() : ranked_seeds(c);
+  if (seeds < kFewestForInterval) all.push_back(words("limits.seeds", counted(seeds, "seed")));
   all.push_back(words("limits.problems"));
   return all;
 }

@@ -57,6 +57,8 @@ std::vector<std::string> remarks(const Comparison& comparison);
 std::vector<std::string> verdict(const Comparison& comparison);    // what the decision says
 std::string short_verdict(const Comparison& comparison);           // its first sentence
 std::vector<Reading> ranking_facts(const Comparison& comparison);  // the group, how robust, not run
+// Which settings the ranking leaves out, and why; empty where it leaves out none.
+std::string left_out_text(const Comparison& comparison);
 // Which methods were run on some of the common settings only; empty where none was.
 std::string unranked_sentence(const Comparison& comparison);
 std::vector<std::string> learned_sentences(const Comparison& comparison);  // at equal work
