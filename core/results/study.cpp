@@ -12,6 +12,7 @@
 #include "core/files.h"
 #include "core/records/fields.h"
 #include "core/results/statistics.h"
+#include "core/seeds.h"
 
 namespace isoline::results {
 
@@ -364,7 +365,7 @@ OracleCounts counts_at(const Record& record, Real work) {
 BestKnown::BestKnown(const Study& study) {
   for (const Record& record : study.runs) {
     if (record.imported) continue;  // imported values change no other run's targets
-    const auto key = std::pair(record.request.problem.spec, record.request.seed);
+    const auto key = std::pair(record.request.problem.spec, instance_of(record.request.seed));
     Real& least = least_.emplace(key, kNever).first->second;
     const Real best = record.summary.best_loss;
     if (record.status != Status::inapplicable && best < least) least = best;
@@ -373,7 +374,7 @@ BestKnown::BestKnown(const Study& study) {
 
 Real BestKnown::minimum(const Record& record) const {
   if (record.minimum) return *record.minimum;
-  const auto found = least_.find({record.request.problem.spec, record.request.seed});
+  const auto found = least_.find({record.request.problem.spec, instance_of(record.request.seed)});
   if (found != least_.end()) return found->second;
   return record.imported ? record.summary.best_loss : std::nan("");
 }

@@ -174,14 +174,11 @@ class Prices {
 // the first kept point from there on.
 OracleCounts counts_at(const Record& record, Real work);
 
-// The least loss any run of a problem and seed has reached: f_L where none is declared.
+// The least loss any run of a problem and instance has reached: f_L where none is declared.
 class BestKnown {
  public:
-  using Minima = std::map<std::pair<std::string, std::uint64_t>, Real>;  // by problem and seed
-
   explicit BestKnown(const Study& study);
-  explicit BestKnown(Minima least) : least_(std::move(least)) {}
-  // Declared, else the best known; not-a-number where no run of its problem and seed is.
+  // Declared, else the best known; not-a-number where no run of its problem and instance is.
   Real minimum(const Record& record) const;
   // s of f ≤ f_L + τ s; f₀ − f_L where older records lack it.
   Real scale(const Record& record) const {
@@ -189,7 +186,7 @@ class BestKnown {
   }
 
  private:
-  Minima least_;
+  std::map<std::pair<std::string, std::uint64_t>, Real> least_;  // by problem and instance
 };
 
 // The counts of a run when it first met a target.

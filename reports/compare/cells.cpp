@@ -13,6 +13,7 @@
 #include "core/errors.h"
 #include "core/files.h"
 #include "core/json.h"
+#include "core/seeds.h"
 #include "core/status.h"
 #include "reports/compare/gate.h"
 #include "reports/sections/words.h"
@@ -35,7 +36,7 @@ std::shared_ptr<const Value> shared_value(const std::string& key, const Value& v
 
 std::string title_of(const ComparedCell& cell) {
   return fmt::format("{} × {}, seed {}", shown_spec(cell.problem->spec),
-                     shown_spec(cell.optimizer->spec), cell.seed);
+                     shown_spec(cell.optimizer->spec), seed_text(cell.seed));
 }
 
 Json component_json(const Component& component) {

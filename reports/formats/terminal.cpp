@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "core/seeds.h"
 #include "reports/formats/formats.h"
 #include "reports/sections/figures.h"
 #include "reports/sections/words.h"
@@ -134,7 +135,7 @@ std::string failure_lines(const Comparison& c) {
     const Record& record = *c.runs[run].record;
     lines.push_back(fmt::format("{}: {} / {} / seed {}: {}", name_of(record.status),
                                 record.request.problem.spec, record.request.optimizer.spec,
-                                record.request.seed, record.message));
+                                seed_text(record.request.seed), record.message));
   }
   for (const Unreadable& file : c.study->unreadable)
     lines.push_back(fmt::format("unreadable: {}: {}", file.file, file.reason));

@@ -9,6 +9,7 @@
 
 #include "core/files.h"
 #include "core/records/sheet.h"
+#include "core/seeds.h"
 #include "reports/formats/formats.h"
 #include "reports/page/page.h"
 #include "reports/sections/sections.h"
@@ -195,7 +196,8 @@ std::string cell_command(const Comparison& c, const Cell& cell) {
   std::uint64_t next = first.seed;
   for (const std::size_t run : cell.runs) {
     const Request& request = c.runs[run].record->request;
-    if (request.seed != next++ || request.optimizer.spec != first.optimizer.spec ||
+    if (request.seed != next++ || is_pair(request.seed) ||
+        request.optimizer.spec != first.optimizer.spec ||
         budget_options(request) != budget_options(first))
       return command;
   }

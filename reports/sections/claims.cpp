@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/seeds.h"
 #include "reports/sections/words.h"
 
 namespace isoline::reports {
@@ -94,7 +95,7 @@ Table runs_table(const Evidence& evidence, const std::string& id) {
   for (const EvidenceTerm& term : evidence.terms)
     for (const EvidenceRun& run : term.runs)
       table.rows.push_back({shown_spec(term.problem) + " × " + shown_spec(term.optimizer),
-                            std::to_string(run.seed),
+                            seed_text(run.seed),
                             TableCell(figure(run.figure), {{"figure", run.figure}}),
                             std::string(name_of(run.status)), run.file});
   return table;

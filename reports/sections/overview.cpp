@@ -6,6 +6,7 @@
 #include <optional>
 #include <set>
 
+#include "core/seeds.h"
 #include "reports/sections/sections.h"
 #include "reports/sections/words.h"
 
@@ -90,7 +91,7 @@ std::string missing_text(const Comparison& comparison) {
       fmt::format("{} of {} cells, missing: ", comparison.answered, comparison.planned);
   for (std::size_t i = 0; i < missing.size() && i < kNamed; ++i)
     text += fmt::format("{}{} / {} / seed {}", i == 0 ? "" : "; ", missing[i].problem,
-                        missing[i].optimizer, missing[i].seed);
+                        missing[i].optimizer, seed_text(missing[i].seed));
   if (missing.size() > kNamed) text += fmt::format("; and {} more", missing.size() - kNamed);
   return text;
 }

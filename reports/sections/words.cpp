@@ -11,6 +11,7 @@
 #include <stdexcept>
 
 #include "core/results/statistics.h"
+#include "core/seeds.h"
 #include "core/shell.h"
 #include "core/spec.h"
 
@@ -330,7 +331,8 @@ std::string budget_options(const Request& request) {
 
 std::string rerun_arguments(const Request& request) {
   return fmt::format("--problem {} --optimizer {} --seeds ={} {}", shell_word(request.problem.spec),
-                     shell_word(request.optimizer.spec), request.seed, budget_options(request));
+                     shell_word(request.optimizer.spec), seed_text(request.seed),
+                     budget_options(request));
 }
 
 std::string rerun_command(const Request& request) {

@@ -64,6 +64,12 @@ TEST(Suites, WithNumbersThatNoTypeHoldsUnknownKeysOrEmptySelectionsAreRefused) {
   EXPECT_THROW(suite_from_json(threads, "it"), UsageError);
   unknown["matrix"][0]["sedes"] = "3";
   EXPECT_THROW(suite_from_json(unknown, "here"), UsageError);
+  Json crossed = good_suite();
+  crossed["matrix"][0]["instances"] = "2";
+  crossed["matrix"][0]["starts"] = "0..1";
+  EXPECT_EQ(suite_from_json(crossed, "it").blocks[0].seeds, crossed_seeds("2", "2"));
+  crossed["matrix"][0]["seeds"] = "3";
+  EXPECT_THROW(suite_from_json(crossed, "it"), UsageError);
   empty["matrix"][0]["optimizers"] = {"@no-such-family"};
   EXPECT_THROW(expand(catalog(), suite_from_json(empty, "here"), {}), UsageError);
 }
@@ -103,6 +109,18 @@ TEST(Quick, GivesEveryMethodTheSmallestGridsAndEachTheLargestThatItCanTreat) {
       EXPECT_EQ(asked.contains(16), is_selected(entry, "@factorizing") && !is_too_slow) << name;
       EXPECT_EQ(asked.contains(64), is_selected(entry, "@matrix-free")) << name;
     }
+}
+
+TEST(Full, CrossesTenInstancesWithThreeStartsOnEachSettingOfPhysics) {
+  std::map<std::string, std::set<std::uint64_t>> seeds;
+  for (const Request& cell : cells_of("full")) {
+    seeds[cell.problem.spec + cell.optimizer.spec].insert(cell.seed);
+    EXPECT_EQ(catalog().problems.at(cell.problem.name).group, problems::Group::physics);
+  }
+  for (const auto& [name, own] : seeds) {
+    EXPECT_EQ(own.size(), 30U) << name;
+    EXPECT_TRUE(own.contains(1'009'001)) << name;
+  }
 }
 
 TEST(Defaults, AreTheCellsOfQuickWithEveryMethodAtItsDefaults) {

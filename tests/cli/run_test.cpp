@@ -80,6 +80,18 @@ TEST_F(Run, AFlagAfterTheMatrixTakesEffect) {
   shell.expect(kMatrix + "--seeds 2 --exclusive", {.out = {"6 cells: 6 run"}});
 }
 
+TEST_F(Run, InstancesAndStartsAreCrossed) {
+  const std::string matrix = "./isoline run --problem sine --optimizer newton --out out ";
+  shell.expect(matrix + "--instances 2 --starts 3", {.out = {"6 cells: 6 run"}});
+  const std::string csv = read_text(out / "report" / "report.csv");
+  EXPECT_TRUE(contains(csv, "seed,instance,start,status")) << csv;
+  EXPECT_TRUE(contains(csv, ",1001002,1,2,")) << csv;
+  EXPECT_TRUE(contains(csv, "--seeds =1:2 ")) << csv;
+  shell.expect(matrix + "--seeds 1:2,=1 --dry-run", {.out = {"seed 1:2", "2 cells: 2 cached"}});
+  shell.expect(matrix + "--seeds 3 --starts 3",
+               {.exit_code = 1, .err = {"--seeds excludes --starts"}});
+}
+
 TEST_F(Run, RepetitionsAppendTimings) {
   shell.expect(kMatrix + "--repeat 3");
   shell.expect(kMatrix + "--repeat 3", {.out = {"3 cells: 0 run, 3 reused"}});

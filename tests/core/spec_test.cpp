@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/options.h"
+#include "core/seeds.h"
 #include "core/text.h"
 #include "tests/refusal.h"
 
@@ -102,6 +103,24 @@ TEST(Seeds, CountsRangesAndSingles) {
                             "1000001", "0..999999,=7"})  // counted before they are listed
     EXPECT_THROW(parse_seeds(wrong), UsageError) << wrong;
   EXPECT_THROW(parse_seeds("0..9", 9), UsageError);
+}
+
+TEST(Seeds, NameAnInstanceAndAStart) {
+  using Seeds = std::vector<std::uint64_t>;
+  EXPECT_EQ(parse_seeds("2:1,=0:3"), (Seeds{1'002'001, 1'000'003}));
+  EXPECT_EQ(parse_seeds("7:7,=1007007"), (Seeds{7, 7})) << "a plain seed where both are equal";
+  EXPECT_EQ(crossed_seeds("2", "=0,=2"), (Seeds{0, 1'000'002, 1'001'000, 1'001'002}));
+  EXPECT_EQ(crossed_seeds("", "2"), (Seeds{0, 1'000'001}));
+  for (const std::uint64_t seed :
+       {0U, 3U, 999'999U, 1'002'001U, 1'000'999U, 1'999'000U, 2'000'000U}) {
+    EXPECT_EQ(seed_of(instance_of(seed), start_of(seed)), seed);
+    EXPECT_EQ(parse_seeds("=" + seed_text(seed)), Seeds{seed});
+  }
+  EXPECT_EQ(seed_text(1'002'001), "2:1");
+  for (const char* wrong : {"1000:1", "1:1000", "1:", ":1", "1:2:3", "0..1:2"})
+    EXPECT_THROW(parse_seeds(wrong), UsageError) << wrong;
+  EXPECT_THROW(crossed_seeds("=1000", "2"), UsageError);
+  EXPECT_THROW(crossed_seeds("2", "2:1"), UsageError);
 }
 
 TEST(Sweeps, AreCountedBeforeTheyAreMade) {

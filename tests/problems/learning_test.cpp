@@ -51,6 +51,23 @@ TEST(Learning, OnFiniteDataEveryStepHasAllSamples) {
   EXPECT_EQ(batch_of(problem, 9).target, problem.target());
 }
 
+// Instance 2 with start 1: the data of seed 2, θ₀ and fresh batches of seed 1.
+TEST(Learning, APairHasTheDataOfItsInstanceAndTheStartOfItsStart) {
+  const std::uint64_t pair = seed_of(2, 1);
+  for (const std::string& spec : kLearned) {
+    const Problem problem = make(spec, pair), instance = make(spec, 2), start = make(spec, 1);
+    EXPECT_EQ(problem.start(), start.start()) << spec;
+    Batch validation, expected;
+    problem.draw_validation(validation);
+    instance.draw_validation(expected);
+    EXPECT_EQ(validation.target, expected.target) << spec;
+  }
+  for (const auto& [spec, seed] : {std::pair{"sine[mode=learn]", 1U},
+                                   {"sine[mode=learn,data=37]", 2U},
+                                   {"quantum-dipole[mode=learn,epoch=200,batch=100]", 2U}})
+    EXPECT_EQ(batch_of(make(spec, pair), 1).target, batch_of(make(spec, seed), 1).target) << spec;
+}
+
 TEST(Learning, MethodsOfOneSeedStartAlikeAndSeedsApart) {
   EXPECT_EQ(make("sine[mode=learn,xi=1]", 3).start(), make("sine[mode=learn,xi=32]", 3).start());
   EXPECT_NE(make("sine[mode=learn]", 3).start(), make("sine[mode=learn]", 4).start());

@@ -58,6 +58,27 @@ TEST(Scales, OfALossIsWhatTheProblemDeclares) {
   EXPECT_EQ(problem.x_floor(problem.batch()), 0);
 }
 
+// Seed 1002001 is instance 2 with start 1; its scales are those of the instance.
+TEST(Seeds, APairHasTheTargetOfItsInstanceAndTheOffsetOfItsStart) {
+  for (const auto& [name, entry] : all_problems().ready()) {
+    if (!entry.in_all) continue;
+    const Problem pair = make(name, 1'002'001), instance = make(name, 2), start = make(name, 1);
+    if (pair.is_learned()) continue;
+    EXPECT_EQ(pair.target(), instance.target()) << name;
+    EXPECT_EQ(pair.truth(), instance.truth()) << name;
+    EXPECT_EQ(pair.standard_start(), instance.standard_start()) << name;
+    EXPECT_EQ(pair.loss_scale(pair.batch()), instance.loss_scale(instance.batch())) << name;
+    EXPECT_NE(pair.start(), instance.start()) << name;
+    if (instance.standard_start() == start.standard_start()) {
+      EXPECT_EQ(pair.start(), start.start()) << name;
+    }
+    EXPECT_EQ(make(name, seed_of(0, 1)).target(), make(name, 0).target()) << name;
+    EXPECT_EQ(make(name, seed_of(1, 0)).start(), make(name, seed_of(1, 0)).standard_start())
+        << name;
+  }
+  EXPECT_EQ(Draw(7, "p").stream("target").uniform(), RandomStream(7, "p", "target").uniform());
+}
+
 TEST(Scales, OfXAreTheSolutionsNormOrThatOfTheStandardStart) {
   EXPECT_DOUBLE_EQ(x_scale(make("exponential")), 6);  // |log e⁻⁶|
   EXPECT_DOUBLE_EQ(x_scale(make("rosenbrock", 3)), std::sqrt(2));
