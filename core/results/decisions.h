@@ -28,7 +28,7 @@ inline constexpr Real kSignificant = 0.05;
 // Up to so many families all flips are counted; of more, so many fixed ones.
 inline constexpr std::size_t kExactFlips = 20, kDrawnFlips = 1U << 16U;
 
-// The results of all methods on one setting from one seed.
+// The results of all methods on one setting from one seed, which names an instance and a start.
 struct Repetition {
   std::uint64_t seed = 0;
   std::vector<std::optional<Real>> costs;  // [method]; nothing where no such run exists

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/results/statistics.h"
 #include "core/results/study.h"
@@ -173,10 +174,13 @@ TableCell restart_cell(const Comparison& c, std::size_t p, std::size_t s, std::s
       reached_figure(expected),
       {{"expected", expected}, {"reached", Real(successes)}, {"n", Real(attempts.size())}}};
   rescued += expected < kNever && !cell.headline[kTightest].is_solved();
-  if (expected < kNever && attempts.size() > 1) {
+  const bool is_few = attempts.size() < kFewestForInterval;
+  if (expected < kNever && (!is_few || std::cmp_equal(successes, attempts.size()))) {
     const std::string key = c.problems[p].spec + " " + c.optimizers[s].label;
     const std::vector<Real> costs = simulated_restarts(attempts, key);
-    const Real low = quantile(costs, 0.1), high = quantile(costs, 0.9);
+    const auto [least, most] = std::ranges::minmax(attempts, {}, &Attempt::cost);
+    const Real low = is_few ? least.cost : quantile(costs, 0.1);
+    const Real high = is_few ? most.cost : quantile(costs, 0.9);
     if (low < high) {
       shown.text += fmt::format(" [{}–{}]", figure(low), figure(high));
       shown.numbers.push_back({"low", low});

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/results/statistics.h"
+#include "core/seeds.h"
 #include "reports/sections/sections.h"
 #include "reports/sections/words.h"
 
@@ -43,8 +44,13 @@ std::string settings_text(const Comparison& c) {
   if (unknowns > 0)
     parts.push_back(fmt::format("at most {}", counted(std::size_t(unknowns), "unknown")));
   std::string about = joined(parts);
+  const std::size_t instances = distinct(c.seeds, instance_of);
+  const std::size_t starts = distinct(c.seeds, start_of);
+  const bool is_crossed = c.seeds.size() > std::max(instances, starts);
   if (c.seeds.size() > 1)
-    about += fmt::format("{}{} starting points each", about.empty() ? "" : "; ", c.seeds.size());
+    about += fmt::format("{}{}{} each", about.empty() ? "" : "; ",
+                         is_crossed ? counted(instances, "instance") + " and " : "",
+                         counted(starts, "starting point"));
   return text + (about.empty() ? "" : " (" + about + ")");
 }
 
@@ -329,8 +335,9 @@ std::vector<std::string> limits_of_evidence(const Comparison& c) {
     if (decision.detectable < kNever)
       all.push_back(words("limits.detectable", decision.detectable));
   }
-  if (c.seeds.size() < kFewestForInterval)
-    all.push_back(words("limits.seeds", counted(c.seeds.size(), "seed")));
+  const auto seeds = std::max(distinct(c.seeds, instance_of), distinct(c.seeds, start_of));
+  if (seeds < kFewestForInterval)
+    all.push_back(words("limits.seeds", counted(seeds, "independent seed")));
   all.push_back(words("limits.problems"));
   return all;
 }

@@ -74,6 +74,7 @@ std::vector<std::string> limits_of_evidence(const Comparison& comparison);
 Table profile_table(const Comparison& comparison);
 Table leader_table(const Comparison& comparison);
 Table choices_table(const Comparison& comparison);
+Table variation_table(const Comparison& comparison);  // empty where no instances and starts cross
 Table loss_without_x_table(const Comparison& comparison);
 Table data_profile_table(const Comparison& comparison);
 Table restart_table(const Comparison& comparison);

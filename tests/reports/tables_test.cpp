@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/seeds.h"
 #include "reports/report.h"
 #include "reports/sections/sections.h"
 #include "tests/reports/fixture.h"
@@ -42,8 +43,39 @@ TEST(Tables, ExpectedRunningTimeCountsWhatFailedRunsSpent) {
   const Table table = restart_table(
       Compared({record_of({.seed = 0, .work_per_hit = 2}),
                 record_of({.seed = 1, .hits = 10, .work_per_hit = 2, .status = Status::budget})}));
-  EXPECT_TRUE(at(table, "gd", "square").starts_with("78 [60–")) << at(table, "gd", "square");
-  EXPECT_TRUE(at(table, "gd", "square").ends_with("(1/2)")) << at(table, "gd", "square");
+  EXPECT_EQ(at(table, "gd", "square"), "78 (1/2)") << "two runs have no interval";
+}
+
+// Work 60, 90 and so on: the range of five runs, of twelve the middle 80 % of simulations.
+TEST(Tables, ExpectedRunningTimeHasTheRangeOfFewRunsAndAnIntervalOfSix) {
+  const auto text_of = [](std::uint64_t runs) {
+    std::vector<Record> records;
+    for (std::uint64_t seed = 0; seed < runs; ++seed)
+      records.push_back(record_of({.seed = seed, .work_per_hit = 2 + std::int64_t(seed)}));
+    return at(restart_table(Compared(std::move(records))), "gd", "square");
+  };
+  EXPECT_EQ(text_of(5), "120 [60–180] (5/5)");
+  EXPECT_EQ(text_of(12), "225 [90–360] (12/12)");
+}
+
+// log2 of work is a constant + 2 instance + start, of which a plain design has no table.
+TEST(Tables, VariationIsDividedBetweenInstancesAndStarts) {
+  std::vector<Record> records;
+  for (const std::uint64_t instance : {0U, 1U})
+    for (const std::uint64_t start : {0U, 1U}) {
+      const std::int64_t work = std::int64_t{2} << (2 * instance + start);
+      records.push_back(record_of({.seed = seed_of(instance, start), .work_per_hit = work}));
+      records.push_back(record_of({.optimizer = "other",
+                                   .seed = seed_of(instance, start),
+                                   .hits = instance == start ? 51U : 10U}));
+    }
+  const Table table = variation_table(Compared(records));
+  EXPECT_EQ(at(table, "gd", "instances"), "80 %");  // variances 2 and 1/2
+  EXPECT_EQ(at(table, "gd", "starts"), "20 %");
+  EXPECT_EQ(at(table, "gd", "deviation"), "1.58");
+  EXPECT_EQ(at(table, "other", "left out"), "1");
+  EXPECT_TRUE(
+      variation_table(Compared({record_of({.seed = 0}), record_of({.seed = 1})})).id.empty());
 }
 
 TEST(Tables, NobodyHasTheLargestAreaWhereAllAreZero) {

@@ -9,6 +9,7 @@
 
 #include "core/draws.h"
 #include "core/results/statistics.h"
+#include "core/seeds.h"
 
 namespace isoline::results {
 namespace {
@@ -160,6 +161,18 @@ TEST(Decision, TheBootstrapDrawsSeeds) {
   evidence.repetitions = {{{.seed = 0, .costs = {10, 40}}, {.seed = 1, .costs = {10, 9}}}};
   const auto decision = decide(evidence);
   EXPECT_NEAR(decision->places[0].share_first, 0.75, 4 * 0.014);  // four standard errors
+}
+
+// Two instances with fifty equal starts each are two values: the first method is ahead in the
+// sample of the first instance alone, a quarter. One hundred independent seeds would give a half.
+TEST(Decision, TheBootstrapDrawsInstancesAndWithinThemStarts) {
+  Evidence evidence{.costs = {{25, 20}}, .families = {"a"}, .repetitions = {{}}};
+  for (std::uint64_t start = 0; start < 50; ++start)
+    for (const std::uint64_t instance : {0U, 1U})
+      evidence.repetitions[0].push_back(
+          {.seed = seed_of(instance, start), .costs = {instance == 0 ? 10 : 40, 20}});
+  const auto decision = decide(evidence);
+  EXPECT_NEAR(decision->place_of(0)->share_first, 0.25, 4 * 0.014);  // four standard errors
 }
 
 // --- ratios of work

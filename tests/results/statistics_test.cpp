@@ -86,6 +86,21 @@ TEST(ExpectedRunningTime, IsAllThatWasSpentOverTheSuccesses) {
   EXPECT_EQ(expected_running_time({{100, false}}), kNever);
 }
 
+// By uncorrected sums of squares, v = numpy.array(…), C = v.sum()**2/12:
+//   MSi = ((v.sum(1)**2).sum()/3 − C)/3, MSj = ((v.sum(0)**2).sum()/4 − C)/2,
+//   MSe = ((v**2).sum() − C − 3*MSi − 2*MSj)/6; (MSi − MSe)/3, (MSj − MSe)/4, MSe.
+TEST(VarianceComponents, AreThoseOfTheBalancedTwoWayDesign) {
+  const auto parts =
+      variance_components({{5.1, 6.0, 5.7}, {7.9, 9.2, 8.1}, {3.2, 4.6, 4.4}, {6.6, 7.1, 7.5}});
+  EXPECT_NEAR(parts.first, 3.4508333333333, 1e-12);
+  EXPECT_NEAR(parts.second, 0.2472222222222, 1e-12);
+  EXPECT_NEAR(parts.rest, 0.1219444444444, 1e-12);
+  const auto interaction = variance_components({{1, 2}, {2, 1}});
+  EXPECT_EQ(interaction.first, 0) << "its estimate is below 0";
+  EXPECT_EQ(interaction.second, 0);
+  EXPECT_NEAR(interaction.rest, 1, 1e-12);
+}
+
 // Failures before the first success of chance ½ are geometric with mean 1: E = 10 + 100.
 TEST(SimulatedRestarts, HaveTheExpectedMean) {
   const std::vector<Real> costs = simulated_restarts({{100, false}, {10, true}}, "cell");
