@@ -116,7 +116,7 @@ struct Band {
 };
 Band bootstrap_ratio(const std::vector<GroupSum>& groups, const std::string& key);
 
-// What a value owes to each of two crossed random factors: the components of a balanced two-way
+// Parts of a variance by two crossed random factors: the components of a balanced two-way
 // analysis of variance with one value per pair, from values[i][j], two or more of each. Searle,
 // Casella, McCulloch (1992), section 4.5. Estimates below 0 are set to 0.
 struct VarianceComponents {
