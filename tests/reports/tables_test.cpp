@@ -72,7 +72,7 @@ TEST(Tables, VariationIsDividedBetweenInstancesAndStarts) {
   const Table table = variation_table(Compared(records));
   EXPECT_EQ(at(table, "gd", "instances"), "80 %");  // variances 2 and 1/2
   EXPECT_EQ(at(table, "gd", "starts"), "20 %");
-  EXPECT_EQ(at(table, "gd", "deviation"), "1.58");
+  EXPECT_EQ(at(table, "gd", "deviation"), "1.581");
   EXPECT_EQ(at(table, "other", "left out"), "1");
   EXPECT_TRUE(
       variation_table(Compared({record_of({.seed = 0}), record_of({.seed = 1})})).id.empty());
