@@ -322,6 +322,7 @@ void fields(LevenbergMarquardt& o, auto& field) {
 // scale by.
 struct LevenbergMarquardtCg {
   Index cg_iterations = 100;
+  Real initial_damping = 1e-4;
 
   struct State {
     NielsenDamping damping;
@@ -359,12 +360,11 @@ struct LevenbergMarquardtCg {
     return Status::running;
   }
 
-  static void set_damping(State& s) {
-    constexpr Real kInitial = 1e-4;
+  void set_damping(State& s) const {
     s.first_slope = s.gradient.norm();
     s.moved.resizeLike(s.residual);
     s.at.pushforward(s.gradient, s.moved);
-    s.damping.mu = kInitial * s.moved.squaredNorm() / s.gradient.squaredNorm();
+    s.damping.mu = initial_damping * s.moved.squaredNorm() / s.gradient.squaredNorm();
   }
 
   bool conjugate_gradients(Meter& f, State& s) const {
@@ -401,6 +401,8 @@ struct LevenbergMarquardtCg {
 void fields(LevenbergMarquardtCg& o, auto& field) {
   field("cg-iterations", o.cg_iterations, between(1, 1e6),
         "most conjugate-gradient iterations per step");
+  field("initial-damping", o.initial_damping, above(0),
+        "damping μ at the start, as a share of ‖J ∇L‖²/‖∇L‖²");
 }
 
 OracleSet needs_of_levenberg_marquardt(const OptionValues& options, const Problem& problem) {
@@ -441,9 +443,9 @@ void register_levenberg_marquardt(OptimizerRegistry& registry) {
        .formula = "θ ← θ + d,  d ≈ argmin ‖J d + r‖² + μ‖d‖² by conjugate gradients",
        .source = "Marquardt (1963); Paige, Saunders (1982), section 7.1; Nielsen (1999)",
        .note = "Never forms J: a step costs a pushforward and a pullback per iteration of the "
-               "conjugate gradients. A rejected candidate is an iteration, too. The damping adapts "
-               "itself, so no option is tuned.",
-       .needs = {Oracle::forward, Oracle::pullback, Oracle::pushforward}}));
+               "conjugate gradients. A rejected candidate is an iteration, too.",
+       .needs = {Oracle::forward, Oracle::pullback, Oracle::pushforward},
+       .tunable = {.option = "initial-damping", .factor = 10}}));
 }
 
 }  // namespace isoline::optimizers

@@ -26,6 +26,11 @@ void fields(Like<TunedRate> auto& rate, auto& field) {
     source.optional("grid", grid);
     source.optional("score", scores);
     source.optional("edge", rate.is_at_edge);
+    source.optional("families", rate.families);
+    source.optional("mean_score", rate.mean_scores);
+    source.optional("default", rate.standard);
+    source.optional("value", rate.value);
+    source.optional("spent", rate.spent);
   });
   if (grid.empty()) return;
   std::tie(rate.option, rate.values) = *grid.begin();
@@ -44,7 +49,14 @@ void fields(Like<RatesFile> auto& file, auto& field) { field("rows", file.rows);
 }  // namespace
 
 bool TunedRate::is_ever_solved() const {
-  return std::ranges::any_of(work, [](Real each) { return each < kNever; });
+  return std::ranges::any_of(work, [](Real each) { return each < kNever; }) ||
+         std::ranges::any_of(mean_scores, [](Real each) { return each > 0; });
+}
+
+Real TunedRate::work_of(Real tried) const {
+  const auto at = std::ranges::find(values, tried);
+  const auto place = static_cast<std::size_t>(at - values.begin());
+  return place < work.size() ? work[place] : kNever;
 }
 
 std::vector<TunedRate> rates_from_text(const std::string& text, const std::string& origin) {

@@ -33,10 +33,19 @@ struct TunedRate {
   // For a grid: its values, and the work of each to its tolerance, the median over the tuning
   // seeds; infinite if it was not reached.
   std::vector<Real> values, work;
-  bool is_at_edge = false;  // the best value is the first or the last
+  // The families that the value was chosen on, of a value for another family, and the mean score of
+  // each value there; such a row has no `work`.
+  std::vector<std::string> families;
+  std::vector<Real> mean_scores;
+  std::optional<Real> standard, value;  // the option's default, and what was chosen
+  Real spent = 0;                       // nominal work of all trials: of the pair, or of the method
+  bool is_at_edge = false;              // the best value is the first or the last
 
   bool is_tuned() const { return !values.empty(); }
+  bool is_left_out() const { return !families.empty(); }
   bool is_ever_solved() const;
+  // The work of one of the values; infinite where it was not tried or did not reach the tolerance.
+  Real work_of(Real tried) const;
 };
 
 std::vector<TunedRate> rates_from_text(const std::string& text, const std::string& origin);

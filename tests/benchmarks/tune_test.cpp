@@ -28,16 +28,13 @@ Component problem_of(const std::string& spec) {
 
 // --- which option
 
-// A library's method has none, nor has one whose line search, or whose damping by the gain of each
-// step, leaves nothing to choose.
-TEST(Tuning, OfEveryMethodIsOneNumberOfItsOwnUnlessItSearchesALineOrIsALibrarys) {
+// The radius of ceres-gauss-newton is what makes it Gauss-Newton; with another it is ceres-lm.
+TEST(Tuning, OfEveryMethodIsOneNumberOfItsOwn) {
   std::size_t without = 0;
   for (const auto& [name, entry] : catalog().optimizers.ready()) {
     if (entry.tunable.option.empty()) {
       ++without;
-      EXPECT_TRUE(name.starts_with("ceres-") || name.starts_with("nlopt-") || name == "ssbroyden" ||
-                  name == "levenberg-marquardt-cg")
-          << name;
+      EXPECT_EQ(name, "ceres-gauss-newton");
       continue;
     }
     const Component problem = problem_of(name == "supervised" ? "hig-toy" : "rosenbrock");
@@ -48,7 +45,7 @@ TEST(Tuning, OfEveryMethodIsOneNumberOfItsOwnUnlessItSearchesALineOrIsALibrarys)
     const Sheet sheet = optimizer_sheet(catalog(), complete_optimizer(catalog(), name, {}));
     EXPECT_EQ(sheet_from_json(to_json(sheet)).tunable, entry.tunable.option) << name;
   }
-  EXPECT_EQ(without, 17U);
+  EXPECT_EQ(without, 1U);
 }
 
 TEST(Tuning, OfWhatTrainsANetworkIsTheRateOfItsNetworksOptimizer) {
@@ -59,7 +56,9 @@ TEST(Tuning, OfWhatTrainsANetworkIsTheRateOfItsNetworksOptimizer) {
   EXPECT_EQ(spec("sip", "sine"), "sip[step=0.25]");
   EXPECT_EQ(spec("sip", "hig-toy"), "sip[network-optimizer=adam[rate=0.25]]");
   EXPECT_EQ(spec("rescaled", "sine"), "rescaled[network-optimizer=gd[rate=0.25]]");
-  EXPECT_EQ(spec("nlopt-lbfgs", "sine"), "nlopt-lbfgs[memory=0]");  // in whole numbers
+  EXPECT_EQ(spec("nlopt-lbfgs", "sine"), "nlopt-lbfgs[loss-scale=0.25]");
+  const OptionValues whole = with_value({.option = "memory", .is_whole = true}, {}, 0.25);
+  EXPECT_EQ(whole.at("memory"), OptionValue(Index{0}));
 }
 
 // --- which values
@@ -81,6 +80,22 @@ TEST(TuningGrids, AreSevenValuesOfWhichOneIsTheDefaultWhereItLiesWithin) {
   EXPECT_EQ(std::ranges::count(near, knob->standard), 1);
   EXPECT_EQ(far.size(), 7U);
   EXPECT_LT(far.back(), knob->standard);
+}
+
+TEST(TuningGrids, CommonToAllProblemsAreSevenAbsoluteValuesForEveryMethod) {
+  for (const auto& [name, entry] : catalog().optimizers.ready()) {
+    const auto knob = knob_of(catalog(), name, problem_of("rosenbrock"), {});
+    if (!knob) continue;
+    const std::vector<Real> values = common_grid_of(*knob);
+    EXPECT_EQ(values.size(), 7U) << name;
+    EXPECT_EQ(std::ranges::count(values, knob->standard), 1) << name;
+    EXPECT_EQ(values, common_grid_of(*knob_of(catalog(), name, problem_of("sine"), {}))) << name;
+    const bool is_share = knob->range.high <= 1;  // of a slope: no decades below 1
+    for (std::size_t i = 1; i < values.size() && !is_share; ++i)
+      EXPECT_GE(values[i] / values[i - 1], 9) << name;
+  }
+  const auto gd = knob_of(catalog(), "gd", problem_of("sine"), {});
+  EXPECT_EQ(common_grid_of(*gd), (std::vector<Real>{1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 0.1, 1}));
 }
 
 TEST(TuningGrids, EndWhereTheOptionDoes) {
@@ -138,6 +153,55 @@ TEST(TuningScores, OfATieGoToTheDefaultOrToWhatIsNearest) {
   EXPECT_EQ(best_of({3, 1, 2}), (std::vector<Real>{2, 4.0 / 3, 1})) << "from the mean to the least";
 }
 
+// --- leaving a family out
+
+// One setting, with the work of each value.
+TunedOption trials(const std::string& family, const std::vector<Real>& work) {
+  TunedOption tuned{.problem = family, .optimizer = "gd", .option = "rate"};
+  tuned.values = {0.01, 0.1, 1, 10, 100};
+  for (const Real each : work) tuned.scores.push_back({each, 1});
+  tuned.family = family;
+  tuned.standard = 1;
+  tuned.work = 1000;
+  return tuned;
+}
+
+LeftOut row_of(const std::vector<LeftOut>& all, const std::string& family) {
+  return *std::ranges::find(all, family, &LeftOut::family);
+}
+
+TEST(LeaveOneOut, NeverLooksAtTheFamilysOwnScores) {
+  const std::vector<Real> low{5, 10, 20, 40, kNever}, high{kNever, kNever, kNever, 600, 3};
+  const std::vector<TunedOption> odd{trials("a", low), trials("b", low), trials("odd", high)},
+      alike{trials("a", low), trials("b", low), trials("odd", low)};
+  const std::vector<LeftOut> rows = leave_one_out(odd);
+  ASSERT_EQ(rows.size(), 3U);
+  const LeftOut own = row_of(rows, "odd");
+  EXPECT_EQ(own.best, 0U) << "odd itself needs 100";
+  EXPECT_EQ(own.scores, row_of(leave_one_out(alike), "odd").scores);
+  EXPECT_EQ(own.chosen_on, (std::vector<std::string>{"a", "b"}));
+  EXPECT_TRUE(own.is_at_edge);
+  EXPECT_EQ(own.work, 3000);
+  EXPECT_NE(row_of(rows, "a").scores, row_of(leave_one_out(alike), "a").scores);
+}
+
+TEST(LeaveOneOut, AveragesOverSettingsFirstAndThenOverFamilies) {
+  // At 8 times the least work: 1 − 3/6. At 64 times, or unsolved: 0.
+  const std::vector<LeftOut> rows = leave_one_out(
+      {trials("a", {1, 8, kNever, 64, 640}), trials("a", {kNever, 1, 1, 1, 1}),
+       trials("b", {kNever, kNever, 1, kNever, kNever}), trials("c", {1, 1, 1, 1, 1})});
+  EXPECT_EQ(row_of(rows, "c").scores, (std::vector<Real>{0.25, 0.375, 0.75, 0.25, 0.25}));
+  EXPECT_EQ(row_of(rows, "c").best, 2U);
+  EXPECT_FALSE(row_of(rows, "c").is_at_edge);
+}
+
+TEST(LeaveOneOut, OfATieTakesTheDefaultOrWhatIsNearest) {
+  const std::vector<Real> all(5, 7), none(5, kNever), ends{7, kNever, kNever, 7, kNever};
+  for (const auto& work : {all, none})
+    EXPECT_EQ(row_of(leave_one_out({trials("a", work), trials("b", work)}), "a").best, 2U);
+  EXPECT_EQ(row_of(leave_one_out({trials("a", all), trials("b", ends)}), "a").best, 3U);
+}
+
 // --- the whole
 
 // y = s x: gradient descent on ½(s x)² solves it in one step at the rate 1/s².
@@ -192,6 +256,31 @@ TEST(Tuning, StopsAtSevenValuesWhereTheBestIsAmongThemAndLeavesOutWhatIsInapplic
   EXPECT_EQ(row["options"]["rate"], 1e8);
   EXPECT_FALSE(row["source"].contains("edge"));
   EXPECT_EQ(rows_of(catalog(), "rosenbrock", "kfac", 10).size(), 0U);
+}
+
+// gd solves steep at 1/s², far from what square needs.
+TEST(Tuning, OfFamiliesLeftOutIsATableThatRunsUse) {
+  const Catalog all = with_steep();
+  const TemporaryFolder folder;
+  TuningPlan plan{.seeds = {100, 101, 102}, .is_common = true};
+  for (const char* problem : {"steep[slope=1e-2]", "steep[slope=1e-3]", "square"})
+    for (const char* optimizer : {"gd", "ceres-lm"})
+      plan.pairs.push_back({.problem = complete_problem(all, parse_spec(problem)),
+                            .optimizer = optimizer,
+                            .budget = {.iterations = 40, .work = 100}});
+  const TuningResult result = tune(all, plan, folder.path(), {.jobs = 2});
+  EXPECT_EQ(result.outcome.run, 3 * 2 * 7 * 3) << "equal trials, and no extensions";
+  ASSERT_EQ(result.left_out_rows->size(), 4U);
+  const Json table{{"schema", "isoline.rates/1"}, {"rows", *result.left_out_rows}};
+  EXPECT_EQ(schema_violations(table, schema("rates")), std::vector<std::string>{});
+  const Rates rates = Rates::from_json(table, "physics.json");
+  const Component steep = complete_problem(all, parse_spec("steep[slope=0.5]"));
+  const Rates::Row* row = rates.find(steep, "gd", "physics");
+  ASSERT_NE(row, nullptr);
+  const Json source = parse_json(row->source, "source");
+  EXPECT_EQ(source["families"], Json({"square"}));
+  EXPECT_EQ(source["grid"]["rate"].size(), 7U);
+  EXPECT_GT(source["spent"], 0);
 }
 
 TEST(UsedRates, StandBesideThePlanWithTheTableTheyAreFrom) {

@@ -1,6 +1,8 @@
 // The baselines on cases with a known answer.
 #include <gtest/gtest.h>
 
+#include <map>
+
 #include "core/decompose.h"
 #include "run.h"
 #include "trial_problems.h"
@@ -242,6 +244,33 @@ TEST(Ceres, KeepsItsLastIterateWhereTheBudgetEndsWithinAnIteration) {
           << method << ", work " << work;
       EXPECT_LE(ended.trace->last.work, work) << method;
     }
+}
+
+// At its default, an option is the library's own choice: the counts were taken before the libraries
+// had any option here.
+TEST(Libraries, StepAtTheirDefaultsAsWithoutOptions) {
+  const std::map<std::string, std::int64_t> works{
+      {"ceres-lm", 78},      {"ceres-dogleg", 47},      {"ceres-ncg", 302},   {"ceres-bfgs", 80},
+      {"nlopt-lbfgs", 50},   {"nlopt-var2", 52},        {"nlopt-slsqp", 107}, {"nlopt-tnewton", 68},
+      {"nlopt-bobyqa", 171}, {"nlopt-neldermead", 186}, {"nlopt-sbplx", 260}};
+  const Problem problem = published("rosenbrock");
+  for (const auto& [name, work] : works)
+    EXPECT_EQ(run(problem, name, {.iterations = 1000, .work = 2000}).trace->last.work, work)
+        << name;
+}
+
+TEST(Libraries, TakeTheOptionThatIsTuned) {
+  for (const auto& [name, entry] : optimizers()) {
+    const std::string& option = entry.tunable.option;
+    if (option.empty() || (!name.starts_with("ceres-") && !name.starts_with("nlopt-"))) continue;
+    const Real standard = options_of_spec(entry, name).number(option, 0);
+    const auto end = [&](const std::string& spec) {
+      return run(published("rosenbrock"), spec, {.iterations = 30, .work = 200, .target = 0}).theta;
+    };
+    const std::string given = name + '[' + option + '=';
+    EXPECT_EQ(end(given + std::to_string(standard) + ']'), end(name)) << name;
+    EXPECT_NE(end(given + std::to_string(0.01 * standard) + ']'), end(name)) << name;
+  }
 }
 
 TEST(Applicability, OfMethodsForNetworks) {

@@ -1,4 +1,5 @@
 // Rows of one method at its defaults and at the rates of tables.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -83,6 +84,29 @@ TEST(Labels, TellValueAndOriginWhereATableChose) {
   const Table& rates = section.tables.at(0);
   EXPECT_EQ(at(rates, "gd", "one value"), "0.50");
   EXPECT_EQ(at(rates, "gd", "of all"), "1.00");
+}
+
+// gd needs 80 with the value of the other families, adam does not get there at its default.
+TEST(Labels, OfValuesChosenOnOtherFamiliesComeWithAComparisonOfThreeChoices) {
+  Study study;
+  study.runs = {run_of("p", "gd[rate=1]", "physics.json"), run_of("p", "adam", "physics.json")};
+  std::string rows;
+  for (const char* chosen : {R"("gd", "source": {"default": 0.1, "value": 1, )",
+                             R"("adam", "source": {"default": 1, "value": 0.1, )"})
+    rows += fmt::format(
+        R"({}{{"problem": "p", "file": "physics.json", "optimizer": {}"spent": 900,
+              "grid": {{"rate": [0.1, 1]}}, "mean_score": [0, 1], "families": ["q"]}}}},
+           {{"problem": "p", "file": "physics-tuned.json", "optimizer": {}
+              "grid": {{"rate": [0.1, 1]}}, "score": [[10, 1], [{}, 1]]}}}})",
+        rows.empty() ? "" : ", ", chosen, chosen, rows.empty() ? "80" : "\"inf\"");
+  study.rates = rates_from_text("{\"rows\": [" + rows + "]}", "rates.json");
+  const Comparison c = compare_optimizers(study);
+  const Table table = document_of(c).section("tuning").tables.at(1);
+  EXPECT_EQ(at(table, "gd", "other families"), "0.50");
+  EXPECT_EQ(at(table, "gd", "default"), "1.00");
+  EXPECT_EQ(at(table, "adam", "other families"), "1.00");
+  EXPECT_EQ(at(table, "adam", "default"), "0.00");
+  EXPECT_EQ(at(table, "gd", "tuning work"), "900");
 }
 
 Record foreign_run(const char* problem, const std::string& spec, const std::string& name) {
