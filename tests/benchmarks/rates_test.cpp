@@ -2,6 +2,7 @@
 #include "benchmarks/plan/rates.h"
 
 #include <algorithm>
+#include <map>
 #include <set>
 
 #include "benchmarks/plan/catalog.h"
@@ -54,7 +55,8 @@ void expect_row_is_sound(const Json& row) {
   if (!source.contains("grid")) return;
   for (const auto& [option, values] : source.at("grid").items()) {
     EXPECT_GE(values.size(), 5U) << text;
-    EXPECT_EQ(source.at("score").size(), values.size()) << text;
+    EXPECT_EQ(source.at(source.contains("families") ? "mean_score" : "score").size(), values.size())
+        << text;
     if (!row.at("options").contains(option)) continue;  // it is the rate of a nested optimizer
     EXPECT_NE(std::ranges::find(values, row.at("options").at(option)), values.end()) << text;
   }
@@ -81,7 +83,7 @@ TEST(Rates, CoverEveryTunableMethodOnEveryProblemOfQuick) {
     if (entry.tunable.option.empty() || is_published || !seen.insert(text).second) continue;
     const Problem problem = make_problem(catalog(), cell.problem, 0);
     if (!why_inapplicable(entry, cell.optimizer.options, problem).empty()) continue;
-    EXPECT_EQ(cell.rates, "direct.json") << text;
+    EXPECT_TRUE(cell.rates == "direct.json" || cell.rates == "physics.json") << text;
   }
   EXPECT_GT(seen.size(), 400U);
 }
@@ -102,6 +104,25 @@ TEST(Rates, OfQuickWereEachChosenFromSevenValuesOfTheMethodsOwnOptionAndAFewBeyo
     EXPECT_LE(values, std::size_t{kGridValues + 2 * kMostExtensions}) << text;
     EXPECT_EQ(row["source"]["best_of"].size(), values) << text;
   }
+}
+
+// One grid for all problems, and no look at the family itself.
+TEST(Rates, OfPhysicsAreChosenOnTheOtherFamiliesFromOneGridPerMethod) {
+  std::map<std::string, Json> grids;
+  for (const char* name : {"physics", "physics-tuned"}) {
+    const Json table = parse_json(std::string(builtin_rates().at(name)), name);
+    for (const Json& row : table["rows"]) {
+      const std::string problem = row["problem"], optimizer = row["optimizer"];
+      const Json& source = row["source"];
+      const Json& grid = grids.try_emplace(optimizer, source["grid"]).first->second;
+      EXPECT_EQ(source["grid"], grid) << problem << " × " << optimizer;
+      EXPECT_EQ(grid.begin()->size(), std::size_t{kGridValues}) << optimizer;
+      EXPECT_EQ(source.contains("families"), name == std::string("physics"));
+      const Json families = source.value("families", Json::array());
+      EXPECT_EQ(std::ranges::count(families, Json(problem)), 0) << optimizer;
+    }
+  }
+  EXPECT_GT(grids.size(), 30U);
 }
 
 TEST(Rates, GiveWayToExplicitOptions) {

@@ -288,7 +288,7 @@ TEST(UsedRates, StandBesideThePlanWithTheTableTheyAreFrom) {
   const Suite suite{.name = "mine",
                     .title = "",
                     .blocks = {{.problems = {"rosenbrock", "sine[mode=learn,xi=32]"},
-                                .optimizers = {"adam", "ceres-lm"}}}};
+                                .optimizers = {"adam", "ceres-gauss-newton"}}}};
   const Rates rates = Rates::builtin();
   Store store(folder.path());
   write_used_rates(rates, expand(catalog(), suite, rates), store);
