@@ -164,7 +164,10 @@ void OptionValues::erase(std::string_view name) {
   std::erase_if(values_, [&](const NamedOption& each) { return each.name == name; });
 }
 
-std::string_view option_name(std::string_view given) { return given == "lr" ? "rate" : given; }
+std::string_view option_name(std::string_view given) {
+  if (given == "lr") return "rate";
+  return given == "way" ? "factorization" : given;
+}
 
 OptionValues complete_options(const OptionTable& table, const std::string& component,
                               const OptionValues& given) {

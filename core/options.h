@@ -83,7 +83,8 @@ struct OptionField {
 };
 using OptionTable = std::vector<OptionField>;
 
-// The declared name of an option: `lr` is an alias of `rate`.
+// The declared name of an option: `lr` is an alias of `rate`, and `way`, an earlier
+// name, of `factorization`.
 std::string_view option_name(std::string_view given);
 
 // Every field of the table, defaults filled in, each of its field's type. `component` opens the

@@ -10,6 +10,7 @@
 
 #include "core/errors.h"
 #include "core/json.h"
+#include "core/seeds.h"
 #include "core/text.h"
 
 namespace isoline {
@@ -145,13 +146,25 @@ T parse_number(std::string_view text, std::string_view whole, const char* expect
 
 using SeedSpan = std::pair<std::uint64_t, std::uint64_t>;  // the first and the last
 
+std::uint64_t pair_of(std::uint64_t instance, std::uint64_t start) {
+  require(instance < kPairLimit && start < kPairLimit, "instances and starts must be below 1,000");
+  return seed_of(instance, start);
+}
+
 SeedSpan span_of(std::string_view part, std::string_view whole) {
   const auto number = [&](std::string_view digits) {
     return parse_number<std::uint64_t>(
-        digits, whole, "seeds as a count (5: 0 to 4), a range (0..9) or one seed (=5)");
+        digits, whole,
+        "seeds as a count (5: 0 to 4), a range (0..9), one seed (=5) or instance:start (2:1)");
   };
-  if (part.starts_with('=')) {
-    const std::uint64_t seed = number(part.substr(1));
+  const bool is_one = part.starts_with('=');
+  const std::string_view one = part.substr(is_one ? 1 : 0);
+  const auto colon = one.find(':');
+  if (is_one || colon != std::string_view::npos) {
+    const std::uint64_t seed =
+        colon == std::string_view::npos
+            ? number(one)
+            : pair_of(number(one.substr(0, colon)), number(one.substr(colon + 1)));
     return {seed, seed};
   }
   const auto dots = part.find("..");
@@ -226,7 +239,18 @@ std::vector<std::uint64_t> parse_seeds(std::string_view text, std::uint64_t most
   });
   std::vector<std::uint64_t> seeds;
   for (const auto& [first, last] : spans)
-    for (std::uint64_t i = 0; i <= last - first; ++i) seeds.push_back(first + i);
+    for (std::uint64_t i = 0; i <= last - first; ++i)
+      seeds.push_back(seed_of(instance_of(first + i), start_of(first + i)));
+  return seeds;
+}
+
+std::vector<std::uint64_t> crossed_seeds(std::string_view instances, std::string_view starts) {
+  if (instances.empty()) instances = "=0";
+  if (starts.empty()) starts = "=0";
+  std::vector<std::uint64_t> seeds;
+  for (const std::uint64_t instance : parse_seeds(instances, kPairLimit))
+    for (const std::uint64_t start : parse_seeds(starts, kPairLimit))
+      seeds.push_back(pair_of(instance, start));
   return seeds;
 }
 

@@ -43,9 +43,12 @@ OptionValues options_of(const Spec& spec);
 // component files carry their names.
 std::string name_of_spec(std::string_view spec);
 
-// "N" -> 0..N-1; "a..b" inclusive; "=5" -> 5; commas join. UsageError, before they are listed,
-// where they are more than `most`.
+// "N" -> 0..N-1; "a..b" inclusive; "=5" -> 5; "2:1" -> instance 2 with start 1; commas join.
+// UsageError, before they are listed, where they are more than `most`.
 std::vector<std::uint64_t> parse_seeds(std::string_view text, std::uint64_t most = kMostSeeds);
+
+// The seeds of each instance with each start; instance 0 or start 0 where its text is empty.
+std::vector<std::uint64_t> crossed_seeds(std::string_view instances, std::string_view starts);
 
 inline constexpr double kMostSeconds = 1e9;  // some thirty years: in nanoseconds it still fits
 

@@ -181,6 +181,15 @@ const TrustRegion kTrustRegions[] = {
      "Ceres 2.1; Byrd, Schnabel, Shultz (1988)", kRadiusNote, true},
 };
 
+OptionField radius_field() {
+  const ceres::Solver::Options standard;
+  return {"radius",
+          Real{standard.initial_trust_region_radius},
+          {.low = 0, .high = standard.max_trust_region_radius, .low_is_open = true},
+          {},
+          "initial trust-region radius Δ, in units of D"};
+}
+
 OptimizerEntry entry_of(const TrustRegion& m) {
   return {.name = m.name,
           .title = m.title,
@@ -194,7 +203,9 @@ OptimizerEntry entry_of(const TrustRegion& m) {
           .needs_same_samples = true,
           .most_unknowns = 4096,
           .most_rank = 2048,  // dense QR
-          .make = [m](const OptionValues&, const OptimizerRegistry&) {
+          .options = m.is_wide_open ? OptionTable{} : OptionTable{radius_field()},
+          .tunable = m.is_wide_open ? Tunable{} : Tunable{.option = "radius", .factor = 10},
+          .make = [m](const OptionValues& options, const OptimizerRegistry&) {
             ceres::Solver::Options o;
             o.linear_solver_type = ceres::DENSE_QR;
 #ifdef ISOLINE_PORTABLE
@@ -205,7 +216,9 @@ OptimizerEntry entry_of(const TrustRegion& m) {
 #endif
             o.trust_region_strategy_type = m.strategy;
             o.dogleg_type = m.dogleg;
-            if (m.is_wide_open) o.initial_trust_region_radius = o.max_trust_region_radius;
+            o.initial_trust_region_radius =
+                m.is_wide_open ? o.max_trust_region_radius
+                               : options.number("radius", o.initial_trust_region_radius);
             if (m.is_wide_open) o.min_relative_decrease = 0;
             return std::make_unique<Ceres<ceres::Solver::Options>>(o);
           }};
@@ -232,6 +245,19 @@ const LineSearch kLineSearches[] = {
      "θ ← θ − α B ∇L,  B ≈ H⁻¹ from the last 20 steps", "Ceres 2.1; Nocedal (1980)"},
 };
 
+// Between the constant of sufficient decrease and 1, as Ceres requires.
+OptionField curvature_field() {
+  const ceres::GradientProblemSolver::Options standard;
+  return {"curvature",
+          Real{standard.line_search_sufficient_curvature_decrease},
+          {.low = standard.line_search_sufficient_function_decrease,
+           .high = 1,
+           .low_is_open = true,
+           .high_is_open = true},
+          {},
+          "c₂ of the Wolfe conditions: largest share of the slope left along a line"};
+}
+
 OptimizerEntry entry_of(const LineSearch& method) {
   return {.name = method.name,
           .title = method.title,
@@ -242,10 +268,15 @@ OptimizerEntry entry_of(const LineSearch& method) {
           .needs = {Oracle::forward, Oracle::pullback},
           .needs_same_samples = true,
           .most_unknowns = method.most_unknowns,
-          .make = [direction = method.direction](const OptionValues&, const OptimizerRegistry&) {
-            ceres::GradientProblemSolver::Options options;
-            options.line_search_direction_type = direction;
-            return std::make_unique<Ceres<ceres::GradientProblemSolver::Options>>(options);
+          .options = {curvature_field()},
+          .tunable = {.option = "curvature", .below = 6, .factor = 1.5},
+          .make = [direction = method.direction](const OptionValues& options,
+                                                 const OptimizerRegistry&) {
+            ceres::GradientProblemSolver::Options o;
+            o.line_search_direction_type = direction;
+            o.line_search_sufficient_curvature_decrease =
+                options.number("curvature", o.line_search_sufficient_curvature_decrease);
+            return std::make_unique<Ceres<ceres::GradientProblemSolver::Options>>(o);
           }};
 }
 

@@ -49,7 +49,7 @@ constexpr Index kLeastSquared = 64;  // of min(m·B, n): below, QR takes no long
 // converge QR is left.
 class DampedLeastSquares {
  public:
-  // Scaling and way as the method's options have them.
+  // Scaling and factorization as the method's options have them.
   void set(Meter& f, Linearization& at, const Vector& b, std::string_view scaling) {
     const Index n = f.unknowns();
     rows_ = b.size();
@@ -78,9 +78,9 @@ class DampedLeastSquares {
     right_.head(rows_) = b;
   }
   // d and J d; false where they are not finite.
-  bool solve(Real mu, std::string_view way, Vector& d, Vector& Jd) {
+  bool solve(Real mu, std::string_view factorization, Vector& d, Vector& Jd) {
     const bool is_large = std::min(rows_, scale_.size()) >= kLeastSquared;
-    const bool squares = way == "cholesky" || (way == "auto" && is_large);
+    const bool squares = factorization == "cholesky" || (factorization == "auto" && is_large);
     if (squares && by_cholesky(mu)) {
       d.resize(scale_.size());
       if (is_layered_)
@@ -219,7 +219,7 @@ class DampedLeastSquares {
 
 struct LevenbergMarquardt {
   Real initial_damping = 1e-4, rate = 1;
-  std::string damping = "adaptive", way = "auto", scaling = "more";
+  std::string damping = "adaptive", factorization = "auto", scaling = "more";
 
   struct State {
     DampedLeastSquares squares;
@@ -240,7 +240,7 @@ struct LevenbergMarquardt {
   State init(Meter&, const Vector&) const {
     State s;
     s.damping.mu = initial_damping;
-    s.spectral = SpectralStep(spectral_way(way));
+    s.spectral = SpectralStep(spectral_factorization(factorization));
     return s;
   }
 
@@ -253,7 +253,7 @@ struct LevenbergMarquardt {
       f.linearize(theta, s.at);
       accept(f, s);
     }
-    if (!s.squares.solve(s.damping.mu, way, s.step, s.Jd)) return Status::stalled;
+    if (!s.squares.solve(s.damping.mu, factorization, s.step, s.Jd)) return Status::stalled;
     s.candidate = theta + s.step;
     if (s.candidate == theta && !f.has_fresh_batches()) return Status::converged;
     f.linearize(s.candidate, s.trial);
@@ -292,8 +292,8 @@ struct LevenbergMarquardt {
     return (s.squares.misfit() - after) / predicted;
   }
 
-  static Way spectral_way(const std::string& way) {
-    return way == "orthogonal" ? Way::qr : way_named(way);
+  static Factorization spectral_factorization(const std::string& factorization) {
+    return factorization == "orthogonal" ? Factorization::qr : factorization_named(factorization);
   }
 };
 
@@ -304,7 +304,7 @@ void fields(LevenbergMarquardt& o, auto& field) {
   field("damping", o.damping, Choices{"adaptive", "fixed"},
         "by the gain of each step, or always the same");
   field("rate", o.rate, above(0), "of damping=fixed: step length η");
-  field("way", o.way, Choices{"auto", "orthogonal", "cholesky"},
+  field("factorization", o.factorization, Choices{"auto", "orthogonal", "cholesky"},
         "by QR, or by Cholesky of the smaller Gram matrix, which of networks of dense layers is "
         "formed layer by layer; auto: by size and accuracy");
   field("scaling", o.scaling, Choices{"more", "none", "jacobian"},
@@ -322,6 +322,7 @@ void fields(LevenbergMarquardt& o, auto& field) {
 // scale by.
 struct LevenbergMarquardtCg {
   Index cg_iterations = 100;
+  Real initial_damping = 1e-4;
 
   struct State {
     NielsenDamping damping;
@@ -359,12 +360,11 @@ struct LevenbergMarquardtCg {
     return Status::running;
   }
 
-  static void set_damping(State& s) {
-    constexpr Real kInitial = 1e-4;
+  void set_damping(State& s) const {
     s.first_slope = s.gradient.norm();
     s.moved.resizeLike(s.residual);
     s.at.pushforward(s.gradient, s.moved);
-    s.damping.mu = kInitial * s.moved.squaredNorm() / s.gradient.squaredNorm();
+    s.damping.mu = initial_damping * s.moved.squaredNorm() / s.gradient.squaredNorm();
   }
 
   bool conjugate_gradients(Meter& f, State& s) const {
@@ -401,14 +401,18 @@ struct LevenbergMarquardtCg {
 void fields(LevenbergMarquardtCg& o, auto& field) {
   field("cg-iterations", o.cg_iterations, between(1, 1e6),
         "most conjugate-gradient iterations per step");
+  field("initial-damping", o.initial_damping, above(0),
+        "damping μ at the start, as a share of ‖J ∇L‖²/‖∇L‖²");
 }
 
 OracleSet needs_of_levenberg_marquardt(const OptionValues& options, const Problem& problem) {
-  const std::string way = options.text("way");
+  const std::string factorization = options.text("factorization");
   if (options.text("damping") == "fixed")
-    return needs_of(LevenbergMarquardt::spectral_way(way), tikhonov_filter(1), problem);
+    return needs_of(LevenbergMarquardt::spectral_factorization(factorization), tikhonov_filter(1),
+                    problem);
   const bool is_wide = problem.residuals() < problem.unknowns();
-  const bool squares = way == "cholesky" || (way == "auto" && problem.residuals() >= kLeastSquared);
+  const bool squares = factorization == "cholesky" ||
+                       (factorization == "auto" && problem.residuals() >= kLeastSquared);
   const bool by_layers = is_wide && squares && problem.offers().contains(Oracle::layer_factors);
   return {Oracle::forward, by_layers ? Oracle::layer_factors : Oracle::jacobian};
 }
@@ -441,9 +445,9 @@ void register_levenberg_marquardt(OptimizerRegistry& registry) {
        .formula = "θ ← θ + d,  d ≈ argmin ‖J d + r‖² + μ‖d‖² by conjugate gradients",
        .source = "Marquardt (1963); Paige, Saunders (1982), section 7.1; Nielsen (1999)",
        .note = "Never forms J: a step costs a pushforward and a pullback per iteration of the "
-               "conjugate gradients. A rejected candidate is an iteration, too. The damping adapts "
-               "itself, so no option is tuned.",
-       .needs = {Oracle::forward, Oracle::pullback, Oracle::pushforward}}));
+               "conjugate gradients. A rejected candidate is an iteration, too.",
+       .needs = {Oracle::forward, Oracle::pullback, Oracle::pushforward},
+       .tunable = {.option = "initial-damping", .factor = 10}}));
 }
 
 }  // namespace isoline::optimizers

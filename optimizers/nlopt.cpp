@@ -1,7 +1,7 @@
 // The adapter to NLopt (Johnson, github.com/stevengj/nlopt), on L. NLopt keeps its own loop; each
 // new best evaluation is an iteration. Its tolerances are off, except for steps below the rounding
 // of θ; a long search without a new best is stopped. NLopt reports success on plateaus; the record
-// stores it.
+// stores it. In NLopt 2.7 the scale of the loss, not an initial step, sets the first step along ∇L.
 #include <nlopt.h>
 
 #include <algorithm>
@@ -65,6 +65,7 @@ struct Search {
   static constexpr bool kIsWhole = true;
   Meter& f;
   nlopt_opt handle;
+  Real loss_scale = 1;
   Linearization at;
   Vector theta, gradient, best;  // (n)
   Real best_loss = std::numeric_limits<Real>::infinity();
@@ -74,11 +75,11 @@ struct Search {
   bool is_over() const { return f.is_spent() || f.status() != Status::running; }
   Real evaluate(const double* at_theta, double* out) {
     theta = Map<const Vector>(at_theta, theta.size());  // aligned, whatever NLopt's array is
-    if (!out) return take(f.loss(theta));
+    if (!out) return loss_scale * take(f.loss(theta));
     f.linearize(theta, at);
     at.gradient(gradient);
-    Map<Vector>(out, gradient.size()) = gradient;
-    return take(at.loss());
+    Map<Vector>(out, gradient.size()) = loss_scale * gradient;
+    return loss_scale * take(at.loss());
   }
 
   Real take(Real loss) {
@@ -94,14 +95,31 @@ struct Search {
   }
 };
 
+struct NloptOptions {
+  Index memory = kMemory;
+  Real loss_scale = 1;    // of methods with gradients
+  Real initial_step = 1;  // of the others, in units of NLopt's choice
+};
+
+void set_initial_step(nlopt_opt handle, const Vector& theta, Real multiple) {
+  if (multiple == 1) return;
+  Vector step(theta.size());
+  nlopt_set_default_initial_step(handle, theta.data());
+  nlopt_get_initial_step(handle, theta.data(), step.data());
+  step *= multiple;
+  nlopt_set_initial_step(handle, step.data());
+}
+
 class Nlopt final : public Optimizer {
  public:
-  Nlopt(nlopt_algorithm algorithm, Index memory) : algorithm_(algorithm), memory_(memory) {}
+  Nlopt(nlopt_algorithm algorithm, const NloptOptions& options)
+      : algorithm_(algorithm), options_(options) {}
   void start(Meter&, const Vector&) override {}
   bool reports_iterations() const override { return true; }
   Status step(Meter& f, Vector& theta) override {
-    const Handle handle = make_handle(algorithm_, theta.size(), memory_);
-    Search search{f, handle.get(), {}, theta, Vector(theta.size()), theta};
+    const Handle handle = make_handle(algorithm_, theta.size(), options_.memory);
+    set_initial_step(handle.get(), theta, options_.initial_step);
+    Search search{f, handle.get(), options_.loss_scale, {}, theta, Vector(theta.size()), theta};
     const nlopt_result result = minimize(search, theta);
     f.claim(nlopt_result_to_string(result));
     theta = search.best;
@@ -112,7 +130,7 @@ class Nlopt final : public Optimizer {
 
  private:
   nlopt_algorithm algorithm_;
-  Index memory_;
+  NloptOptions options_;
 };
 
 struct Method {
@@ -173,26 +191,41 @@ const Method kWithoutGradient[] = {
 
 const OptionField kRemembered{
     "memory", kMemory, between(0, 1000), {}, "steps remembered; 0: as many as fit into 10 MB"};
+const OptionField kLossScale{"loss-scale",
+                             Real{1},
+                             above(0),
+                             {},
+                             "factor of the loss as NLopt sees it, which sets the first step"};
+const OptionField kInitialStep{
+    "initial-step", Real{1}, above(0), {}, "first step, in units of the one that NLopt chooses"};
+
+OptionTable options_of(const Method& m, Family family) {
+  if (family == Family::nlopt_derivative_free) return {kInitialStep};
+  return m.is_luksans() ? OptionTable{kRemembered, kLossScale} : OptionTable{kLossScale};
+}
 
 OptimizerEntry entry_of(const Method& m, Family family, OracleSet needs) {
-  return {
-      .name = m.name,
-      .title = m.title,
-      .family = family,
-      .kind = m.kind,
-      .formula = m.formula,
-      .source = m.source,
-      .note = m.note,
-      .needs = needs,
-      .is_input_scale_invariant = m.is_input_scale_invariant,
-      .needs_same_samples = true,
-      .most_unknowns = family == Family::nlopt ? m.most_unknowns : kMostWithoutGradient,
-      .options = m.is_luksans() ? OptionTable{kRemembered} : OptionTable{},
-      .tunable = m.is_luksans() ? Tunable{.option = "memory", .below = 5, .factor = 2} : Tunable{},
-      .make = [algorithm = m.algorithm](const OptionValues& options, const OptimizerRegistry&) {
-        return std::make_unique<Nlopt>(algorithm,
-                                       static_cast<Index>(options.number("memory", kMemory)));
-      }};
+  return {.name = m.name,
+          .title = m.title,
+          .family = family,
+          .kind = m.kind,
+          .formula = m.formula,
+          .source = m.source,
+          .note = m.note,
+          .needs = needs,
+          .is_input_scale_invariant = m.is_input_scale_invariant,
+          .needs_same_samples = true,
+          .most_unknowns = family == Family::nlopt ? m.most_unknowns : kMostWithoutGradient,
+          .options = options_of(m, family),
+          .tunable = family == Family::nlopt ? Tunable{.option = "loss-scale", .below = 5}
+                                             : Tunable{.option = "initial-step", .below = 4},
+          .make = [algorithm = m.algorithm](const OptionValues& options, const OptimizerRegistry&) {
+            return std::make_unique<Nlopt>(
+                algorithm,
+                NloptOptions{.memory = static_cast<Index>(options.number("memory", kMemory)),
+                             .loss_scale = options.number("loss-scale", 1),
+                             .initial_step = options.number("initial-step", 1)});
+          }};
 }
 
 // The arguments of minimize_lbfgs through NLopt. Luksan's first trial step, the full gradient, and

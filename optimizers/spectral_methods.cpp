@@ -3,7 +3,7 @@
 // gauss-newton: θ ← θ − η J⁺ (y − y*), Gauss (1809); Nocedal, Wright (2006), eq. 10.23. J⁺ by a
 // complete orthogonal factorization, never by the normal equations, which would square the
 // condition number; of least norm where J lacks rank. The factor 1/√B of r = (y − y*)/√B cancels.
-// The other ways truncate the spectrum of J, not the pivots.
+// The other factorizations truncate the spectrum of J, not the pivots.
 //
 // hig: half-inverse gradients, Schnell, Holl, Thuerey (2022): Δθ = −η V f(σ) Uᵀ g, g = ∂L/∂y,
 // f(σ) = σ^(−κ). κ = 1 is Gauss-Newton, ½ the published method, −1 gradient descent. Singular
@@ -30,7 +30,7 @@ namespace {
 struct GaussNewton {
   static constexpr bool kIsOnResidual = true;  // w = y − y*, else ∂L/∂y
   Real rate = 1, cutoff = 0;
-  std::string way = "orthogonal";
+  std::string factorization = "orthogonal";
   KrylovLimits krylov;
 
   SpectralFilter filter(Index longest) const {
@@ -42,7 +42,7 @@ struct GaussNewton {
 struct HalfInverse {
   static constexpr bool kIsOnResidual = false;
   Real rate = 1, kappa = 0.5, cutoff = 1e-6;
-  std::string small, way = "auto";
+  std::string small, factorization = "auto";
   KrylovLimits krylov;
 
   SpectralFilter filter(Index) const {
@@ -53,7 +53,7 @@ struct HalfInverse {
 struct DampedHalfInverse {
   static constexpr bool kIsOnResidual = false;
   Real rate = 1, kappa = 0.5, damping = 1e-8;
-  std::string way = "auto";
+  std::string factorization = "auto";
   KrylovLimits krylov;
 
   SpectralFilter filter(Index) const { return decaying_filter(kappa, damping); }
@@ -68,7 +68,9 @@ struct Spectral : Options {
   };
   static void persist(State& s, Archive& archive) { s.spectral.persist(archive); }
   State init(Meter& f, const Vector&) const {
-    State s{.at = {}, .spectral = SpectralStep(way_named(this->way), this->krylov), .w = {}};
+    State s{.at = {},
+            .spectral = SpectralStep(factorization_named(this->factorization), this->krylov),
+            .w = {}};
     s.spectral.start(f);
     return s;
   }
@@ -88,10 +90,10 @@ template <class Options>
 OptimizerEntry spectral_entry(OptimizerEntry entry) {
   entry.needs_for = [](const OptionValues& options, const Problem& problem) {
     const auto o = read_options<Options>(options);
-    return needs_of(way_named(o.way), o.filter(0), problem);
+    return needs_of(factorization_named(o.factorization), o.filter(0), problem);
   };
   entry.objection = [](const OptionValues& options, const Problem& problem) {
-    return objection_to(way_named(read_options<Options>(options).way), problem);
+    return objection_to(factorization_named(read_options<Options>(options).factorization), problem);
   };
   return stepper_entry<Spectral<Options>>(std::move(entry));
 }
@@ -101,7 +103,7 @@ void fields(GaussNewton& o, auto& field) {
   field("cutoff", o.cutoff, between(0, 1),
         "pivots, or singular values, up to this share of the first count as zero; at least those "
         "within rounding do");
-  field("way", o.way, Choices{"orthogonal", "svd", "qr", "gram", "layers"},
+  field("factorization", o.factorization, Choices{"orthogonal", "svd", "qr", "gram", "layers"},
         "how J⁺ is applied: by a complete orthogonal factorization with pivots; by the thin SVD "
         "of J; by QR and the SVD of R; by the smaller Gram matrix of J; or by JJᵀ formed layer by "
         "layer");
@@ -112,15 +114,16 @@ void first_fields(auto& o, auto& field) {
   field("kappa", o.kappa, between(-1, 1), "exponent κ of the inversion");
 }
 void way_fields(auto& o, auto& field) {
-  field("way", o.way, Choices{"auto", "svd", "qr", "gram", "layers", "split", "lanczos"},
+  field("factorization", o.factorization,
+        Choices{"auto", "svd", "qr", "gram", "layers", "split", "lanczos"},
         "how the step is computed: by the thin SVD of J; by QR and the SVD of R; by the smaller "
         "Gram matrix of J; by JJᵀ formed layer by layer, or that and again from the part of J that "
         "belongs to its small eigenvalues; or by products with J and Jᵀ alone; "
         "auto: by size and accuracy, never by products");
   field("krylov-tolerance", o.krylov.tolerance, between(0, 1),
-        "of way=lanczos: where to end, as an estimate of the relative error of the step");
+        "of factorization=lanczos: where to end, as an estimate of the relative error of the step");
   field("krylov-vectors", o.krylov.vectors, between(1, 1e5),
-        "of way=lanczos: most vectors kept, within 512 MiB");
+        "of factorization=lanczos: most vectors kept, within 512 MiB");
 }
 
 void fields(HalfInverse& o, auto& field) {
@@ -176,7 +179,7 @@ void fields(Spring& o, auto& field) {
 }
 
 OracleSet needs_of_spring(const OptionValues&, const Problem& problem) {
-  OracleSet needs = needs_of(Way::automatic, tikhonov_filter(1), problem);
+  OracleSet needs = needs_of(Factorization::automatic, tikhonov_filter(1), problem);
   needs.add(Oracle::pushforward);
   return needs;
 }
@@ -209,8 +212,8 @@ void register_spectral_methods(OptimizerRegistry& registry) {
            "Scales with the loss as c, with y as s^(1−κ), with B equal samples as B^(−(1+κ)/2). "
            "Uses a Gram matrix if the cut-off is at least 1e-7 and the step loses no digits (for "
            "networks of dense layers formed layer by layer, and split in two if needed). Otherwise "
-           "uses QR, and with small=clamp the SVD of J. way=lanczos is for Jacobians too large for "
-           "all of these.",
+           "uses QR, and with small=clamp the SVD of J. factorization=lanczos is for Jacobians too "
+           "large for all of these.",
        .needs = {Oracle::forward},
        .most_rank = 2048,
        .tunable = {.option = "rate", .below = 4}}));

@@ -1,5 +1,5 @@
-// Spectral steps: ways by name and their needs, by Krylov vectors, by a Gram matrix that is split,
-// and by all ways.
+// Spectral steps: factorizations by name and their needs, by Krylov vectors, by a Gram matrix that
+// is split, and by all factorizations.
 #include "optimizers/spectral_step.h"
 
 #include <fmt/format.h>
@@ -13,20 +13,20 @@
 namespace isoline::optimizers {
 namespace {
 
-struct WayRow {
-  Way way;
+struct FactorizationRow {
+  Factorization factorization;
   std::string_view name, words;
 };
-constexpr WayRow kWays[] = {
-    {Way::automatic, "auto", ""},
-    {Way::svd, "svd", "the thin SVD of J"},
-    {Way::qr, "qr", "QR and the SVD of R"},
-    {Way::gram, "gram", "the Gram matrix of J"},
-    {Way::layers, "layers", "the Gram matrix layer by layer"},
-    {Way::split, "split", "the Gram matrix layer by layer, split in two"},
-    {Way::cholesky, "cholesky", "Cholesky of the Gram matrix"},
-    {Way::orthogonal, "orthogonal", "a complete orthogonal factorization"},
-    {Way::lanczos, "lanczos", "Lanczos"},
+constexpr FactorizationRow kFactorizations[] = {
+    {Factorization::automatic, "auto", ""},
+    {Factorization::svd, "svd", "the thin SVD of J"},
+    {Factorization::qr, "qr", "QR and the SVD of R"},
+    {Factorization::gram, "gram", "the Gram matrix of J"},
+    {Factorization::layers, "layers", "the Gram matrix layer by layer"},
+    {Factorization::split, "split", "the Gram matrix layer by layer, split in two"},
+    {Factorization::cholesky, "cholesky", "Cholesky of the Gram matrix"},
+    {Factorization::orthogonal, "orthogonal", "a complete orthogonal factorization"},
+    {Factorization::lanczos, "lanczos", "Lanczos"},
 };
 
 // The choice of `automatic`. A Gram matrix squares the condition number. It is used if the
@@ -51,29 +51,32 @@ bool never_by_gram(const SpectralFilter& filter) {
 
 }  // namespace
 
-Way way_named(std::string_view name) {
-  for (const WayRow& row : kWays)
-    if (row.name == name) return row.way;
-  throw UsageError(fmt::format("unknown way '{}' of a spectral step", name));
+Factorization factorization_named(std::string_view name) {
+  for (const FactorizationRow& row : kFactorizations)
+    if (row.name == name) return row.factorization;
+  throw UsageError(fmt::format("unknown factorization '{}' of a spectral step", name));
 }
 
-std::string_view way_text(Way way) { return kWays[static_cast<std::size_t>(way)].words; }
+std::string_view factorization_text(Factorization factorization) {
+  return kFactorizations[static_cast<std::size_t>(factorization)].words;
+}
 
-OracleSet needs_of(Way way, const SpectralFilter& filter, const Problem& problem) {
+OracleSet needs_of(Factorization factorization, const SpectralFilter& filter,
+                   const Problem& problem) {
   const OracleSet by_matrix{Oracle::forward, Oracle::jacobian};
   const OracleSet by_layers{Oracle::forward, Oracle::layer_factors, Oracle::pullback};
   const bool has_layers =
       problem.residuals() < problem.unknowns() && problem.offers().contains(Oracle::layer_factors);
   const bool has_jacobian = problem.offers().contains(Oracle::jacobian);
-  switch (way) {
-    case Way::lanczos:
+  switch (factorization) {
+    case Factorization::lanczos:
       return {Oracle::forward, Oracle::pullback, Oracle::pushforward};
-    case Way::layers:
-    case Way::split:
+    case Factorization::layers:
+    case Factorization::split:
       return by_layers;
-    case Way::cholesky:
+    case Factorization::cholesky:
       return has_layers ? by_layers : by_matrix;
-    case Way::automatic: {
+    case Factorization::automatic: {
       if (!has_layers) return by_matrix;
       if (has_jacobian && never_by_gram(filter)) return by_matrix;
       OracleSet both = by_layers;
@@ -85,12 +88,14 @@ OracleSet needs_of(Way way, const SpectralFilter& filter, const Problem& problem
   }
 }
 
-std::string objection_to(Way way, const Problem& problem) {
-  const bool forms_K = way == Way::layers || way == Way::split;
+std::string objection_to(Factorization factorization, const Problem& problem) {
+  const bool forms_K =
+      factorization == Factorization::layers || factorization == Factorization::split;
   if (forms_K && problem.residuals() >= problem.unknowns())
-    return fmt::format("way={} forms JJᵀ and needs a wide J, got {} residuals and {} unknowns",
-                       kWays[static_cast<std::size_t>(way)].name, problem.residuals(),
-                       problem.unknowns());
+    return fmt::format(
+        "factorization={} forms JJᵀ and needs a wide J, got {} residuals and {} unknowns",
+        kFactorizations[static_cast<std::size_t>(factorization)].name, problem.residuals(),
+        problem.unknowns());
   return "";
 }
 
@@ -277,7 +282,7 @@ bool SplitGram::solve(LayeredJacobian& J, const SymmetricEigen& eigen, const Spe
   return true;
 }
 
-// One spectral step by each of its ways.
+// One spectral step by each of its factorizations.
 
 namespace {
 
@@ -288,7 +293,7 @@ bool has_layers(const Meter& f) { return f.is_granted(Oracle::layer_factors); }
 }  // namespace
 
 void SpectralStep::start(Meter& f) const {
-  if (wanted_ == Way::lanczos)
+  if (wanted_ == Factorization::lanczos)
     f.name_series({"Krylov vectors of a step", "estimated relative error of a step"});
 }
 
@@ -296,37 +301,41 @@ bool SpectralStep::add(Meter& f, Linearization& at, const SpectralFilter& filter
                        Real factor, Vector& out) {
   const bool is_wide = w.size() < out.size();
   const bool has_jacobian = f.is_granted(Oracle::jacobian);
-  Way way = wanted_;
-  if (way == Way::automatic)
-    way = filter.clamps && has_jacobian                               ? Way::svd
-          : (was_too_small_ || never_by_gram(filter)) && has_jacobian ? Way::qr
-          : is_tikhonov(filter)                                       ? Way::cholesky
-          : is_wide && has_layers(f)                                  ? Way::layers
-                                                                      : Way::gram;
+  Factorization factorization = wanted_;
+  if (factorization == Factorization::automatic)
+    factorization = filter.clamps && has_jacobian                               ? Factorization::svd
+                    : (was_too_small_ || never_by_gram(filter)) && has_jacobian ? Factorization::qr
+                    : is_tikhonov(filter)      ? Factorization::cholesky
+                    : is_wide && has_layers(f) ? Factorization::layers
+                                               : Factorization::gram;
   bool is_done = false;
-  if (way == Way::gram || way == Way::layers || way == Way::split || way == Way::cholesky) {
-    const Outcome outcome = by_gram(way, f, at, filter, w, factor, out);
+  if (factorization == Factorization::gram || factorization == Factorization::layers ||
+      factorization == Factorization::split || factorization == Factorization::cholesky) {
+    const Outcome outcome = by_gram(factorization, f, at, filter, w, factor, out);
     is_done = outcome == Outcome::done;
-    if (outcome == Outcome::too_small) way = Way::qr;
+    if (outcome == Outcome::too_small) factorization = Factorization::qr;
   }
-  if (way == Way::svd) is_done = by_svd(at.jacobian(), filter, w, factor, out);
-  if (way == Way::qr && (is_done = by_qr(at.jacobian(), filter, w, factor, out)))
-    judge(is_wide && has_layers(f) ? Way::split : Way::gram, filter, is_wide, w.norm());
-  if (way == Way::orthogonal && (is_done = least_squares(at.jacobian(), w, filter.cutoff, result_)))
+  if (factorization == Factorization::svd) is_done = by_svd(at.jacobian(), filter, w, factor, out);
+  if (factorization == Factorization::qr &&
+      (is_done = by_qr(at.jacobian(), filter, w, factor, out)))
+    judge(is_wide && has_layers(f) ? Factorization::split : Factorization::gram, filter, is_wide,
+          w.norm());
+  if (factorization == Factorization::orthogonal &&
+      (is_done = least_squares(at.jacobian(), w, filter.cutoff, result_)))
     out += factor * result_;
-  if (way == Way::lanczos) {
+  if (factorization == Factorization::lanczos) {
     is_done = lanczos_.add(f, at, filter, limits_, w, factor, out);
     f.note(0, static_cast<Real>(lanczos_.vectors()));
     f.note(1, lanczos_.error());
   }
-  const std::uint32_t bit = 1U << static_cast<unsigned>(way);
+  const std::uint32_t bit = 1U << static_cast<unsigned>(factorization);
   std::string words;
   if (!is_done) {
     words = "the Jacobian has no singular values in finite numbers";
-  } else if ((ways_taken_ & bit) == 0) {  // named for the first time, in the order of the table
-    ways_taken_ |= bit;
-    for (const WayRow& row : kWays)
-      if ((ways_taken_ & (1U << static_cast<unsigned>(row.way))) != 0)
+  } else if ((factorizations_used_ & bit) == 0) {  // add its name, in the order of the table
+    factorizations_used_ |= bit;
+    for (const FactorizationRow& row : kFactorizations)
+      if ((factorizations_used_ & (1U << static_cast<unsigned>(row.factorization))) != 0)
         words += fmt::format("{}{}", words.empty() ? "steps by " : ", and by ", row.words);
   }
   if (!words.empty()) f.claim(words);
@@ -359,24 +368,28 @@ bool SpectralStep::by_qr(const Matrix& J, const SpectralFilter& filter, const Ve
   return true;
 }
 
-SpectralStep::Outcome SpectralStep::by_gram(Way& way, Meter& f, Linearization& at,
-                                            const SpectralFilter& filter, const Vector& w,
-                                            Real factor, Vector& out) {
+SpectralStep::Outcome SpectralStep::by_gram(Factorization& factorization, Meter& f,
+                                            Linearization& at, const SpectralFilter& filter,
+                                            const Vector& w, Real factor, Vector& out) {
   const bool is_wide = w.size() < out.size();
-  const bool is_layered = is_wide && way != Way::gram && (way != Way::cholesky || has_layers(f));
+  const bool is_layered = is_wide && factorization != Factorization::gram &&
+                          (factorization != Factorization::cholesky || has_layers(f));
   form_gram(is_layered, is_wide, at, w);
   spectrum_.mean_square = gram_.trace() / static_cast<Real>(w.size());
-  const bool is_solved =
-      way == Way::cholesky ? solve_damped(filter) : solve_filtered(filter, is_wide, w.norm());
+  const bool is_solved = factorization == Factorization::cholesky
+                             ? solve_damped(filter)
+                             : solve_filtered(filter, is_wide, w.norm());
   if (!is_solved) return Outcome::failed;
-  if (wanted_ == Way::automatic && was_too_small_ && way == Way::layers) way = Way::split;
-  if (way == Way::split) {
+  if (wanted_ == Factorization::automatic && was_too_small_ &&
+      factorization == Factorization::layers)
+    factorization = Factorization::split;
+  if (factorization == Factorization::split) {
     if (!split_.solve(layered_, eigen_, filter, spectrum_, w, result_)) return Outcome::failed;
     sigma_ = split_.sigma();
     along_ = split_.along();
-    judge(Way::split, filter, true, w.norm());
+    judge(Factorization::split, filter, true, w.norm());
   }
-  if (wanted_ == Way::automatic && was_too_small_ && f.is_granted(Oracle::jacobian))
+  if (wanted_ == Factorization::automatic && was_too_small_ && f.is_granted(Oracle::jacobian))
     return Outcome::too_small;
   if (!is_wide) {
     out += factor * result_;
@@ -418,7 +431,7 @@ bool SpectralStep::solve_filtered(const SpectralFilter& filter, bool is_wide, Re
   for (Index i = 0; i < r; ++i) along_[i] *= filter.over_sigma(sigma_[i], spectrum_);
   result_.noalias() = eigen_.V * along_;
   if (is_wide) along_.array() *= sigma_.array();  // of the step, as it is where J is tall
-  judge(Way::gram, filter, is_wide, length);
+  judge(Factorization::gram, filter, is_wide, length);
   return true;
 }
 
@@ -445,10 +458,12 @@ bool SpectralStep::solve_damped(const SpectralFilter& filter) {
 // is rounded by ε σ₁‖w‖ instead. Of a Gram matrix that is split, s σ₁ stands for σ₁ among the small
 // ones, and of what turns large ones a share s is left. What J is rounded by itself does not count,
 // since a SVD of it is off by that too.
-void SpectralStep::judge(Way way, const SpectralFilter& filter, bool is_wide, Real length) {
+void SpectralStep::judge(Factorization factorization, const SpectralFilter& filter, bool is_wide,
+                         Real length) {
   const Real mu = filter.mu(spectrum_), largest = spectrum_.largest, q = (filter.kappa + 1) / 2;
   const Index r = along_.size();
-  const bool is_ascending = sigma_[0] < sigma_[r - 1], is_split = way == Way::split;
+  const bool is_ascending = sigma_[0] < sigma_[r - 1],
+             is_split = factorization == Factorization::split;
   const auto at = [&](Index step) { return is_ascending ? r - 1 - step : step; };  // largest first
   const auto is_kept = [&](Index i) { return filter.keeps(sigma_[i], spectrum_); };
   Real discarded = length * length;

@@ -1,5 +1,5 @@
-// V f(σ) Uᵀ w over the stacked Jacobian J = U diag(σ) Vᵀ of a batch: one step, and several ways to
-// compute it.
+// V f(σ) Uᵀ w over the stacked Jacobian J = U diag(σ) Vᵀ of a batch: one step, and several
+// factorizations to compute it.
 #pragma once
 
 #include <algorithm>
@@ -115,7 +115,7 @@ class LanczosStep {
   Svd svd_;
 };
 
-enum class Way {
+enum class Factorization {
   automatic,
   svd,       // thin SVD of J, the reference
   qr,        // Jᵀ = QR, or J = QR where it is tall, and the SVD of R, without forming U and V
@@ -126,15 +126,16 @@ enum class Way {
   orthogonal,  // of 1/σ alone: J⁺ by a complete orthogonal factorization, the cut-off on its pivots
   lanczos,     // products with J and Jᵀ alone
 };
-Way way_named(std::string_view name);  // "auto", and each as it is called here
+Factorization factorization_named(std::string_view name);  // "auto", and each as it is called here
 
 // The factorization used, in words: "the thin SVD of J".
-std::string_view way_text(Way way);
+std::string_view factorization_text(Factorization factorization);
 
 // The oracles that a method with a SpectralStep needs, by its factorization.
-OracleSet needs_of(Way way, const SpectralFilter& filter, const Problem& problem);
+OracleSet needs_of(Factorization factorization, const SpectralFilter& filter,
+                   const Problem& problem);
 // The reason why it cannot treat a problem; empty if it can.
-std::string objection_to(Way way, const Problem& problem);
+std::string objection_to(Factorization factorization, const Problem& problem);
 
 // A spectral step by JJᵀ that recovers its smallest singular values: K = JJᵀ is rounded by ε σ₁²,
 // and so are its eigenvalues. The eigenvectors V₂ of the small ones still span the right subspace,
@@ -169,7 +170,7 @@ class SplitGram {
 class SpectralStep {
  public:
   SpectralStep() = default;
-  explicit SpectralStep(Way wanted, const KrylovLimits& limits = {})
+  explicit SpectralStep(Factorization wanted, const KrylovLimits& limits = {})
       : wanted_(wanted), limits_(limits) {}
 
   // out += factor · V f(σ) Uᵀ w at `at`, w (m·B), out (n). False, said to the meter, where J or w
@@ -179,29 +180,29 @@ class SpectralStep {
   void start(Meter& f) const;  // names its series, where it has any
   // About the relative error of the last step, if by a Gram matrix of all eigenvalues.
   Real error_by_gram() const { return estimate_; }
-  void persist(Archive& archive) { archive(was_too_small_, ways_taken_); }
+  void persist(Archive& archive) { archive(was_too_small_, factorizations_used_); }
 
  private:
   bool by_svd(const Matrix& J, const SpectralFilter& filter, const Vector& w, Real factor,
               Vector& out);
   bool by_qr(const Matrix& J, const SpectralFilter& filter, const Vector& w, Real factor,
              Vector& out);
-  // By K = JJᵀ where J is wide, else by JᵀJ; too_small: to be done again by QR. `way` becomes
-  // Way::split where it was automatic and is needed.
+  // By K = JJᵀ where J is wide, else by JᵀJ; too_small: to be done again by QR. `factorization`
+  // becomes Factorization::split where it was automatic and is needed.
   enum class Outcome { done, failed, too_small };
-  Outcome by_gram(Way& way, Meter& f, Linearization& at, const SpectralFilter& filter,
-                  const Vector& w, Real factor, Vector& out);
+  Outcome by_gram(Factorization& factorization, Meter& f, Linearization& at,
+                  const SpectralFilter& filter, const Vector& w, Real factor, Vector& out);
   void form_gram(bool is_layered, bool is_wide, Linearization& at, const Vector& w);
   bool solve_filtered(const SpectralFilter& filter, bool is_wide, Real length);
   bool solve_damped(const SpectralFilter& filter);
-  void judge(Way way, const SpectralFilter& filter, bool is_wide, Real length);
+  void judge(Factorization factorization, const SpectralFilter& filter, bool is_wide, Real length);
 
-  Way wanted_ = Way::automatic;
+  Factorization wanted_ = Factorization::automatic;
   KrylovLimits limits_;
   // Whether the last spectrum had values too small for a Gram matrix, split or not, so that the
   // next step is by QR at once.
   bool was_too_small_ = false;
-  std::uint32_t ways_taken_ = 0;  // a bit each
+  std::uint32_t factorizations_used_ = 0;  // a bit each
 
   // All else is scratch, r = min(m·B, n).
   Svd svd_;

@@ -186,7 +186,8 @@ void register_ssbroyden(OptimizerRegistry& registry) {
            "leave optional.",
        .needs = {Oracle::forward, Oracle::pullback},
        .needs_same_samples = true,
-       .most_unknowns = 3000}));
+       .most_unknowns = 3000,
+       .tunable = {.option = "curvature", .below = 6, .factor = 1.5}}));
 }
 
 }  // namespace isoline::optimizers

@@ -271,13 +271,16 @@ std::function<void(RandomStream&, Index, Batch&)> sample_of(
 ProblemParts learn(const Learning& options, const NetworkShape& shape, const Draw& draw,
                    ProblemParts parts) {
   if (!parts.network) parts.network = networks::make_network(options.network, shape);
-  RandomStream stream = draw.stream("network");
+  RandomStream stream = draw.start_stream("network");
   parts.start = parts.network->start(stream);
   parts.samples.batch = options.batch;
   parts.samples.data = options.data;
   const Index epoch = options.data > 0 ? 0 : parts.samples.epoch;
   require(epoch % options.batch == 0, "the samples of an epoch must be a multiple of the batch");
-  parts.samples.stream = [draw](std::string_view purpose) { return draw.stream(purpose); };
+  const bool is_fresh = options.data == 0 && epoch == 0;
+  parts.samples.stream = [draw, is_fresh](std::string_view purpose) {
+    return is_fresh && purpose == "training" ? draw.start_stream(purpose) : draw.stream(purpose);
+  };
   if (shape.grid > 0) parts.series = joined(std::move(parts.series), half_squared_error());
   if (options.watch == "noise") parts.series = joined(std::move(parts.series), batch_noise());
   if (options.watch == "spectrum") {

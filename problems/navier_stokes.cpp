@@ -6,6 +6,9 @@
 //   problems/physics/flow_step.h, y = N F⁻¹ w F m_T,  L = ½‖y − y*‖² = ½ Σ w² |F (m_T − m_T*)|²
 #include <fmt/format.h>
 
+#include <algorithm>
+
+#include "core/decompose.h"
 #include "problems/learning.h"
 #include "problems/physics/flow_physics.h"
 
@@ -146,6 +149,29 @@ ProblemParts learn_navier_stokes(const Options& o, const Draw& draw) {
   return learn(o.learning, shape, draw, std::move(parts));
 }
 
+// The error in x that the data impose, to first order: that of the start after the components of
+// x* − start along the singular vectors of J(x*) are added, at the best cut-off. The rest of a
+// velocity changes no datum. Of J up to a grid of 16 × 16; it is too large beyond.
+Real spectral_floor(const FlowPhysics& physics, FlowDistance& measure, const Vector& start,
+                    const Vector& truth, const Vector& markers) {
+  Workspace w;
+  w.x = truth;
+  w.context = markers;
+  Matrix y(physics.outputs(), 1), J(physics.outputs(), physics.inputs());
+  physics.forward(w.x, w.context, y, w);
+  physics.jacobian(J, w);
+  Svd svd;
+  require(thin_svd(J, svd), "the flow's Jacobian has no singular values");
+  constexpr Real kRounding = 1e-12;  // of σ₁: smaller ones carry no datum
+  Vector x = start;
+  Real least = measure.mean(x, truth);
+  for (Index i = 0; i < svd.sigma.size() && svd.sigma[i] > kRounding * svd.sigma[0]; ++i) {
+    x += svd.Vt.row(i).transpose() * svd.Vt.row(i).dot(truth - start);
+    least = std::min(least, measure.mean(x, truth));
+  }
+  return least;
+}
+
 // The standard start is the uniform flow that carries the marker's centre from its first place to
 // its last. All advections are nondifferentiable at 0.
 ProblemParts make_navier_stokes(const Options& o, const Draw& draw) {
@@ -168,6 +194,12 @@ ProblemParts make_navier_stokes(const Options& o, const Draw& draw) {
   LowPass(o.N).apply(markers.tail(o.cells()), parts.target.col(0));
   parts.truth = generator.velocity();
   if (o.ground_truth == "staggered" && o.loss.empty()) parts.minimum = 0;
+  constexpr Index kMostSide = 16;
+  if (o.ground_truth == "staggered" && o.N <= kMostSide) {
+    FlowDistance measure(o.flow(Arrangement::staggered), o.truth());
+    parts.x_floor = [floor = spectral_floor(*physics_of(o), measure, parts.start.drawn,
+                                            *parts.truth, markers)](const Batch&) { return floor; };
+  }
   return parts;
 }
 
@@ -191,7 +223,8 @@ void register_navier_stokes(ProblemRegistry& registry) {
            "|F|², which is left out: it would add a constant for the modes below it and remove their "
            "gradient. The share of cells with marker is sampled per sample, in the paper per batch. "
            "Where velocity and marker's gradient are orthogonal, the data do not determine the "
-           "velocity, and the low pass hides scales below a quarter of the domain. The "
+           "velocity, and the low pass hides scales below a quarter of the domain: up to 16 × 16 the "
+           "floor of the error in x is what the best cut-off of the spectrum of J(x*) leaves. The "
            "error is |v − v*| after the first projection, the mean over cells. inverse=generator "
            "uses knowledge of how the data were made (extra information); inverse=coarse does not.",
        .aim = Aim::x,

@@ -122,8 +122,13 @@ void Oscillators::pullback(BatchRef u, BatchOut JTu, Workspace& w) const {
 
 namespace {
 
+// The motion lasts as long for all numbers of steps.
+constexpr Real kDuration = 12;
+constexpr Index kChainSteps = 24, kCoupledSteps = 96;
+
 template <bool is_chain>
 struct ReturnOptions {
+  Index steps = is_chain ? kChainSteps : kCoupledSteps;
   std::string loss;
   Index epoch = 4096;
   Learning learning{
@@ -133,6 +138,8 @@ struct ReturnOptions {
 };
 template <bool is_chain>
 void fields(ReturnOptions<is_chain>& o, auto& field) {
+  field("steps", o.steps, between(24, 1536),
+        "time steps, each with one control; together they last 12 for any number");
   field("loss", o.loss, {"", "square"}, "square: ‖y − y*‖², as published, instead of half of it");
   field(kEpochOption, o.epoch, between(0, 1e6),
         "N: mode=learn takes the same N samples batch by batch, again and again; 0: new "
@@ -173,19 +180,18 @@ ProblemParts return_to_start(const auto& o, std::unique_ptr<Physics> physics, co
 //
 //   ẋ = v,  v̇₁ = −x₁ + 0.2 (x₂ − x₁),  v̇₂ = −x₂ − 0.2 (x₂ − x₁) + u(t),
 //
-// over 24 Runge-Kutta steps of 0.5 in each of which u is constant. They shall return to where they
-// began. P is affine in u, P(u; c) = A u + Φ c with A (4, 24) and the initial state c, so its
-// inverse is x₀ + A⁺(y − P(x₀; c)), the control nearest x₀; the book cuts singular values of A off
-// at 1e-5 of the largest.
-constexpr Index kChainSteps = 24;
-
+// over 24 Runge-Kutta steps of 0.5 (steps=T: of 12/T) in each of which u is constant. They shall
+// return to where they began. P is affine in u, P(u; c) = A u + Φ c with A (4, T) and the initial
+// state c, so its inverse is x₀ + A⁺(y − P(x₀; c)), the control nearest x₀; the book cuts singular
+// values of A off at 1e-5 of the largest.
 class LinearChain final : public Oscillators {
  public:
-  LinearChain() : Oscillators({.linear = 0.2, .cubic = 0, .gain = 1}, kChainSteps, 0.5) {
+  explicit LinearChain(Index steps)
+      : Oscillators({.linear = 0.2, .cubic = 0, .gain = 1}, steps, kDuration / Real(steps)) {
     Workspace w;
-    Matrix A(4, kChainSteps), Phi(4, 4);
-    forward(Matrix::Identity(kChainSteps, kChainSteps), Matrix::Zero(4, kChainSteps), A, w);
-    forward(Matrix::Zero(kChainSteps, 4), Matrix::Identity(4, 4), Phi, w);
+    Matrix A(4, steps), Phi(4, 4);
+    forward(Matrix::Identity(steps, steps), Matrix::Zero(4, steps), A, w);
+    forward(Matrix::Zero(steps, 4), Matrix::Identity(4, 4), Phi, w);
     Svd svd;
     require(thin_svd(A, svd), "the chain's Jacobian has no singular values");
     constexpr Real kCutoff = 1e-5;
@@ -216,8 +222,8 @@ class LinearChain final : public Oscillators {
 };
 
 ProblemParts make_linear_chain(const ReturnOptions<true>& o, const Draw& draw) {
-  const auto physics = std::make_shared<const LinearChain>();
-  ProblemParts parts = return_to_start(o, std::make_unique<LinearChain>(), draw);
+  const auto physics = std::make_shared<const LinearChain>(o.steps);
+  ProblemParts parts = return_to_start(o, std::make_unique<LinearChain>(o.steps), draw);
   parts.x_error = [physics](BatchRef x, const Batch& batch) {
     Matrix nearest(x.rows(), x.cols());
     physics->local_inverse(batch.target, x, batch.context, nearest);
@@ -231,11 +237,13 @@ ProblemParts make_linear_chain(const ReturnOptions<true>& o, const Draw& draw) {
 //
 //   ẋ = v,  v̇₁ = −x₁ + (x₂ − x₁)³,  v̇₂ = −x₂ − (x₂ − x₁)³ + 3u(t),
 //
-// over 96 Runge-Kutta steps of 0.125 in each of which u is constant. They shall return to where
-// they began. The scripts' network rectifies (ReLU), the book's is of hyperbolic tangents.
+// over 96 Runge-Kutta steps of 0.125 (steps=T: of 12/T) in each of which u is constant. They shall
+// return to where they began. The scripts' network rectifies (ReLU), the book's is of hyperbolic
+// tangents.
 ProblemParts make_coupled_oscillators(const ReturnOptions<false>& o, const Draw& draw) {
   constexpr Forces kForces{.linear = 0, .cubic = 1, .gain = 3};
-  return return_to_start(o, std::make_unique<Oscillators>(kForces, 96, 0.125), draw);
+  return return_to_start(
+      o, std::make_unique<Oscillators>(kForces, o.steps, kDuration / Real(o.steps)), draw);
 }
 
 std::vector<Panel> panels_of(const char* curves) {
@@ -257,10 +265,11 @@ void register_oscillators(ProblemRegistry& registry) {
                   "state",
        .source = "Thuerey et al., Physics-based Deep Learning, chapter on half-inverse gradients; "
                  "Schnell, Holl, Thuerey (2022)",
-       .note = "Published as a learning problem, with the loss ‖y − y*‖², loss=square here; by "
-               "default half of that, so that 2η here equals η there. mode=direct finds "
-               "the 24 controls of one initial state. Infinitely many of them return to it, and "
-               "the error in x is the distance from the nearest.",
+       .note =
+           "Published as a learning problem, with the loss ‖y − y*‖², loss=square here; by "
+           "default half of that, so that 2η here equals η there. mode=direct finds "
+           "the controls (24 by default) of one initial state. Infinitely many of them return to it, and "
+           "the error in x is the distance from the nearest.",
        .aim = Aim::loss,  // any control that returns will do
        .panels = panels_of("Learning curves")},
       make_linear_chain));
@@ -270,10 +279,11 @@ void register_oscillators(ProblemRegistry& registry) {
        .group = Group::physics,
        .formula = "ẍ₁ = −x₁ + (x₂ − x₁)³,  ẍ₂ = −x₂ − (x₂ − x₁)³ + 3u(t),  y* = the initial state",
        .source = "Schnell, Holl, Thuerey (2022), published scripts",
-       .note = "Published as a learning problem, with the loss ‖y − y*‖², loss=square here; by "
-               "default half of that, so that 2η here equals η there. mode=direct finds "
-               "the 96 controls of one initial state. The network is the scripts'; the book's has "
-               "activation=tanh.",
+       .note =
+           "Published as a learning problem, with the loss ‖y − y*‖², loss=square here; by "
+           "default half of that, so that 2η here equals η there. mode=direct finds "
+           "the controls (96 by default) of one initial state. The network is the scripts'; the book's has "
+           "activation=tanh.",
        .aim = Aim::loss,  // any control that returns will do
        .in_all = false,
        .panels = panels_of("Fig. 2b: learning curves")},

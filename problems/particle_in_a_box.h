@@ -1,8 +1,8 @@
 // A quantum particle in the box [0, 2] under a field u(t) along it, iψ̇ = H(u)ψ with
 // H(u) = −∂² + u(t) x (ħ = 1, mass ½), from its ground state ψ₁. Crank, Nicolson (1947), on 14
-// interior points Δx = 2/15 apart, 384 steps Δt = 0.05, u constant in each; complex numbers as
-// (re, im) in turn. With M = 1 + iΔt/2 H and φ = M⁻¹ψ a step is ψ⁺ = M* M⁻¹ψ = 2φ − ψ, which keeps
-// ‖ψ‖, and
+// interior points Δx = 2/15 apart, in steps that last 19.2 together, 384 of Δt = 0.05 as published,
+// with u constant in each; complex numbers as (re, im) in turn. With M = 1 + iΔt/2 H and φ = M⁻¹ψ a
+// step is ψ⁺ = M* M⁻¹ψ = 2φ − ψ, which keeps ‖ψ‖, and
 //
 //   ∂ψ⁺/∂u = −iΔt M⁻¹ (x ∘ φ).
 //
@@ -24,16 +24,20 @@ ComplexBatchOut complex_in(BatchOut y);
 
 class ParticleInABox final : public Physics {
  public:
-  static constexpr Index kPoints = 14, kSteps = 384;
+  static constexpr Index kPoints = 14, kSteps = 384;  // as published
+  static constexpr Real kStep = 0.05;
 
   // Output is ψ at the end; or, for a given as context, (14, B), what of it is missing at the real
   // state a: (I − aaᵀ)ψ.
   enum class Output { state, missing };
-  explicit ParticleInABox(Output output) : output_(output) {}
+  explicit ParticleInABox(Output output, Index steps = kSteps)
+      : output_(output),
+        steps_(steps),
+        dt_(kStep * (static_cast<Real>(kSteps) / static_cast<Real>(steps))) {}
 
   static Vector eigenstate(Index k);  // ψ_k, of H(0): sin(kπx/2), of norm 1, (14)
 
-  Index inputs() const override { return kSteps; }
+  Index inputs() const override { return steps_; }
   Index outputs() const override { return 2 * kPoints; }
   void forward(BatchRef x, BatchRef c, BatchOut y, Workspace& w) const override;
   void pushforward(BatchRef v, BatchOut Jv, Workspace& w) const override;
@@ -44,6 +48,8 @@ class ParticleInABox final : public Physics {
   void project(BatchRef a, Index columns, BatchOut y) const;
 
   Output output_;
+  Index steps_;
+  Real dt_;  // Δt
 };
 
 }  // namespace isoline::problems

@@ -123,7 +123,7 @@ class PluginPhysics final : public ByJacobian {
 
 ProblemParts plugin_parts(const PluginComponent& component, const OptionValues& options,
                           const Draw& draw) {
-  auto physics = std::make_unique<PluginPhysics>(component, options, draw.seed());
+  auto physics = std::make_unique<PluginPhysics>(component, options, draw.instance_seed());
   const Index k = physics->inputs();
   const bool has_truth = component.can(ISOLINE_TRUTH);
   Vector start = Vector::Zero(k);

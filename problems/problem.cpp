@@ -215,8 +215,8 @@ Vector near(const Vector& standard, StartScale scale, RandomStream& noise) {
 }
 
 Start Draw::start(const Vector& standard, StartScale scale) const {
-  if (is_published()) return standard;
-  RandomStream noise = stream("start");
+  if (start_ == 0) return standard;
+  RandomStream noise = start_stream("start");
   return {near(standard, scale, noise), standard};
 }
 

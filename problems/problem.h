@@ -13,6 +13,7 @@
 #include "core/options.h"
 #include "core/oracle.h"
 #include "core/random.h"
+#include "core/seeds.h"
 #include "core/status.h"
 #include "networks/network.h"
 #include "problems/physics.h"
@@ -202,21 +203,22 @@ class Problem {
   Batch batch_;
 };
 
-// The random numbers and the start of an instance. Seed 0 is the published one.
+// The random numbers of the instance and the start that a seed names (core/seeds.h).
 class Draw {
  public:
-  Draw(std::uint64_t seed, std::string problem) : seed_(seed), problem_(std::move(problem)) {}
-  bool is_published() const { return seed_ == 0; }
-  std::uint64_t seed() const { return seed_; }  // for entries that sample from streams of their own
-  RandomStream stream(std::string_view purpose, std::uint64_t index = 0) const {
-    return {seed_, problem_, purpose, index};
-  }
-  // A start near the standard one; for seed 0 that itself. The scale goes with
+  Draw(std::uint64_t seed, std::string problem)
+      : instance_(instance_of(seed)), start_(start_of(seed)), problem_(std::move(problem)) {}
+  bool is_published() const { return instance_ == 0; }       // the data
+  std::uint64_t instance_seed() const { return instance_; }  // for streams of an entry's own
+  std::uint64_t start_seed() const { return start_; }
+  RandomStream stream(std::string_view purpose) const { return {instance_, problem_, purpose}; }
+  RandomStream start_stream(std::string_view purpose) const { return {start_, problem_, purpose}; }
+  // A start near the standard one; for start 0 that itself. The scale goes with
   // ProblemParts::start_scale.
   Start start(const Vector& standard, StartScale scale = StartScale::at_least_one) const;
 
  private:
-  std::uint64_t seed_;
+  std::uint64_t instance_, start_;
   std::string problem_;  // without options: sweeps see the same samples
 };
 

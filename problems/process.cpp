@@ -187,7 +187,11 @@ ProblemParts process_parts(const ProblemHandshake& said, std::shared_ptr<Session
 Problem make_process(const OptionValues& options, const Draw& draw) {
   const auto given = read_options<ProcessOptions>(options);
   auto session = std::make_shared<Session>(given.command);
-  const ProblemHandshake said = greet_problem(session->line, draw.seed(), given.startup);
+  ProblemHandshake said = greet_problem(session->line, draw.instance_seed(), given.startup);
+  if (!said.drawn.empty() && draw.start_seed() != draw.instance_seed()) {  // it samples its starts
+    Session other(given.command);
+    said.drawn = greet_problem(other.line, draw.start_seed(), given.startup).drawn;
+  }
   return Problem(process_parts(said, std::move(session), draw));
 }
 

@@ -12,8 +12,8 @@
 namespace isoline::problems {
 namespace {
 
-constexpr Index kPoints = ParticleInABox::kPoints, kSteps = ParticleInABox::kSteps;
-constexpr Real kDx = 2.0 / 15, kDt = 0.05;
+constexpr Index kPoints = ParticleInABox::kPoints;
+constexpr Real kDx = 2.0 / 15;
 
 using State = LanesOf<2 * kPoints>;  // (re, im) of each point in turn
 
@@ -33,10 +33,10 @@ Real position(Index i) { return kDx * static_cast<Real>(i + 1); }
 // the diagonal. Its conjugate where `sign` is −1.
 class Factorized {
  public:
-  Factorized(const Lanes& u, Real sign) : off_(-sign * kDt / (2 * kDx * kDx)) {
+  Factorized(const Lanes& u, Real dt, Real sign) : off_(-sign * dt / (2 * kDx * kDx)) {
     Complex pivot;
     for (Index i = 0; i < kPoints; ++i) {
-      pivot.im = sign * kDt / 2 * (2 / (kDx * kDx) + u * position(i));
+      pivot.im = sign * dt / 2 * (2 / (kDx * kDx) + u * position(i));
       pivot.re.setOnes();
       if (i > 0) {  // d_i = M_ii − e²/d_{i−1}, e² = −off²
         const Complex last = at(inverse_, i - 1);
@@ -88,18 +88,18 @@ const State& ground_state() {
 struct Passes {
   Matrix &phis, &controls, &changes, &cotangents;  // (8, 28 T ⌈B/8⌉), (8, T), (8, T), (28, B)
 
-  Passes(Workspace& w, Index samples)
+  Passes(Workspace& w, Index steps, Index samples)
       : phis(sized(w)[0]), controls(w.saved[1]), changes(w.saved[2]), cotangents(w.saved[3]) {
-    phis.resize(kLanes, 2 * kPoints * kSteps * groups_of_lanes(samples));
-    controls.resize(kLanes, kSteps);
-    changes.resize(kLanes, kSteps);
+    phis.resize(kLanes, 2 * kPoints * steps * groups_of_lanes(samples));
+    controls.resize(kLanes, steps);
+    changes.resize(kLanes, steps);
   }
   static std::vector<Matrix>& sized(Workspace& w) {
     w.saved.resize(4);
     return w.saved;
   }
   Eigen::Map<State> phi(Index group, Index step) const {
-    return lanes_at<2 * kPoints>(phis, (group * kSteps + step) * 2 * kPoints);
+    return lanes_at<2 * kPoints>(phis, (group * controls.cols() + step) * 2 * kPoints);
   }
 };
 
@@ -113,21 +113,21 @@ void add_field(const State& phi, const Lanes& length, State& s) {
 }
 
 // Re⟨μ, −iΔt x ∘ φ⟩
-Lanes along(const State& phi, const State& mu) {
+Lanes along(const State& phi, const State& mu, Real dt) {
   Lanes sum = Lanes::Zero();
   for (Index i = 0; i < kPoints; ++i)
-    sum += kDt * position(i) *
+    sum += dt * position(i) *
            (mu.col(2 * i) * phi.col(2 * i + 1) - mu.col(2 * i + 1) * phi.col(2 * i));
   return sum;
 }
 
 // −iΔt νᵀ(x ∘ φ)
-Complex derivative(const State& phi, const State& nu) {
+Complex derivative(const State& phi, const State& nu, Real dt) {
   Complex sum{Lanes::Zero(), Lanes::Zero()};
   for (Index i = 0; i < kPoints; ++i) {
     const Complex n = at(nu, i), p = at(phi, i);
-    sum.re += kDt * position(i) * (n.re * p.im + n.im * p.re);
-    sum.im -= kDt * position(i) * (n.re * p.re - n.im * p.im);
+    sum.re += dt * position(i) * (n.re * p.im + n.im * p.re);
+    sum.im -= dt * position(i) * (n.re * p.re - n.im * p.im);
   }
   return sum;
 }
@@ -150,13 +150,13 @@ Vector ParticleInABox::eigenstate(Index k) {
 }
 
 void ParticleInABox::forward(BatchRef x, BatchRef c, BatchOut y, Workspace& w) const {
-  Passes passes(w, x.cols());
+  Passes passes(w, steps_, x.cols());
   by_lanes(x.cols(), [&](Index group, Index first, Index count) {
     gather(x, first, count, passes.controls);
     State psi = ground_state();
-    for (Index t = 0; t < kSteps; ++t) {
+    for (Index t = 0; t < steps_; ++t) {
       State phi = psi;
-      Factorized(lanes_at(passes.controls, t), 1).solve(phi);
+      Factorized(lanes_at(passes.controls, t), dt_, 1).solve(phi);
       passes.phi(group, t) = phi;
       psi = 2 * phi - psi;
     }
@@ -166,15 +166,15 @@ void ParticleInABox::forward(BatchRef x, BatchRef c, BatchOut y, Workspace& w) c
 }
 
 void ParticleInABox::pushforward(BatchRef v, BatchOut Jv, Workspace& w) const {
-  Passes passes(w, v.cols());
+  Passes passes(w, steps_, v.cols());
   by_lanes(v.cols(), [&](Index group, Index first, Index count) {
     gather(w.x, first, count, passes.controls);
     gather(v, first, count, passes.changes);
     State dpsi = State::Zero();
-    for (Index t = 0; t < kSteps; ++t) {
+    for (Index t = 0; t < steps_; ++t) {
       State dphi = dpsi;
-      add_field(passes.phi(group, t), kDt / 2 * lanes_at(passes.changes, t), dphi);
-      Factorized(lanes_at(passes.controls, t), 1).solve(dphi);
+      add_field(passes.phi(group, t), dt_ / 2 * lanes_at(passes.changes, t), dphi);
+      Factorized(lanes_at(passes.controls, t), dt_, 1).solve(dphi);
       dpsi = 2 * dphi - dpsi;
     }
     scatter(dpsi, first, count, Jv);
@@ -183,17 +183,17 @@ void ParticleInABox::pushforward(BatchRef v, BatchOut Jv, Workspace& w) const {
 }
 
 void ParticleInABox::pullback(BatchRef u, BatchOut JTu, Workspace& w) const {
-  Passes passes(w, u.cols());
+  Passes passes(w, steps_, u.cols());
   passes.cotangents = u;
   project(w.context, 1, passes.cotangents);
   by_lanes(u.cols(), [&](Index group, Index first, Index count) {
     gather(w.x, first, count, passes.controls);
     State lambda;
     gather(passes.cotangents, first, count, lambda);
-    for (Index t = kSteps; t-- > 0;) {
+    for (Index t = steps_; t-- > 0;) {
       State mu = lambda;
-      Factorized(lanes_at(passes.controls, t), -1).solve(mu);
-      lanes_at(passes.changes, t) = along(passes.phi(group, t), mu);
+      Factorized(lanes_at(passes.controls, t), dt_, -1).solve(mu);
+      lanes_at(passes.changes, t) = along(passes.phi(group, t), mu, dt_);
       lambda = 2 * mu - lambda;
     }
     scatter(passes.changes, first, count, JTu);
@@ -203,28 +203,28 @@ void ParticleInABox::pullback(BatchRef u, BatchOut JTu, Workspace& w) const {
 // Rows, for what pulls ψ_j back is linear in complex numbers: one solve for both its parts. With
 // ρ = e_j behind the last step, ∂ψ_j/∂u = −iΔt νᵀ(x ∘ φ), ν = M⁻¹ρ⁺, ρ = 2ν − ρ⁺; M is symmetric.
 void ParticleInABox::jacobian(BatchOut J, Workspace& w) const {
-  const Index samples = J.cols() / kSteps;
-  Passes passes(w, samples);
+  const Index samples = J.cols() / steps_;
+  Passes passes(w, steps_, samples);
   std::array<State, kPoints> rho;
   by_lanes(samples, [&](Index group, Index first, Index count) {
     gather(w.x, first, count, passes.controls);
     for (Index j = 0; j < kPoints; ++j)
       put({Lanes::Ones(), Lanes::Zero()}, j, rho[j] = State::Zero());
     State phi, nu, derivatives;
-    for (Index t = kSteps; t-- > 0;) {
-      const Factorized M(lanes_at(passes.controls, t), 1);
+    for (Index t = steps_; t-- > 0;) {
+      const Factorized M(lanes_at(passes.controls, t), dt_, 1);
       phi = passes.phi(group, t);
       for (Index j = 0; j < kPoints; ++j) {
         nu = rho[j];
         M.solve(nu);
-        put(derivative(phi, nu), j, derivatives);
+        put(derivative(phi, nu, dt_), j, derivatives);
         rho[j] = 2 * nu - rho[j];
       }
       for (Index b = 0; b < count; ++b)
-        J.col((first + b) * kSteps + t) = derivatives.row(b).transpose().matrix();
+        J.col((first + b) * steps_ + t) = derivatives.row(b).transpose().matrix();
     }
   });
-  project(w.context, kSteps, J);
+  project(w.context, steps_, J);
 }
 
 // y ← (I − aaᵀ) y for `columns` of each sample
@@ -241,12 +241,15 @@ void ParticleInABox::project(BatchRef a, Index columns, BatchOut y) const {
 namespace {
 
 struct Options {
+  Index steps = ParticleInABox::kSteps;
   std::string loss;
   Index epoch = 1024;
   Learning learning{.network = "mlp[layers=20-20-20,activation=tanh,precision=double,init=glorot]",
                     .batch = 16};
 };
 void fields(Options& o, auto& field) {
+  field("steps", o.steps, between(48, 3072),
+        "time steps, each with one control; together they last 19.2 for any number");
   field("loss", o.loss, {"", "residual"},
         "residual: y = (I − aaᵀ)ψ and y* = 0, the same loss as a sum of squares");
   field(kEpochOption, o.epoch, between(0, 1e6),
@@ -300,7 +303,7 @@ ProblemParts make_quantum_dipole(const Options& o, const Draw& draw) {
     // to every target, and the gradient of the loss vanishes.
     RandomStream stream = draw.stream("target");
     const Vector a = superposition(stream);
-    parts = {.start = draw.start(Vector::Ones(kSteps)),
+    parts = {.start = draw.start(Vector::Ones(o.steps)),
              .target = interleaved(a),
              .minimum = 0,
              .minimum_error = kRounding};
@@ -309,8 +312,8 @@ ProblemParts make_quantum_dipole(const Options& o, const Draw& draw) {
       parts.target.setZero();
     }
   }
-  parts.physics = std::make_unique<ParticleInABox>(is_residual ? ParticleInABox::Output::missing
-                                                               : ParticleInABox::Output::state);
+  parts.physics = std::make_unique<ParticleInABox>(
+      is_residual ? ParticleInABox::Output::missing : ParticleInABox::Output::state, o.steps);
   if (is_residual)
     parts.loss = std::make_unique<HalfSquared>(2);
   else
@@ -326,7 +329,7 @@ ProblemParts make_quantum_dipole(const Options& o, const Draw& draw) {
                      batch.context.col(b) = a;
                      batch.target.col(b).setZero();
                    }};
-  parts = learn(o.learning, {.inputs = 2 * kPoints, .outputs = kSteps}, draw, std::move(parts));
+  parts = learn(o.learning, {.inputs = 2 * kPoints, .outputs = o.steps}, draw, std::move(parts));
   add_neurons(parts);
   return parts;
 }
@@ -342,7 +345,7 @@ void register_quantum_dipole(ProblemRegistry& registry) {
                   "a = f₁ψ₂ + f₂ψ₃",
        .source = "Schnell, Holl, Thuerey (2022), published scripts",
        .note =
-           "Published as a learning problem. mode=direct finds the 384 controls of one target, "
+           "Published as a learning problem. mode=direct finds the controls (384 by default) of one target, "
            "from u = 1, since the gradient vanishes at u = 0. loss=residual has the same loss as "
            "the sum of squares ‖(I − aaᵀ)ψ‖², which least-squares methods can use. The targets are "
            "real, as published: the phases that the scripts sample are not used.",

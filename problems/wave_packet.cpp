@@ -1,4 +1,4 @@
-// A Gaussian wave packet in a noisy signal, sampled at 64 times t from −8 to 8:
+// A Gaussian wave packet in a noisy signal, sampled at 64 (or m) times t from −8 to 8:
 //
 //   P(x)ᵢ = a e^(−τ²/2w²) cos(ωτ),  τ = tᵢ − c,  x = (a, c, w, ω),  y* = P(x*) + σ N(0, 1).
 //
@@ -18,15 +18,16 @@ namespace isoline::problems {
 namespace {
 
 struct Options {
+  Index samples = 64;
   Real noise = 0.05;
   Learning learning{.network = "mlp[layers=64-64]", .batch = 100};
 };
 void fields(Options& o, auto& field) {
+  field("samples", o.samples, between(8, 65536), "times m at which the signal is sampled");
   field("noise", o.noise, between(0, 10), "standard deviation σ of the noise in y*");
   fields(o.learning, field);
 }
 
-constexpr Index kTimes = 64;
 constexpr Real kFirst = -8, kLast = 8;
 
 // The range of x*, sampled uniformly; the standard start is its centre.
@@ -34,14 +35,15 @@ constexpr std::array<Real, 4> kLeast = {0.5, -1.5, 0.5, 2}, kMost = {1.5, 1.5, 1
 
 class WavePacket final : public DensePhysics {
  public:
-  WavePacket() : DensePhysics(4, kTimes) {}
+  explicit WavePacket(Index times) : DensePhysics(4, times) {}
 
   // The common factors of all formulas at one time.
   struct Moment {
     Real a, tau, w, omega, E, C, S;  // E the envelope, C and S the cosine and the sine
-    Moment(VectorRef x, Index i)
+    Moment(VectorRef x, Index i, Index times)
         : a(x[0]),
-          tau(kFirst + (kLast - kFirst) * static_cast<Real>(i) / (kTimes - 1) - x[1]),
+          tau(kFirst + (kLast - kFirst) * static_cast<Real>(i) / static_cast<Real>(times - 1) -
+              x[1]),
           w(x[2]),
           omega(x[3]),
           E(std::exp(-tau * tau / (2 * w * w))),
@@ -52,14 +54,14 @@ class WavePacket final : public DensePhysics {
   };
 
   void value(VectorRef x, VectorOut y) const override {
-    for (Index i = 0; i < kTimes; ++i) {
-      const Moment at(x, i);
+    for (Index i = 0; i < outputs(); ++i) {
+      const Moment at(x, i, outputs());
       y[i] = at.a * at.E * at.C;
     }
   }
   void derivative(VectorRef x, BatchOut J) const override {
-    for (Index i = 0; i < kTimes; ++i) {
-      const Moment at(x, i);
+    for (Index i = 0; i < outputs(); ++i) {
+      const Moment at(x, i, outputs());
       J(i, 0) = at.E * at.C;
       J(i, 1) = at.a * at.E * at.fall();
       J(i, 2) = at.a * at.E * at.C * at.widening();
@@ -69,8 +71,8 @@ class WavePacket final : public DensePhysics {
 
   bool has_curvature() const override { return true; }
   void second(VectorRef x, VectorRef u, BatchOut H) const override {
-    for (Index i = 0; i < kTimes; ++i) {
-      const Moment at(x, i);
+    for (Index i = 0; i < outputs(); ++i) {
+      const Moment at(x, i, outputs());
       const Real ue = u[i] * at.E, ae = at.a * ue, w2 = at.w * at.w, t2 = at.tau * at.tau;
       const Real g = at.widening();
       H(1, 0) += ue * at.fall();
@@ -97,8 +99,9 @@ class WavePacket final : public DensePhysics {
   // more where it doesn't descend; whether x is finite.
   bool fit(VectorRef y, VectorRef x0, int steps, VectorOut x) const {
     x = x0;
-    Vector r(kTimes), left(kTimes), moved(4);  // y − P(x) before and after a step; the moved x
-    Matrix J(kTimes, 4), A(4, 4), step(4, 1);
+    Vector r(outputs()), left(outputs()),
+        moved(4);  // y − P(x) before and after a step; the moved x
+    Matrix J(outputs(), 4), A(4, 4), step(4, 1);
     Real damping = 1e-3;  // of JᵀJ's diagonal
     value(x, r);
     r = y - r;
@@ -135,15 +138,16 @@ struct Signal {
   Eigen::Vector4d truth;  // x*
   Vector observed;        // y*, (m)
 
-  Signal(const WavePacket& physics, Real noise, RandomStream& stream) : observed(kTimes) {
+  Signal(const WavePacket& physics, Real noise, RandomStream& stream)
+      : observed(physics.outputs()) {
     for (Index i = 0; i < 4; ++i) truth[i] = stream.uniform(kLeast[i], kMost[i]);
     physics.value(truth, observed);
-    observed += noise * stream.normal_vector(kTimes);
+    observed += noise * stream.normal_vector(physics.outputs());
   }
 };
 
 ProblemParts learn_wave_packet(const Options& o, const Draw& draw) {
-  const auto physics = std::make_shared<const WavePacket>();
+  const auto physics = std::make_shared<const WavePacket>(o.samples);
   const auto sample = [physics, noise = o.noise](RandomStream& stream, Index b, Batch& batch) {
     const Signal signal(*physics, noise, stream);
     batch.truth.col(b) = signal.truth;
@@ -154,8 +158,8 @@ ProblemParts learn_wave_packet(const Options& o, const Draw& draw) {
     for (Index b = 0; b < x.cols(); ++b) sum += distance(x.col(b), batch.truth.col(b));
     return sum / static_cast<Real>(x.cols());
   };
-  return learn(o.learning, {.inputs = kTimes, .outputs = 4}, draw,
-               {.physics = std::make_unique<WavePacket>(),
+  return learn(o.learning, {.inputs = o.samples, .outputs = 4}, draw,
+               {.physics = std::make_unique<WavePacket>(o.samples),
                 .x_error = mean_distance,
                 .samples = {.draw = sample}});
 }
@@ -164,7 +168,7 @@ ProblemParts learn_wave_packet(const Options& o, const Draw& draw) {
 // x* is what the data leave. x* is then no label that attains it, and none is given.
 ProblemParts make_wave_packet(const Options& o, const Draw& draw) {
   if (o.learning.is_on()) return learn_wave_packet(o, draw);
-  auto physics = std::make_unique<WavePacket>();
+  auto physics = std::make_unique<WavePacket>(o.samples);
   RandomStream stream = draw.stream("target");
   const Signal signal(*physics, o.noise, stream);
   const Eigen::Vector4d truth = signal.truth;
@@ -176,7 +180,7 @@ ProblemParts make_wave_packet(const Options& o, const Draw& draw) {
       .x_scale = truth.norm()};
   if (o.noise > 0) {
     constexpr int kToConvergence = 100;
-    Vector best(4), y(kTimes);
+    Vector best(4), y(o.samples);
     physics->fit(signal.observed, truth, kToConvergence, best);
     physics->value(best, y);
     parts.minimum = 0.5 * (y - signal.observed).squaredNorm();

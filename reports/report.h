@@ -10,10 +10,16 @@
 // A new format is a file of formats/, with its declaration and its row in formats/formats.h.
 #pragma once
 
+#include <malloc.h>
+
+#include <algorithm>
+#include <cstdint>
 #include <filesystem>
 #include <string>
+#include <type_traits>
 
 #include "core/files.h"
+#include "core/results/study.h"
 #include "core/text.h"
 #include "core/threads.h"
 #include "reports/formats/formats.h"
@@ -22,13 +28,33 @@ namespace isoline::reports {
 
 using namespace results;
 
+// Takes out of a record what no section and no format of a report reads; what claims alone read
+// stays in those that they name.
+inline void trim_for_report(Record& record, bool is_claimed) {
+  const auto drop = [](auto&... all) { ((all = std::remove_reference_t<decltype(all)>()), ...); };
+  if (record.hits) {
+    Hits& hits = *record.hits;
+    const auto met = static_cast<std::size_t>(std::ranges::count_if(
+        hits.iteration, [](std::int64_t iteration) { return iteration >= 0; }));
+    const auto shorten = [met](auto&... all) { ((all.resize(met), all.shrink_to_fit()), ...); };
+    drop(hits.target, hits.forwards);
+    shorten(hits.iteration, hits.work, hits.wall_seconds);
+    for (auto& [oracle, column] : hits.counts) shorten(column);
+  }
+  drop(record.verified, record.found, record.repeat_wall_seconds, record.build_parts);
+  if (!is_claimed) drop(record.curve.gradient_norm, record.curve.step_norm);
+}
+
 // Writes every format into the folder, which it makes, several at a time.
 inline void write_report(const Document& document, const std::filesystem::path& out) {
   std::filesystem::create_directories(out);
+  malloc_trim(0);  // what the sections took and gave back
   share(std::size(kFormats), [&](std::size_t i) {
     const std::string file = kFormats[i].file, text = kFormats[i].text(document);
-    // Formats for terminals and editors; a page shows no control characters, and has scripts.
-    write_text(out / file, file.ends_with(".html") ? text : printable(text));
+    // Formats for terminals and editors. A page shows no control characters, and has scripts; the
+    // fields of CSV, the longest text, are printable already.
+    const bool is_safe = file.ends_with(".html") || file.ends_with(".csv");
+    write_text(out / file, is_safe ? text : printable(text));
   });
 }
 

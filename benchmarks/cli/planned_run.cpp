@@ -22,6 +22,8 @@ void override_blocks(const RunArguments& given, Suite& suite) {
   const std::uint64_t most_seeds = given.allow_large ? kMostWhereLarge : kMostSeeds;
   for (MatrixBlock& block : suite.blocks) {
     if (!given.seeds.empty()) block.seeds = parse_seeds(given.seeds, most_seeds);
+    if (!given.instances.empty() || !given.starts.empty())
+      block.seeds = crossed_seeds(given.instances, given.starts);
     if (given.iterations > 0) block.budget.iterations = given.iterations;
     if (given.work > 0) block.budget.work = given.work;
     if (given.target >= 0) block.budget.target = given.target;
@@ -38,7 +40,14 @@ void declare_cells(VerbArguments& verb, RunArguments& given) {
             "cells with these");
   verb.text("--problem", given.problem, "Problems: 'sine[xi=1|32,phi=45],square'").joined();
   verb.text("--optimizer", given.optimizer, "Optimizers: 'adam[rate=1e-3],ceres-lm'").joined();
-  verb.text("--seeds", given.seeds, "5 (0 to 4), 0..9, or =5");
+  const Argument seeds =
+      verb.text("--seeds", given.seeds, "5 (0 to 4), 0..9, =5, or 2:1 for instance 2 with start 1");
+  verb.text("--instances", given.instances,
+            "Instances, each with every start of --starts: 10, 0..9 or =5 (default: =0)")
+      .excludes(seeds);
+  verb.text("--starts", given.starts,
+            "Starts, each with every instance of --instances: 3, 0..2 or =1 (default: =0)")
+      .excludes(seeds);
   verb.whole("--iterations", given.iterations, "Largest number of iterations of a cell");
   verb.whole("--work", given.work, "Largest work of a cell, in forward solves");
   verb.time("--time", given.seconds,

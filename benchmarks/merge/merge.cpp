@@ -22,6 +22,7 @@
 #include "core/records/record.h"
 #include "core/records/request.h"
 #include "core/records/sheet.h"
+#include "core/seeds.h"
 #include "core/text.h"
 
 namespace isoline::benchmarks {
@@ -237,8 +238,8 @@ class Merge {
         if (difference.empty()) continue;
         dispute({request.optimizer.name,
                  fmt::format("{} × {}, seed {} ({}): the results in {} differ at {}",
-                             request.problem.spec, request.optimizer.spec, request.seed, name,
-                             places(copies), difference)});
+                             request.problem.spec, request.optimizer.spec, seed_text(request.seed),
+                             name, places(copies), difference)});
         return std::nullopt;
       }
       return json_text(record) + "\n";

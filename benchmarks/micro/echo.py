@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-# y = x of so many numbers, by the client: what a forward of the door costs around the function.
+# y = x of so many numbers, by the client: what a forward of the adapter costs around the function.
 import sys
 
 import isoline

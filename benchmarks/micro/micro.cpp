@@ -414,7 +414,7 @@ struct Frames {
 void register_round_trips() {
   // Promised are 15 and 40 µs of a round trip, where bare frames were measured to take 6 and 17.
   for (const auto& [n, ratio] : {std::pair<Index, double>{2, 15.0 / 6}, {4096, 40.0 / 17}})
-    register_pair(fmt::format("door/forward/n={}", n), 201, {.ratio = ratio}, [n = n] {
+    register_pair(fmt::format("adapter/forward/n={}", n), 201, {.ratio = ratio}, [n = n] {
       const auto problem = std::make_shared<const Problem>(
           make_problem("process[command=" + quoted(command_of("echo.py", n)) + "]"));
       const auto bare = std::make_shared<Frames>(n);
@@ -429,8 +429,8 @@ void register_round_trips() {
 // start and where a hundred steps have led. The step includes the forward pass and everything that
 // J or its Gram matrix takes. At the published cut-offs the spectra of these problems reach below
 // 1e-5 of the largest, so that the default is by a split Gram matrix, and for the chain by QR,
-// which agree with the SVD to 1e-9; way=layers differs from it by up to 1e-5 there, as an SVD in
-// single precision does.
+// which agree with the SVD to 1e-9; factorization=layers differs from it by up to 1e-5 there, as an
+// SVD in single precision does.
 
 struct Spectral {
   const char* problem;
@@ -440,9 +440,10 @@ struct Spectral {
 const Spectral kSpectral[] = {
     {"linear-chain[mode=learn,batch=32]", "hig[rate=2,cutoff=1e-10]", 1.0 / 2},
     {"coupled-oscillators[mode=learn,batch=128]", "hig[rate=2]", 1.0 / 5},
-    {"coupled-oscillators[mode=learn,batch=128]", "hig[rate=2,way=layers]", 1.0 / 5},
+    {"coupled-oscillators[mode=learn,batch=128]", "hig[rate=2,factorization=layers]", 1.0 / 5},
     {"quantum-dipole[mode=learn,batch=16]", "hig[rate=0.5,cutoff=1e-5]", 1.0 / 10},
-    {"quantum-dipole[mode=learn,batch=16]", "hig[rate=0.5,cutoff=1e-5,way=layers]", 1.0 / 10},
+    {"quantum-dipole[mode=learn,batch=16]", "hig[rate=0.5,cutoff=1e-5,factorization=layers]",
+     1.0 / 10},
 };
 
 // A method that is asked for the same step again and again, some steps from the start.

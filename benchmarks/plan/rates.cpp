@@ -13,6 +13,7 @@
 #include "core/json.h"
 #include "core/options.h"
 #include "core/records/json_view.h"
+#include "core/seeds.h"
 #include "core/spec.h"
 
 namespace isoline::benchmarks {
@@ -138,7 +139,7 @@ std::size_t BestLosses::place_of(const Component& problem) const {
 std::optional<Real> BestLosses::find(const Component& problem, std::uint64_t seed) const {
   const std::size_t place = place_of(problem);
   if (place == rows_.size()) return std::nullopt;
-  const auto known = rows_[place].losses.find(seed);
+  const auto known = rows_[place].losses.find(instance_of(seed));
   return known == rows_[place].losses.end() ? std::nullopt : std::optional(known->second.loss);
 }
 
@@ -157,7 +158,7 @@ bool BestLosses::add(const Record& record) {
   const Component& problem = record.request.problem;
   const std::size_t place = place_of(problem);
   if (place == rows_.size()) rows_.push_back({problem.name, without_empty(problem.options), {}});
-  const auto [known, is_new] = rows_[place].losses.try_emplace(record.request.seed);
+  const auto [known, is_new] = rows_[place].losses.try_emplace(instance_of(record.request.seed));
   if (!is_new && known->second.loss <= loss) return false;
   known->second = {loss, record.request.optimizer.spec};
   return true;

@@ -44,13 +44,20 @@ Budget budget_from(const Json& json) {
   return budget;
 }
 
+std::vector<std::uint64_t> seeds_from(const Json& json) {
+  if (!json.contains("instances") && !json.contains("starts"))
+    return parse_seeds(json.value("seeds", "=0"));
+  require(!json.contains("seeds"), "a block has either seeds, or instances and starts");
+  return crossed_seeds(json.value("instances", ""), json.value("starts", ""));
+}
+
 MatrixBlock block_from(const Json& json) {
   const std::vector<std::string> none;
   return {.problems = json.at("problems"),
           .optimizers = json.at("optimizers"),
           .except_problems = json.value("except_problems", none),
           .except_optimizers = json.value("except_optimizers", none),
-          .seeds = parse_seeds(json.value("seeds", "=0")),
+          .seeds = seeds_from(json),
           .budget = budget_from(json.value("budget", Json::object())),
           .threads = json.value("threads", 1),
           .hard_seconds = json.value("hard_seconds", 0.0),

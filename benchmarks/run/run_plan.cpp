@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -83,10 +84,13 @@ void require_sound(const Catalog& catalog, const std::vector<Request>& requests)
 
 void write_used_rates(const Rates& rates, const std::vector<Request>& requests, Store& store) {
   const std::filesystem::path file = store.folder() / "rates.json";
-  std::map<std::pair<std::string, std::string>, Json> rows;
+  std::map<std::array<std::string, 3>, Json> rows;  // by problem, optimizer and table
+  const auto add = [&](const Json& row) {
+    rows[{row.at("problem"), row.at("optimizer"), row.at("file")}] = row;
+  };
   if (is_there(file)) try {
       const Json table = read_json(file);
-      for (const Json& row : table.at("rows")) rows[{row.at("problem"), row.at("optimizer")}] = row;
+      for (const Json& row : table.at("rows")) add(row);
     } catch (const std::exception& error) {
       rows.clear();
       store.set_aside(file, error.what());
@@ -97,13 +101,20 @@ void write_used_rates(const Rates& rates, const std::vector<Request>& requests, 
     const std::string& optimizer = request.optimizer.name;
     // "direct" of "direct.json": what a search in that table alone calls it.
     const std::string table = request.rates.substr(0, request.rates.rfind(".json"));
+    const auto add_found = [&](const Rates::Row& row) {
+      add({{"problem", problem.spec},
+           {"optimizer", optimizer},
+           {"options", to_json(row.options)},
+           {"file", row.origin},
+           {"source", parse_json(row.source, row.origin)}});
+    };
     const Rates::Row* row = rates.find(problem, optimizer, table);
     if (!row) continue;
-    rows[{problem.spec, optimizer}] = {{"problem", problem.spec},
-                                       {"optimizer", optimizer},
-                                       {"options", to_json(row->options)},
-                                       {"file", row->origin},
-                                       {"source", parse_json(row->source, row->origin)}};
+    add_found(*row);
+    if (!parse_json(row->source, row->origin).contains("families")) continue;
+    // Beside a value chosen on other families: the trials on this very problem, for comparison.
+    const Rates::Row* own = rates.find(problem, optimizer, table + "-tuned");
+    if (own && own->problem == options_of(parse_spec(problem.spec))) add_found(*own);
   }
   if (rows.empty()) return;
   Json all = Json::array();

@@ -18,6 +18,7 @@
 #include "core/errors.h"
 #include "core/files.h"
 #include "core/records/provenance.h"
+#include "core/seeds.h"
 #include "core/text.h"
 #include "core/threads.h"
 
@@ -35,7 +36,7 @@ void Outcome::count(const Record& record) {
 
 std::string title_of(const Request& request) {
   return fmt::format("{} × {}, seed {}", request.problem.spec, request.optimizer.spec,
-                     request.seed);
+                     seed_text(request.seed));
 }
 
 bool RunOptions::redoes(const std::optional<Record>& done) const {

@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "benchmarks/run/isolate.h"
 #include "core/json.h"
@@ -167,10 +169,14 @@ Candidate candidate_of(const Catalog& catalog, const TunedPair& pair, const Tuni
   } else {
     knob = knob_of(catalog, pair.optimizer, pair.problem, pair.options);
     require(knob.has_value(), [&] { return pair.optimizer + " has nothing to tune"; });
-    const bool in_cauchy_steps = knob->tunable.unit == Tunable::Unit::cauchy;
-    values = grid_of(*knob, in_cauchy_steps ? cauchy_step(catalog, pair.problem) : knob->standard);
+    const bool in_cauchy_steps = knob->tunable.unit == Tunable::Unit::cauchy && !plan.is_common;
+    values = plan.is_common    ? common_grid_of(*knob)
+             : in_cauchy_steps ? grid_of(*knob, cauchy_step(catalog, pair.problem))
+                               : grid_of(*knob, knob->standard);
   }
-  Candidate candidate{.pair = pair, .knob = *knob, .may_grow = !plan.grid};
+  Candidate candidate{.pair = pair, .knob = *knob, .may_grow = !plan.grid && !plan.is_common};
+  candidate.tuned.family = pair.problem.name;
+  candidate.tuned.standard = knob->standard;
   candidate.tuned.problem = pair.problem.spec;
   candidate.tuned.optimizer = pair.optimizer;
   candidate.tuned.option = knob->option + (knob->rule.empty() ? "" : " of " + knob->rule);
@@ -194,23 +200,28 @@ void add_runs(const Catalog& catalog, const TuningPlan& plan, Candidate& candida
   }
 }
 
+// Whether the best stands at an edge; after a tie with its neighbour, no further value is tried.
+bool is_better_edge(const std::vector<TuningScore>& scores, std::size_t best) {
+  const std::size_t last = scores.size() - 1;
+  const bool is_last = best == last, is_outermost = best == 0 || is_last;
+  return last > 0 && is_outermost && scores[best] < scores[is_last ? last - 1 : 1];
+}
+
 void judge(const std::filesystem::path& folder, Candidate& candidate) {
   TunedOption& tuned = candidate.tuned;
+  tuned.work = 0;
   for (std::size_t i = 0; i < tuned.values.size(); ++i) {
     std::vector<Record> records;
     for (const Request& request : candidate.runs[i])
       if (auto record = Store::find_in(folder, request)) records.push_back(std::move(*record));
     candidate.is_inapplicable |= std::ranges::any_of(
         records, [](const Record& record) { return record.status == Status::inapplicable; });
+    for (const Record& record : records) tuned.work += record.summary.work;
     const bool is_whole = records.size() == candidate.runs[i].size();
     tuned.scores[i] = is_whole ? score_of(records) : TuningScore();
   }
   tuned.best = best_value(tuned.values, tuned.scores, candidate.knob.standard);
-  // After a tie with its neighbour, no further value is tried.
-  const std::size_t last = tuned.values.size() - 1;
-  const bool is_last = tuned.best == last, is_outermost = tuned.best == 0 || is_last;
-  tuned.is_at_edge =
-      last > 0 && is_outermost && tuned.scores[tuned.best] < tuned.scores[is_last ? last - 1 : 1];
+  tuned.is_at_edge = is_better_edge(tuned.scores, tuned.best);
 }
 
 // One more value beyond the edge that the best stands at; whether there may be one.
@@ -231,15 +242,14 @@ Json candidate_row(const Candidate& candidate, const Budget& usual) {
     return std::isfinite(value) ? Json(three_digits(value)) : json_number(value);
   };
   const TunedOption& tuned = candidate.tuned;
-  Json scores = Json::array(), expected = Json::array();
-  std::vector<Real> left;
-  for (const TuningScore& score : tuned.scores) {
-    left.push_back(score.left);
+  Json scores = Json::array();
+  for (const TuningScore& score : tuned.scores)
     scores.push_back({json_number(score.work), number_of(score.left)});
-  }
-  for (const Real each : best_of(left)) expected.push_back(number_of(each));
-  Json source{
-      {"grid", {{candidate.knob.option, tuned.values}}}, {"score", scores}, {"best_of", expected}};
+  Json source{{"grid", {{candidate.knob.option, tuned.values}}},
+              {"score", scores},
+              {"default", tuned.standard},
+              {"value", tuned.values[tuned.best]},
+              {"spent", tuned.work}};
   if (tuned.is_at_edge) source["edge"] = true;
   const Budget& budget = candidate.pair.budget;
   if (budget.work != usual.work) source["work"] = budget.work;
@@ -247,6 +257,50 @@ Json candidate_row(const Candidate& candidate, const Budget& usual) {
           {"optimizer", tuned.optimizer},
           {"options", to_json(options_at(candidate, tuned.values[tuned.best]))},
           {"source", source}};
+}
+
+// One row per method and family, which is for all settings of the family.
+Json left_out_rows(const std::vector<Candidate>& candidates,
+                   const std::vector<TunedOption>& tuned) {
+  Json rows = Json::array();
+  for (const LeftOut& left : leave_one_out(tuned)) {
+    const auto candidate =
+        std::ranges::find(candidates, left.grid->optimizer,
+                          [](const Candidate& each) { return each.pair.optimizer; });
+    Json scores = Json::array();
+    for (const Real score : left.scores) scores.push_back(three_digits(score));
+    Json source{{"grid", {{candidate->knob.option, left.grid->values}}},
+                {"mean_score", scores},
+                {"families", left.chosen_on},
+                {"default", left.grid->standard},
+                {"value", left.grid->values[left.best]},
+                {"spent", left.work}};
+    if (left.is_at_edge) source["edge"] = true;
+    rows.push_back({{"problem", left.family},
+                    {"optimizer", left.grid->optimizer},
+                    {"options", to_json(options_at(*candidate, left.grid->values[left.best]))},
+                    {"source", source}});
+  }
+  return rows;
+}
+
+// The score of each value of a grid on its setting; all 0 where none solves it.
+std::vector<Real> setting_scores(const TunedOption& tuned) {
+  constexpr Real kDoublings = 6;  // log2 64, where a score ends
+  const Real least = std::max(Real(1), std::ranges::min(tuned.scores, {}, &TuningScore::work).work);
+  std::vector<Real> scores;
+  for (const TuningScore& score : tuned.scores) {
+    const Real slower = std::log2(std::max(Real(1), score.work) / least);
+    scores.push_back(std::isfinite(score.work) ? std::max(Real(0), 1 - slower / kDoublings) : 0);
+  }
+  return scores;
+}
+
+std::vector<Real> mean_of(const std::vector<std::vector<Real>>& rows, std::size_t columns) {
+  std::vector<Real> mean(columns, 0);
+  for (const std::vector<Real>& row : rows)
+    for (std::size_t i = 0; i < columns; ++i) mean[i] += row[i] / static_cast<Real>(rows.size());
+  return mean;
 }
 
 }  // namespace
@@ -283,6 +337,14 @@ std::vector<Real> grid_of(const Knob& knob, Real unit) {
     return std::abs(std::log(value / knob.standard));
   }) = knob.standard;
   return values;
+}
+
+std::vector<Real> common_grid_of(const Knob& knob) {
+  constexpr int kFewestBelow = 2;
+  Knob wide = knob;
+  wide.tunable.below = std::max(kFewestBelow, knob.tunable.below);
+  wide.tunable.factor *= knob.tunable.factor;
+  return grid_of(wide, knob.standard);
 }
 
 std::optional<Real> value_beyond(const Knob& knob, const std::vector<Real>& values, bool upward) {
@@ -338,21 +400,43 @@ std::size_t best_value(const std::vector<Real>& values, const std::vector<Tuning
   return best;
 }
 
-std::vector<Real> best_of(std::vector<Real> losses) {
-  std::ranges::sort(losses);
-  const auto n = losses.size();
-  std::vector<Real> expected;
-  for (std::size_t b = 1; b <= n; ++b) {
-    // C(n − i, b − 1)/C(n, b) by its ratio from one i to the next, i = 1 … n − b + 1.
-    Real weight = static_cast<Real>(b) / static_cast<Real>(n), sum = 0;
-    for (std::size_t i = 1; i + b <= n + 1; ++i) {
-      sum += weight * losses[i - 1];
-      weight *=
-          static_cast<Real>(n - i - b + 1) / static_cast<Real>(std::max<std::size_t>(1, n - i));
-    }
-    expected.push_back(sum);
+std::vector<LeftOut> leave_one_out(const std::vector<TunedOption>& tuned) {
+  using Scores = std::vector<std::vector<Real>>;  // a row per setting, a column per value
+  struct Method {
+    const TunedOption* grid = nullptr;
+    std::map<std::string, Scores> families;
+    std::int64_t work = 0;
+  };
+  std::map<std::string, Method> methods;
+  std::set<std::string> families;
+  for (const TunedOption& each : tuned) {
+    Method& method = methods[each.optimizer];
+    if (!method.grid) method.grid = &each;
+    require(method.grid->values == each.values,
+            [&] { return each.optimizer + " has other values on " + each.problem; });
+    method.families[each.family].push_back(setting_scores(each));
+    method.work += each.work;
+    families.insert(each.family);
   }
-  return expected;
+  std::vector<LeftOut> all;
+  for (const auto& [name, method] : methods)
+    for (const std::string& family : families) {
+      const std::size_t values = method.grid->values.size();
+      LeftOut left{.family = family, .grid = method.grid, .work = method.work};
+      Scores means;
+      for (const auto& [other, scores] : method.families) {
+        if (other == family) continue;
+        left.chosen_on.push_back(other);
+        means.push_back(mean_of(scores, values));
+      }
+      left.scores = mean_of(means, values);
+      std::vector<TuningScore> ordered;  // less is better; rounded, or sums would break ties
+      for (const Real score : left.scores) ordered.push_back({.work = -three_digits(score)});
+      left.best = best_value(method.grid->values, ordered, method.grid->standard);
+      left.is_at_edge = is_better_edge(ordered, left.best);
+      all.push_back(std::move(left));
+    }
+  return all;
 }
 
 TuningResult tune(const Catalog& catalog, const TuningPlan& plan,
@@ -361,7 +445,10 @@ TuningResult tune(const Catalog& catalog, const TuningPlan& plan,
   for (const TunedPair& pair : plan.pairs) candidates.push_back(candidate_of(catalog, pair, plan));
   std::vector<Candidate*> open;  // those with new values
   for (Candidate& candidate : candidates) open.push_back(&candidate);
-  TuningResult result{.rows = std::make_shared<Json>(Json::array()), .tuned = {}, .outcome = {}};
+  TuningResult result{.rows = std::make_shared<Json>(Json::array()),
+                      .left_out_rows = std::make_shared<Json>(Json::array()),
+                      .tuned = {},
+                      .outcome = {}};
   while (!open.empty()) {
     std::vector<Request> requests;
     for (Candidate* candidate : open) add_runs(catalog, plan, *candidate, requests);
@@ -381,6 +468,8 @@ TuningResult tune(const Catalog& catalog, const TuningPlan& plan,
     result.tuned.push_back(candidate.tuned);
   }
   result.rows = std::make_shared<const Json>(std::move(rows));
+  if (plan.is_common)
+    result.left_out_rows = std::make_shared<const Json>(left_out_rows(candidates, result.tuned));
   return result;
 }
 

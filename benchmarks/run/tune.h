@@ -41,6 +41,9 @@ inline constexpr int kGridValues = 7, kMostExtensions = 3;
 // Seven values, ascending, each `factor` times the one before but for the default, which stands in
 // the place of the value next to it. `unit` is what the values are multiples of.
 std::vector<Real> grid_of(const Knob& knob, Real unit);
+// The same for all problems: in the option's own unit, values `factor`² apart, and at least two
+// below the default, since it has to serve problems of any scale.
+std::vector<Real> common_grid_of(const Knob& knob);
 // The value beyond the last, or before the first; nothing where the option's range ends.
 std::optional<Real> value_beyond(const Knob& knob, const std::vector<Real>& values, bool upward);
 
@@ -75,9 +78,6 @@ TuningScore score_of(const std::vector<Record>& runs);
 std::size_t best_value(const std::vector<Real>& values, const std::vector<TuningScore>& scores,
                        Real standard);
 
-// E[best of b] of n losses: Σ y₍ᵢ₎ C(n − i, b − 1)/C(n, b) over the sorted ones, for b = 1 … n.
-std::vector<Real> best_of(std::vector<Real> losses);
-
 struct TunedPair {
   Component problem;
   std::string optimizer;  // a name
@@ -86,30 +86,52 @@ struct TunedPair {
 };
 
 // Every pair is tried at seven values of its method's option, and while the best stands at an edge
-// at one more beyond it, three at most. A grid of one's own is for all pairs, and is not extended.
+// at one more beyond it, three at most. A grid of one's own is for all pairs, and is not extended,
+// nor is a method's common grid.
 struct TuningPlan {
-  std::vector<TunedPair> pairs;
+  std::vector<TunedPair> pairs = {};
   std::vector<std::uint64_t> seeds;
-  std::optional<GivenGrid> grid;
+  std::optional<GivenGrid> grid = {};
+  bool is_common = false;
 };
 
 // One pair's grid and what it came to.
 struct TunedOption {
   std::string problem, optimizer, option;  // "rate", or "rate of adam" inside another method
-  std::vector<Real> values;                // ascending
-  std::vector<TuningScore> scores;
+  std::vector<Real> values = {};           // ascending
+  std::vector<TuningScore> scores = {};
   std::size_t best = 0;
   bool is_at_edge = false;  // of the grid, and better than its neighbour
+  std::string family = {};  // the problem's name
+  Real standard = 1;        // the default
+  std::int64_t work = 0;    // nominal, of all trials
 };
+
+// The value of a method's option for one family of problems, chosen by the scores on the others.
+struct LeftOut {
+  std::string family;
+  const TunedOption* grid = nullptr;        // any of the method's: all have the same values
+  std::vector<std::string> chosen_on = {};  // families
+  std::vector<Real> scores = {};            // of each value: the mean over these families
+  std::size_t best = 0;
+  bool is_at_edge = false;
+  std::int64_t work = 0;  // of all trials of the method
+};
+
+// For every family, by method and family. The score of a value on a setting is 1 − log2(work/least
+// work of the method's values)/log2 64, at least 0, and 0 where it is not solved; the score on a
+// family is the mean over its settings. Ties go to the default, or to what is nearest to it.
+std::vector<LeftOut> leave_one_out(const std::vector<TunedOption>& tuned);
 
 struct TuningResult {
-  std::shared_ptr<const Json> rows;  // of a table isoline.rates/1
-  std::vector<TunedOption> tuned;    // the same, one per row
-  std::size_t inapplicable = 0;      // pairs without a row
-  Outcome outcome;                   // runs and seconds are those of all rounds
+  std::shared_ptr<const Json> rows;           // of a table isoline.rates/1
+  std::shared_ptr<const Json> left_out_rows;  // of another, one per family; of a common grid
+  std::vector<TunedOption> tuned;             // the same, one per row
+  std::size_t inapplicable = 0;               // pairs without a row
+  Outcome outcome;                            // runs and seconds are those of all rounds
 };
 
-// A row has the values, their scores, `best_of`, whether the best is at an edge, and the budget of
+// A row has the values, their scores, whether the best is at an edge, and the budget of
 // work if it differs from that of the first pair. Inapplicable pairs have none; if every value
 // failed, the one nearest to the default is used.
 TuningResult tune(const Catalog& catalog, const TuningPlan& plan,

@@ -24,14 +24,11 @@ struct ExportArguments {
 
 void declare(VerbArguments& verb, ExportArguments& given) {
   std::vector<std::string> names;
-  static const std::string help = [] {
-    std::string text;
-    for (const reports::ExportFormat& format : reports::kExportFormats)
-      text += fmt::format("{}{}: {}", text.empty() ? "" : "; ", format.name, format.help);
-    return text;
-  }();
-  for (const reports::ExportFormat& format : reports::kExportFormats)
+  std::string help;
+  for (const reports::ExportFormat& format : reports::kExportFormats) {
+    help += fmt::format("{}{}: {}", help.empty() ? "" : "; ", format.name, format.help);
     names.emplace_back(format.name);
+  }
   verb.texts("DIR", given.folders, kFolders).required();
   verb.text("--format", given.format, help.c_str()).one_of(names).shown();
   verb.text("--out", given.out, "Output: a file, or a new folder for several").required();

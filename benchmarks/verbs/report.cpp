@@ -1,4 +1,6 @@
 // isoline report DIR...: tables, plots and statistics from records.
+#include "reports/report.h"
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <spawn.h>
@@ -6,9 +8,11 @@
 
 #include <array>
 #include <filesystem>
+#include <set>
 
 #include "benchmarks/cli/terminal.h"
 #include "benchmarks/cli/verb.h"
+#include "benchmarks/plan/claim_cells.h"
 #include "core/errors.h"
 #include "core/results/study.h"
 #include "core/text.h"
@@ -68,8 +72,12 @@ std::string format_names() {
 }
 
 int run(const ReportArguments& given, Session& session) {
-  const reports::Study study =
-      reports::read_study(given.folders, progress_on_terminal("reading records"));
+  std::set<std::string> claimed;
+  for (const Request& request : cells_of(builtin_claims_of(session.catalog()), true))
+    claimed.insert(request.cell);
+  const reports::Study study = reports::read_study(
+      given.folders, progress_on_terminal("reading records"),
+      [&](Record& record) { reports::trim_for_report(record, claimed.contains(record.cell)); });
   require(!study.runs.empty(), [&] {
     const std::string damaged =
         study.unreadable.empty() ? ""

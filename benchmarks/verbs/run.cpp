@@ -12,6 +12,7 @@
 #include "benchmarks/run/run_plan.h"
 #include "benchmarks/run/runner.h"
 #include "benchmarks/shard/split.h"
+#include "core/seeds.h"
 #include "core/text.h"
 
 namespace isoline::benchmarks {
@@ -34,7 +35,7 @@ void print_plan(const PlannedRun& all, int jobs, const RunArguments& given, Sess
   for (std::size_t i = 0; i < listed; ++i) {
     const Request& request = *cells[i].request;
     say(stdout, fmt::format("{:28} {:44} seed {:<4} {}\n", request.problem.spec,
-                            request.optimizer.spec, request.seed, fate_of(cells[i])));
+                            request.optimizer.spec, seed_text(request.seed), fate_of(cells[i])));
   }
   if (listed < cells.size())
     say(stdout, fmt::format("… and {} more; --all lists them\n", cells.size() - listed));

@@ -30,7 +30,7 @@ struct TuneArguments {
   std::string table, folder = "results/tuning";
   std::int64_t iterations = 100'000, work = 2000;
   int jobs = 0;
-  bool as_json = false, lists_all = false;
+  bool as_json = false, lists_all = false, leaves_out = false;
 };
 
 void declare(VerbArguments& verb, TuneArguments& given) {
@@ -47,12 +47,17 @@ void declare(VerbArguments& verb, TuneArguments& given) {
             "Unit of the grid: 1, the problem's Cauchy step, or the published rate")
       .one_of({"one", "cauchy", "published"})
       .shown();
+  verb.flag("--leave-one-out", given.leaves_out,
+            "Choose the value for each family of problems on the other families, from one grid "
+            "per method for all problems");
   verb.text("--tuning-seeds", given.seeds, "Seeds, different from those of results").shown();
   verb.whole("--work", given.work, "Largest work per run");
   verb.whole("--iterations", given.iterations, "Largest number of iterations per run");
   verb.whole("--jobs", given.jobs, "Runs at a time (default: one per core)", kJobs);
   verb.text("--out", given.folder, "Folder of the records").shown();
-  verb.text("--table", given.table, "Table of rates to write or to extend");
+  verb.text("--table", given.table,
+            "Table of rates to write or to extend; with --leave-one-out also NAME-tuned.json, of "
+            "the best value on each problem");
   verb.flag("--all", given.lists_all, "List every pair, not the first 20");
   verb.flag("--json", given.as_json, "Print the rows of the table as JSON");
   verb.plugins();
@@ -62,10 +67,17 @@ constexpr const char* kScore =
     "median work to 1e-6 of the success criterion, the loss or the error in x; then the median "
     "remainder at the end";
 
-// The cells of a suite, but for the blocks that name their own table of rates.
+constexpr const char* kLeftOutScore =
+    "mean over the other families, each the mean over its settings, of 1 - log2(work/least work of "
+    "the method's values)/6, at least 0, and 0 if not solved; work is the median to 1e-6";
+
+// The cells of a suite: with --leave-one-out of the blocks whose table of rates is the one that is
+// written, else of those that name none.
 std::vector<Request> cells_of(const Catalog& catalog, const TuneArguments& given) {
   Suite suite = read_suite(given.suite);
-  std::erase_if(suite.blocks, [](const MatrixBlock& block) { return !block.rates.empty(); });
+  const std::string own =
+      given.leaves_out ? std::filesystem::path(given.table).stem().string() : std::string();
+  std::erase_if(suite.blocks, [&](const MatrixBlock& block) { return block.rates != own; });
   return filtered(catalog, expand(catalog, suite, Rates()), given.problem, given.optimizer);
 }
 
@@ -78,40 +90,48 @@ std::vector<Request> cells_named(const Catalog& catalog, const TuneArguments& gi
 }
 
 TuningPlan plan_of(const Catalog& catalog, const TuneArguments& given) {
-  TuningPlan plan{.seeds = parse_seeds(given.seeds)};
+  TuningPlan plan{.seeds = parse_seeds(given.seeds), .is_common = given.leaves_out};
+  require(!given.leaves_out || given.grid.empty(),
+          "tune: --leave-one-out uses each method's own grid, not --grid");
   if (!given.grid.empty()) plan.grid = parse_grid(given.grid, given.unit);
   const Rates rates = Rates::builtin();
   std::set<std::pair<std::string, std::string>> known;
+  std::set<std::string> families;
   for (const Request& cell :
        given.suite.empty() ? cells_named(catalog, given) : cells_of(catalog, given)) {
     const std::string& name = cell.optimizer.name;
     const optimizers::Tunable& tunable = catalog.optimizers.at(name).tunable;
     if (tunable.option.empty() || !known.emplace(cell.problem.spec, name).second) continue;
-    const Rates::Row* row = rates.find(cell.problem, name);
+    families.insert(cell.problem.name);
+    // A common grid is around the defaults, whatever was published for a problem.
+    const Rates::Row* row = given.leaves_out ? nullptr : rates.find(cell.problem, name);
     plan.pairs.push_back({.problem = cell.problem,
                           .optimizer = name,
                           .budget = cell.budget,
                           .options = row && !row->is_from_grid ? row->options : OptionValues()});
   }
   require(!plan.pairs.empty(), "tune: none of these methods has an option to tune");
+  require(!given.leaves_out || families.size() > 1,
+          "tune: --leave-one-out needs problems of at least two families (names)");
   return plan;
 }
 
 // The rows of the table that are not replaced, and the new ones, in order; one row per line, so
 // that a diff shows one row per change.
-void write_table(const TuneArguments& given, const TuningPlan& plan, const Json& new_rows) {
+void write_table(const TuneArguments& given, const TuningPlan& plan,
+                 const std::filesystem::path& table, const Json& new_rows, const char* score) {
   std::map<std::pair<std::string, std::string>, std::string> rows;
   const auto add = [&](const Json& some) {
     for (const Json& row : some) rows[{row.at("problem"), row.at("optimizer")}] = json_text(row);
   };
-  if (std::filesystem::exists(given.table)) add(read_json(given.table).at("rows"));
+  if (std::filesystem::exists(table)) add(read_json(table).at("rows"));
   add(new_rows);
   const Budget& budget = plan.pairs[0].budget;
   Json grid{{"points", plan.grid ? plan.grid->values.size() : kGridValues},
             {"seeds", given.seeds},
             {"budget", {{"iterations", budget.iterations}, {"work", budget.work}}},
-            {"score", kScore}};
-  if (!plan.grid) grid["extensions"] = kMostExtensions;
+            {"score", score}};
+  if (!plan.grid && !plan.is_common) grid["extensions"] = kMostExtensions;
   std::string text = fmt::format("{{\"schema\": \"isoline.rates/1\",\n\"grid\": {},\n\"rows\": [",
                                  json_text(grid));
   const char* separator = "\n";
@@ -119,7 +139,7 @@ void write_table(const TuneArguments& given, const TuningPlan& plan, const Json&
     text += separator + row;
     separator = ",\n";
   }
-  write_text(given.table, text + "\n]}\n");
+  write_text(table, text + "\n]}\n");
 }
 
 bool is_failed(const TuningScore& score) {
@@ -185,6 +205,31 @@ std::string tuning_summary(const TuningResult& result) {
                             duration_text(result.outcome.seconds));
 }
 
+// One line per method and family: the value that the other families choose.
+reports::Table left_out_table(const Json& rows) {
+  reports::Table table{
+      .columns = {"family", "optimizer", "option", "value", "default", "score", "tuning work", ""},
+      .align = "lllrrrrl",
+      .names = 2};
+  table.caption =
+      "Value: the best on the other families. Score: its mean over these, 1 is the least work of "
+      "the method's values. Tuning work: nominal work of all trials of the method.";
+  for (const Json& row : rows) {
+    const Json& source = row.at("source");
+    const auto grid = source.at("grid").begin();
+    const auto& scores = source.at("mean_score");
+    const auto at = std::ranges::find(grid.value(), source.at("value")) - grid.value().begin();
+    table.rows.push_back({row.at("problem").get<std::string>(),
+                          row.at("optimizer").get<std::string>(), grid.key(),
+                          reports::figure(source.at("value").get<Real>()),
+                          reports::figure(source.at("default").get<Real>()),
+                          reports::figure(scores.at(static_cast<std::size_t>(at)).get<Real>()),
+                          reports::figure(source.at("spent").get<Real>()),
+                          source.contains("edge") ? "at the edge" : ""});
+  }
+  return table;
+}
+
 // How many pairs were tuned, at which edges the best stand and what ties; one line per pair, twenty
 // at most unless all are wanted, with a plot of its scores in a few characters.
 std::string tuning_text(const TuningResult& result, bool lists_all) {
@@ -199,6 +244,7 @@ std::string tuning_text(const TuningResult& result, bool lists_all) {
       "Grid: one bar per value from low to high, the best is the highest, · failed. Work: median "
       "to the target, ✗ not reached; left: median loss or error in x at the end.";
   for (const TunedOption& tuned : result.tuned) table.rows.push_back(tuning_row(tuned));
+  if (!result.left_out_rows->empty()) table = left_out_table(*result.left_out_rows);
   if (!table.rows.empty()) section.tables.push_back(std::move(table));
   return reports::terminal_section(section, lists_all ? reports::kAllRows : reports::kFewRows);
 }
@@ -212,9 +258,13 @@ int run(const TuneArguments& given, Session& session) {
   const TuningResult result = tune(catalog, plan, given.folder, options);
   if (result.outcome.is_interrupted) return exit_code_of(result.outcome);
   print_failures(result.outcome, given.folder);
-  say(stdout,
-      given.as_json ? json_text(*result.rows, 2) + "\n" : tuning_text(result, given.lists_all));
-  if (!given.table.empty()) write_table(given, plan, *result.rows);
+  const Json& rows = given.leaves_out ? *result.left_out_rows : *result.rows;
+  say(stdout, given.as_json ? json_text(rows, 2) + "\n" : tuning_text(result, given.lists_all));
+  if (given.table.empty()) return kGood;
+  std::filesystem::path table = given.table;
+  write_table(given, plan, table, rows, given.leaves_out ? kLeftOutScore : kScore);
+  table.replace_filename(table.stem().string() + "-tuned.json");
+  if (given.leaves_out) write_table(given, plan, table, *result.rows, kScore);
   return kGood;
 }
 
@@ -227,7 +277,8 @@ void register_tune(VerbRegistry& registry) {
        .summary = "Tune one option of each method for each problem, with equal budgets",
        .examples = "  isoline tune rosenbrock,heat --optimizer gd,adam --table rates.json\n"
                    "  isoline tune square --optimizer gd --grid rate=1e-3..1x7 --unit cauchy\n"
-                   "  isoline tune --suite quick --optimizer adam --json",
+                   "  isoline tune --suite quick --optimizer adam --json\n"
+                   "  isoline tune --leave-one-out sine,heat,burgers --table physics.json",
        .notes = "The best value has the least median work to the target; among equals, the least "
                 "remainder, "
                 "then\nthe distance from the default. The output names ties and best values at the "

@@ -47,12 +47,12 @@ constexpr const char* kOutside = "It has no value outside its bounds on x.";
 // The members of one answer.
 class Said {
  public:
-  Said(const std::string& text, std::string who)
-      : json_(parse_json(text, who + "'s handshake")), who_(std::move(who)) {
+  Said(const std::string& text, std::string sender)
+      : json_(parse_json(text, sender + "'s handshake")), sender_(std::move(sender)) {
     if (!json_.is_object()) fail("answers with", json_, "an object");
     const std::int64_t protocol = whole("protocol", 0, 1'000'000, {});
     require(protocol == kWireProtocol, [&] {
-      return fmt::format("{} uses protocol {}, but this program needs {}", who_, protocol,
+      return fmt::format("{} uses protocol {}, but this program needs {}", sender_, protocol,
                          kWireProtocol);
     });
   }
@@ -60,7 +60,7 @@ class Said {
   void expect_role(std::string_view role) const {
     const std::string said = text("role");
     require(said == role, [&] {
-      return fmt::format("{} is {} {}, but is used as {} {}", who_, article(said), quoted(said),
+      return fmt::format("{} is {} {}, but is used as {} {}", sender_, article(said), quoted(said),
                          article(role), role);
     });
   }
@@ -166,15 +166,15 @@ class Said {
   }
   [[noreturn]] void fail(std::string_view what, const Json& value, std::string_view law) const {
     throw UsageError(
-        fmt::format("{} {} {}, which must be {}", who_, what, quoted(json_text(value)), law));
+        fmt::format("{} {} {}, which must be {}", sender_, what, quoted(json_text(value)), law));
   }
   [[noreturn]] void refuse(const char* name, const std::string& law) const {
-    if (!has(name)) throw UsageError(fmt::format("{} lacks {}, {}", who_, name, law));
+    if (!has(name)) throw UsageError(fmt::format("{} lacks {}, {}", sender_, name, law));
     fail(fmt::format("says {} =", name), json_[name], law);
   }
 
   const Json json_;
-  const std::string who_;
+  const std::string sender_;
 };
 
 Foreign foreign_of(const Said& said) {
@@ -206,8 +206,8 @@ std::string answer_to(Line& line, const Json& greeting, double seconds) {
 
 }  // namespace
 
-ProblemHandshake problem_handshake(const std::string& text, const std::string& who) {
-  const Said said(text, who);
+ProblemHandshake problem_handshake(const std::string& text, const std::string& sender) {
+  const Said said(text, sender);
   said.expect_role("problem");
   ProblemHandshake problem{.foreign = foreign_of(said)};
   problem.inputs = said.whole("inputs", 1, kMostSize, {});
@@ -220,7 +220,7 @@ ProblemHandshake problem_handshake(const std::string& text, const std::string& w
   problem.are_differences = said.flag("differences");
   problem.inverse = said.choice("inverse", kInverses);
   require(problem.oracles.contains(Oracle::inverse) == !problem.inverse.empty(),
-          [&] { return who + " must declare the oracle inverse and its kind together"; });
+          [&] { return sender + " must declare the oracle inverse and its kind together"; });
   problem.start = said.numbers("start", problem.inputs, true);
   problem.drawn = said.numbers("drawn", problem.inputs, false);
   problem.target = said.numbers("target", problem.outputs, true);
@@ -228,7 +228,7 @@ ProblemHandshake problem_handshake(const std::string& text, const std::string& w
   std::tie(problem.lower, problem.upper) = said.bounds(problem.inputs);
   const auto require_within = [&](const char* name, const std::vector<Real>& x) {
     require(is_within(x, problem),
-            [&] { return fmt::format("{} declares a {} outside its bounds", who, name); });
+            [&] { return fmt::format("{} declares a {} outside its bounds", sender, name); });
   };
   require_within("start", problem.start);
   require_within("drawn", problem.drawn);
@@ -238,12 +238,12 @@ ProblemHandshake problem_handshake(const std::string& text, const std::string& w
   problem.minimum = said.number("minimum");
   problem.aim = said.choice("aim", kAimNames) == name_of(Aim::x) ? Aim::x : Aim::loss;
   require(problem.aim == Aim::loss || !problem.truth.empty(),
-          [&] { return who + " has the success criterion x, but truth is missing"; });
+          [&] { return sender + " has the success criterion x, but truth is missing"; });
   return problem;
 }
 
-MethodHandshake method_handshake(const std::string& text, const std::string& who) {
-  const Said said(text, who);
+MethodHandshake method_handshake(const std::string& text, const std::string& sender) {
+  const Said said(text, sender);
   said.expect_role("optimizer");
   return {.foreign = foreign_of(said),
           .needs = said.oracles("needs", {Oracle::forward, Oracle::pullback, Oracle::pushforward,
@@ -254,12 +254,12 @@ MethodHandshake method_handshake(const std::string& text, const std::string& who
 
 ProblemHandshake greet_problem(Line& line, std::uint64_t seed, double seconds) {
   const Json greeting{{"protocol", kWireProtocol}, {"role", "problem"}, {"seed", seed}};
-  return problem_handshake(answer_to(line, greeting, seconds), line.who());
+  return problem_handshake(answer_to(line, greeting, seconds), line.sender());
 }
 
 MethodHandshake greet_method(Line& line, double seconds) {
   const Json greeting{{"protocol", kWireProtocol}, {"role", "optimizer"}};
-  return method_handshake(answer_to(line, greeting, seconds), line.who());
+  return method_handshake(answer_to(line, greeting, seconds), line.sender());
 }
 
 }  // namespace isoline

@@ -82,9 +82,9 @@ struct MethodHandshake {
   bool reports = false;           // its iterations; else each new best point counts as one
 };
 
-// From the text that `who` sent. UsageError, which quotes it, if it is invalid.
-ProblemHandshake problem_handshake(const std::string& text, const std::string& who);
-MethodHandshake method_handshake(const std::string& text, const std::string& who);
+// From the text that `sender` sent. UsageError, which quotes it, if it is invalid.
+ProblemHandshake problem_handshake(const std::string& text, const std::string& sender);
+MethodHandshake method_handshake(const std::string& text, const std::string& sender);
 
 // Greets a program that was just started, which has so many seconds to answer. UsageError if it
 // does not answer, or if the answer is invalid.

@@ -75,7 +75,7 @@ struct Line::Deadline {
   bool is_over() const { return seconds != kNoDeadline && seconds_since(begin) > seconds; }
 };
 
-Line::Line(ChildProgram::Start start) : who_("`" + start.command + "`") {
+Line::Line(ChildProgram::Start start) : sender_("`" + start.command + "`") {
   int ends[2];
   require(socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) == 0,
           "cannot create another socket for a program");
@@ -92,12 +92,12 @@ Line::Line(ChildProgram::Start start) : who_("`" + start.command + "`") {
   close(ends[1]);
 }
 
-Line::Line(int socket) : socket_(socket), who_("the other program") {}
+Line::Line(int socket) : socket_(socket), sender_("the other program") {}
 
 Line::~Line() { close(socket_); }
 
 void Line::fail(const std::string& what) {
-  std::string text = fmt::format("{} {}", who_, what);
+  std::string text = fmt::format("{} {}", sender_, what);
   if (child_) {
     text += fmt::format("; {}", child_->end_in_words());
     const std::string words = child_->last_words();

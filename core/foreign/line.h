@@ -86,7 +86,7 @@ class Line {
   Line(const Line&) = delete;
   Line& operator=(const Line&) = delete;
 
-  const std::string& who() const { return who_; }  // "`python3 mine.py`"
+  const std::string& sender() const { return sender_; }  // "`python3 mine.py`"
 
   void send(Verb verb, std::uint32_t status, std::span<const std::span<const Real>> numbers);
   void send(Verb verb, std::uint32_t status, std::span<const Real> numbers) {
@@ -119,7 +119,7 @@ class Line {
 
   int socket_ = -1;
   std::unique_ptr<ChildProgram> child_;
-  std::string who_;
+  std::string sender_;
 };
 
 }  // namespace isoline

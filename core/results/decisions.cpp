@@ -10,6 +10,7 @@
 
 #include "core/draws.h"
 #include "core/results/statistics.h"
+#include "core/seeds.h"
 
 namespace isoline::results {
 namespace {
@@ -150,18 +151,29 @@ Leaving leaving_order(const Flips& flips) {
 
 // --- the bootstrap
 
-// The results of each method on one setting over resampled seeds. An empty resample gets the median
-// of all runs.
+// The results on one setting: [instance][start].
+using Crossed = std::vector<std::vector<const Repetition*>>;
+
+Crossed by_instance(const std::vector<Repetition>& repetitions) {
+  std::map<std::uint64_t, std::vector<const Repetition*>> instances;
+  for (const Repetition& each : repetitions) instances[instance_of(each.seed)].push_back(&each);
+  Crossed all;
+  for (auto& [instance, starts] : instances) all.push_back(std::move(starts));
+  return all;
+}
+
+// The results of each method on one setting over resampled instances, and within them starts. An
+// empty resample gets the median of all runs.
 std::vector<std::optional<Real>> drawn_costs(const std::vector<std::optional<Real>>& costs,
-                                             const std::vector<Repetition>& repetitions,
-                                             Draws& random) {
-  if (repetitions.size() < 2) return costs;
+                                             const Crossed& instances, Draws& random) {
   std::vector<Row> values(costs.size());
-  for (std::size_t i = 0; i < repetitions.size(); ++i) {
-    const Repetition& drawn = repetitions[drawn_place(random, repetitions.size())];
-    random.uniform();  // of the start, of which a seed has one
-    for (std::size_t s = 0; s < costs.size(); ++s)
-      if (drawn.costs[s]) values[s].push_back(*drawn.costs[s]);
+  for (std::size_t i = 0; i < instances.size(); ++i) {
+    const auto& starts = instances[drawn_place(random, instances.size())];
+    for (std::size_t j = 0; j < starts.size(); ++j) {
+      const Repetition& drawn = *starts[drawn_place(random, starts.size())];
+      for (std::size_t s = 0; s < costs.size(); ++s)
+        if (drawn.costs[s]) values[s].push_back(*drawn.costs[s]);
+    }
   }
   std::vector<std::optional<Real>> medians = costs;
   for (std::size_t s = 0; s < costs.size(); ++s)
@@ -244,8 +256,11 @@ class Decider {
     out.friedman = friedman_p(sums);
   }
 
-  // Families, within them seeds.
+  // Families, within them instances, within these starts.
   void fill_shares(Decision& out) const {
+    std::vector<Crossed> crossed;  // [setting]
+    for (const auto& repetitions : evidence_.repetitions)
+      crossed.push_back(by_instance(repetitions));
     Row first(methods_.size(), 0);
     Draws random(0, "report", "hierarchy");
     for (std::size_t draw = 0; draw < kDraws; ++draw) {
@@ -253,9 +268,9 @@ class Decider {
       Costs costs;
       for (std::size_t g = 0; g < families_.size(); ++g)
         for (const std::size_t p : families_[drawn_place(random, families_.size())])
-          costs.push_back(evidence_.repetitions.empty()
+          costs.push_back(crossed.empty() || evidence_.repetitions[p].size() < 2
                               ? evidence_.costs[p]
-                              : drawn_costs(evidence_.costs[p], evidence_.repetitions[p], random));
+                              : drawn_costs(evidence_.costs[p], crossed[p], random));
       const auto best = firsts(mean_scores(scores_of(costs, methods_, kProfileEnd)));
       for (const std::size_t s : best) first[s] += 1 / Real(best.size());
     }
@@ -290,8 +305,7 @@ class Decider {
     for (const auto& repetitions : evidence_.repetitions)
       for (const Repetition& each : repetitions) seeds.insert(each.seed);
     for (const std::uint64_t seed : seeds)
-      if (seeds.size() > 1)
-        add_choice(out, Varied::seed, std::to_string(seed), costs_of_seed(seed));
+      if (seeds.size() > 1) add_choice(out, Varied::seed, seed_text(seed), costs_of_seed(seed));
   }
 
   Costs costs_of_seed(std::uint64_t seed) const {

@@ -28,18 +28,19 @@ inline constexpr Real kSignificant = 0.05;
 // Up to so many families all flips are counted; of more, so many fixed ones.
 inline constexpr std::size_t kExactFlips = 20, kDrawnFlips = 1U << 16U;
 
-// The results of all methods on one setting from one seed.
+// The results of all methods on one setting from one seed, which names an instance and a start.
 struct Repetition {
   std::uint64_t seed = 0;
   std::vector<std::optional<Real>> costs;  // [method]; nothing where no such run exists
 };
 
-enum class Varied { profile_end, tolerance, measure, family, seed };
+enum class Varied { profile_end, tolerance, measure, prices, family, seed };
 
-// Other costs of the same methods on the same settings: to another tolerance, or in time.
+// Other costs of the same methods on the same settings: to another tolerance, in time, or at other
+// prices.
 struct OtherCosts {
   Varied varied = Varied::tolerance;
-  std::string value;  // which tolerance, or which measure
+  std::string value;  // which tolerance, which measure, or which oracle at which factor
   Costs costs;
 };
 

@@ -17,7 +17,8 @@ bool is_asked(const Comparison& c, std::size_t p, std::size_t s) {
 // A setting is shared where at least two thirds of the methods were run on it, whatever their
 // meanings; so a grid that is too large for many is not, and no method removes one by itself.
 // Methods that apply to none of their settings do not count.
-std::vector<std::size_t> shared_settings(const Comparison& c) {
+template <class Counts>
+std::vector<std::size_t> shared_settings(const Comparison& c, Counts counts) {
   std::set<std::string> methods;
   for (const OptimizerAxis& axis : c.optimizers)
     if (axis.applicable > 0) methods.insert(axis.name_of_all());
@@ -27,7 +28,7 @@ std::vector<std::size_t> shared_settings(const Comparison& c) {
     for (std::size_t s = 0; s < c.optimizers.size(); ++s)
       if (is_asked(c, p, s) && c.optimizers[s].applicable > 0)
         asked.insert(c.optimizers[s].name_of_all());
-    if (is_ordered(c, p) && 3 * asked.size() >= 2 * methods.size() && !asked.empty())
+    if (counts(c, p) && 3 * asked.size() >= 2 * methods.size() && !asked.empty())
       shared.push_back(p);
   }
   return shared;
@@ -35,8 +36,9 @@ std::vector<std::size_t> shared_settings(const Comparison& c) {
 
 // A method is ranked that was run on every shared setting and applies to one of them; so one
 // method's additional settings move no other, and none rises by what it was not run on.
-Order common_order(const Comparison& c) {
-  Order order{.settings = shared_settings(c), .methods = {}};
+template <class Counts>
+Order common_order(const Comparison& c, Counts counts) {
+  Order order{.settings = shared_settings(c, counts), .methods = {}};
   const auto is_applicable = [&](std::size_t p, std::size_t s) {
     return c.cell(p, s).inapplicable.empty();
   };
@@ -94,14 +96,15 @@ void sort_optimizers(Comparison& c, const std::vector<std::size_t>& places) {
   for (auto& row : c.cells) sort(row);
   for (std::vector<Run>* runs : {&c.runs, &c.absent})
     for (Run& run : *runs) run.optimizer = at[run.optimizer];
-  for (std::size_t& method : c.order.methods) method = at[method];
-  std::ranges::sort(c.order.methods);
+  for (Order* order : {&c.order, &c.sanity}) {
+    for (std::size_t& method : order->methods) method = at[method];
+    std::ranges::sort(order->methods);
+  }
 }
 
 // The rows of the order's settings; nothing for methods with extra information where these are left
 // out: the others are then measured by the best of themselves.
-Costs decision_costs(const Comparison& c, Measure by, std::size_t tolerance, bool is_open) {
-  const Costs all = common_costs(c, tolerance, by);
+Costs decision_costs(const Comparison& c, const Costs& all, bool is_open) {
   Costs costs;
   for (const std::size_t p : c.order.settings) {
     costs.push_back(all[p]);
@@ -129,11 +132,54 @@ std::vector<Repetition> repetitions_of(const Comparison& c, std::size_t problem,
   return all;
 }
 
+// Median costs to the tightest tolerance at these factors of the prices of one oracle, for each
+// oracle that the runs called: halved, and doubled.
+std::vector<OtherCosts> costs_at_other_prices(const Comparison& c, bool is_open) {
+  std::vector<OracleCounts> counts(c.runs.size());  // until the tolerance
+  OracleCounts called{};
+  const std::size_t rung = c.yardstick.tightest().rung;
+  for (std::size_t row = 0; row < c.runs.size(); ++row) {
+    const Run& run = c.runs[row];
+    if (!c.order.has(run.optimizer) || !c.order.has_setting(run.problem) ||
+        run.taken(Measure::work, rung) == kNever)
+      continue;
+    counts[row] = counts_at(*run.record, run.taken(Measure::work, rung));
+    for (std::size_t kind = 0; kind < kOracles; ++kind)
+      if (c.problems[run.problem].prices.price(*run.record, kind) > 0)
+        called[kind] += counts[row][kind];
+  }
+  std::vector<OtherCosts> all;
+  for (std::size_t kind = 0; kind < kOracles; ++kind)
+    for (const auto& [name, factor] :
+         {std::pair{" at half price", 0.5}, std::pair{" at twice the price", 2.0}}) {
+      if (called[kind] == 0) continue;
+      Costs costs(c.problems.size(), std::vector<std::optional<Real>>(c.optimizers.size()));
+      for (const std::size_t p : c.order.settings)
+        for (const std::size_t s : c.order.methods) {
+          const auto cost = [&](std::size_t row) {
+            const Run& run = c.runs[row];
+            return run.taken(Measure::cost, rung) +
+                   (factor - 1) * c.problems[p].prices.price(*run.record, kind) *
+                       Real(counts[row][kind]);
+          };
+          std::vector<Real> values(c.cell(p, s).missing(), kNever);
+          for (const std::size_t row : c.cell(p, s).runs) values.push_back(cost(row));
+          costs[p][s] = median_of(std::move(values));
+        }
+      all.push_back({Varied::prices, std::string(kOracleNames[kind]) + name,
+                     decision_costs(c, costs, is_open)});
+    }
+  return all;
+}
+
 // In a study with more runs than this, only families are resampled.
 constexpr std::size_t kMostResampled = 20'000;
 
 std::optional<Decision> decision_of(const Comparison& c, bool is_open) {
-  Evidence evidence{.costs = decision_costs(c, c.yardstick.by, kTightest, is_open)};
+  const auto costs = [&](Measure by, std::size_t tolerance) {
+    return decision_costs(c, common_costs(c, tolerance, by), is_open);
+  };
+  Evidence evidence{.costs = costs(c.yardstick.by, kTightest)};
   for (std::size_t i = 0; i < c.order.settings.size(); ++i) {
     const std::size_t p = c.order.settings[i];
     evidence.families.push_back(c.problems[p].name);
@@ -141,12 +187,13 @@ std::optional<Decision> decision_of(const Comparison& c, bool is_open) {
       evidence.repetitions.push_back(repetitions_of(c, p, evidence.costs[i]));
   }
   for (std::size_t t = kTightest; t-- > 0;)
-    evidence.others.push_back({Varied::tolerance, std::string(c.yardstick.tolerances[t].name),
-                               decision_costs(c, c.yardstick.by, t, is_open)});
+    evidence.others.push_back(
+        {Varied::tolerance, std::string(c.yardstick.tolerances[t].name), costs(c.yardstick.by, t)});
   for (const Measure by : {Measure::work, Measure::cost, Measure::time})
     if (by != c.yardstick.by)
-      evidence.others.push_back(
-          {Varied::measure, std::string(name_of(by)), decision_costs(c, by, kTightest, is_open)});
+      evidence.others.push_back({Varied::measure, std::string(name_of(by)), costs(by, kTightest)});
+  for (OtherCosts& other : costs_at_other_prices(c, is_open))
+    evidence.others.push_back(std::move(other));
   return decide(evidence);
 }
 
@@ -184,11 +231,12 @@ bool Order::has_setting(std::size_t problem) const {
 }
 
 Comparison compare_optimizers(const Study& study, const Yardstick& yardstick) {
-  Comparison c{table_of(study), yardstick, {}, {}, {}, {}, {}, 0};
+  Comparison c{table_of(study), yardstick, {}, {}, {}, {}, {}, {}, 0};
   c.cells = pivot(c, yardstick);
   for (const auto& row : c.cells)
     for (std::size_t s = 0; s < row.size(); ++s) count_problems(c.optimizers[s], row[s]);
-  c.order = common_order(c);
+  c.order = common_order(c, is_ordered);
+  c.sanity = common_order(c, is_sanity);
   for (std::size_t t = 0; t < kTolerances.size(); ++t)
     for (const auto& [s, standing] : standings_to(c, yardstick.by, yardstick.tolerances[t].rung))
       c.optimizers[s].standings[t] = standing;
@@ -206,7 +254,20 @@ Comparison compare_optimizers(const Study& study, const Yardstick& yardstick) {
 }
 
 bool is_ordered(const Comparison& c, std::size_t p) {
-  return !c.problems[p].is_learned || is_all_learned(c);
+  if (c.problems[p].is_learned) return is_all_learned(c);
+  return !is_sanity(c, p) && !is_ill_posed(c, p);
+}
+
+bool is_sanity(const Comparison& c, std::size_t p) {
+  const auto is_in = [](const char* group) {
+    return [group](const ProblemAxis& problem) { return problem.group() == group; };
+  };
+  return (is_in("classical")(c.problems[p]) || is_in("toy")(c.problems[p])) &&
+         std::ranges::any_of(c.problems, is_in("physics"));
+}
+
+bool is_ill_posed(const Comparison& c, std::size_t p) {
+  return !c.problems[p].is_learned && c.problems[p].is_ill_posed();
 }
 
 bool is_all_learned(const Comparison& c) {
@@ -256,12 +317,17 @@ bool are_tied(Real score, Real other) {
 }
 
 std::vector<Ranked> standings_to(const Comparison& c, Measure by, std::size_t target) {
-  const Costs costs = costs_to(c, c.order, by, target), ratios = ratios_of(costs);
+  return standings_over(c, c.order, by, target);
+}
+
+std::vector<Ranked> standings_over(const Comparison& c, const Order& order, Measure by,
+                                   std::size_t target) {
+  const Costs costs = costs_to(c, order, by, target), ratios = ratios_of(costs);
   std::vector<Ranked> standings;
-  for (const std::size_t s : c.order.methods) {
-    Standing standing{.settings = c.order.settings.size()};
+  for (const std::size_t s : order.methods) {
+    Standing standing{.settings = order.settings.size()};
     std::vector<Real> doublings;
-    for (const std::size_t p : c.order.settings) {
+    for (const std::size_t p : order.settings) {
       const Real ratio = *ratios[p][s];
       standing.score += score_of(ratio, kProfileEnd);
       standing.solved += ratio < kNever;
@@ -284,6 +350,28 @@ std::vector<Ranked> standings_to(const Comparison& c, Measure by, std::size_t ta
     return a.standing.reached > b.standing.reached;
   });
   return standings;
+}
+
+Spread x_error_at(const Comparison& c, std::size_t p, std::size_t s, Real share) {
+  const auto error = [&](const Run& run) {
+    return value_at(*run.record, run.record->curve.x_error, share * allowed_work(run)) /
+           run.record->x_scale.value_or(1);
+  };
+  const Cell& cell = c.cell(p, s);
+  return cell.is_measured() ? c.aggregate(cell.runs, error, cell.missing()) : Spread{};
+}
+
+Spread own_time(const Comparison& c, std::size_t s) {
+  constexpr Real kLeast = 1e-3;  // seconds: shorter runs are mostly what starts and ends them
+  std::vector<Real> shares;
+  for (std::size_t p = 0; p < c.problems.size(); ++p)
+    for (const std::size_t row : c.cell(p, s).runs) {
+      const Record& record = *c.runs[row].record;
+      const Real spent = record.summary.processor_seconds;
+      const std::optional<Real> oracles = c.problems[p].prices.seconds(record);
+      if (oracles && spent >= kLeast) shares.push_back(std::max(0.0, 1 - *oracles / spent));
+    }
+  return spread_of(std::move(shares));
 }
 
 // Reads learned runs where all have spent the same.

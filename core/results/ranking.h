@@ -22,8 +22,9 @@ struct Order {
 // A table at a yardstick: pivoted, its optimizers ranked. All that a report says is read off it.
 struct Comparison : Table {
   Yardstick yardstick;
-  Pivot cells;  // [problem][optimizer]
-  Order order;  // the optimizers that are ranked come first of all, best first
+  Pivot cells;   // [problem][optimizer]
+  Order order;   // the optimizers that are ranked come first of all, best first
+  Order sanity;  // the classical and toy problems of a study of physics, which rank no method
   std::array<Profile, kTolerances.size()> profiles;  // of the order
   // Which of the ranked are best at the tightest tolerance; none where nothing is solved.
   std::optional<Decision> decision;
@@ -41,8 +42,12 @@ struct Comparison : Table {
 Comparison compare_optimizers(const Study& study, const Yardstick& yardstick = {});
 
 // Whether a problem counts for the ranking. A tolerance of the loss means little for a network, so
-// learned problems are reported separately, by the error in x, unless a study has no others.
+// learned problems are reported separately, by the error in x, unless a study has no others; so are
+// ill-posed ones, by the error in x over work. Classical and toy problems do not count beside
+// physics.
 bool is_ordered(const Comparison& comparison, std::size_t problem);
+bool is_sanity(const Comparison& comparison, std::size_t problem);
+bool is_ill_posed(const Comparison& comparison, std::size_t problem);  // and not learned
 bool is_all_learned(const Comparison& comparison);
 
 // costs[p][s]: medians to a target in the unit of their measure; nothing where never planned, nor
@@ -69,6 +74,14 @@ struct Ranked {
   Standing standing;
 };
 std::vector<Ranked> standings_to(const Comparison& comparison, Measure by, std::size_t target);
+std::vector<Ranked> standings_over(const Comparison& comparison, const Order& order, Measure by,
+                                   std::size_t target);
+// The error in x over ‖x*‖ when this share of its budget of work is spent, over seeds.
+Spread x_error_at(const Comparison& comparison, std::size_t problem, std::size_t optimizer,
+                  Real share);
+// The share of a method's processor time that its oracle calls do not explain at their measured
+// prices, over the runs whose calls were all measured and that took long enough to time.
+Spread own_time(const Comparison& comparison, std::size_t optimizer);
 
 // A learned problem at equal work: what networks have come to when all have spent as much.
 

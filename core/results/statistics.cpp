@@ -406,6 +406,23 @@ Interval prediction_interval(const std::vector<Real>& values) {
   return {mean - half, mean + half};
 }
 
+VarianceComponents variance_components(const std::vector<std::vector<Real>>& values) {
+  const Real I = Real(values.size()), J = Real(values[0].size());
+  std::vector<Real> first(values.size(), 0), second(values[0].size(), 0);  // means
+  for (std::size_t i = 0; i < first.size(); ++i)
+    for (std::size_t j = 0; j < second.size(); ++j) {
+      first[i] += values[i][j] / J;
+      second[j] += values[i][j] / I;
+    }
+  const Real mean = std::accumulate(first.begin(), first.end(), 0.0) / I;
+  Real rest = 0;
+  for (std::size_t i = 0; i < first.size(); ++i)
+    for (std::size_t j = 0; j < second.size(); ++j)
+      rest += std::pow(values[i][j] - first[i] - second[j] + mean, 2) / ((I - 1) * (J - 1));
+  return {std::max(0.0, std::pow(deviation_of(first), 2) - rest / J),
+          std::max(0.0, std::pow(deviation_of(second), 2) - rest / I), rest};
+}
+
 // Verdicts on times: the noise that the repetitions show.
 
 Real split_noise(const std::vector<TimedCell>& cells) {

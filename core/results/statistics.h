@@ -116,6 +116,16 @@ struct Band {
 };
 Band bootstrap_ratio(const std::vector<GroupSum>& groups, const std::string& key);
 
+// Parts of a variance by two crossed random factors: the components of a balanced two-way
+// analysis of variance with one value per pair, from values[i][j], two or more of each. Searle,
+// Casella, McCulloch (1992), section 4.5. Estimates below 0 are set to 0.
+struct VarianceComponents {
+  Real first = 0, second = 0, rest = 0;
+
+  Real total() const { return first + second + rest; }
+};
+VarianceComponents variance_components(const std::vector<std::vector<Real>>& values);
+
 // Tests of differences between methods by ranks, what tests by flips of signs can find, and
 // verdicts on times.
 

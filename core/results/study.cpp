@@ -12,6 +12,7 @@
 #include "core/files.h"
 #include "core/records/fields.h"
 #include "core/results/statistics.h"
+#include "core/seeds.h"
 
 namespace isoline::results {
 
@@ -26,6 +27,11 @@ void fields(Like<TunedRate> auto& rate, auto& field) {
     source.optional("grid", grid);
     source.optional("score", scores);
     source.optional("edge", rate.is_at_edge);
+    source.optional("families", rate.families);
+    source.optional("mean_score", rate.mean_scores);
+    source.optional("default", rate.standard);
+    source.optional("value", rate.value);
+    source.optional("spent", rate.spent);
   });
   if (grid.empty()) return;
   std::tie(rate.option, rate.values) = *grid.begin();
@@ -44,7 +50,14 @@ void fields(Like<RatesFile> auto& file, auto& field) { field("rows", file.rows);
 }  // namespace
 
 bool TunedRate::is_ever_solved() const {
-  return std::ranges::any_of(work, [](Real each) { return each < kNever; });
+  return std::ranges::any_of(work, [](Real each) { return each < kNever; }) ||
+         std::ranges::any_of(mean_scores, [](Real each) { return each > 0; });
+}
+
+Real TunedRate::work_of(Real tried) const {
+  const auto at = std::ranges::find(values, tried);
+  const auto place = static_cast<std::size_t>(at - values.begin());
+  return place < work.size() ? work[place] : kNever;
 }
 
 std::vector<TunedRate> rates_from_text(const std::string& text, const std::string& origin) {
@@ -58,13 +71,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
-void read_runs(Study& study, const std::vector<std::string>& folders, const Listener& listener) {
+void read_runs(Study& study, const std::vector<std::string>& folders, const Listener& listener,
+               const Trim& trim) {
   const std::vector<std::string> files = record_files(folders, study.unreadable);
   std::vector<std::string> reasons(files.size());
   std::vector<Record> runs(files.size());
   const auto read = [&](std::size_t i) {
     try {
       runs[i] = read_record(files[i]);
+      if (trim) trim(runs[i]);
     } catch (const std::exception& error) {
       reasons[i] = error.what();
     }
@@ -76,9 +91,18 @@ void read_runs(Study& study, const std::vector<std::string>& folders, const List
       marks[i] = mark_of(runs[i]);
     else
       study.unreadable.push_back({files[i], std::move(reasons[i])});
-  Newest newest =
-      newest_of(marks, [&](std::size_t i, std::size_t j) { return are_at_odds(runs[i], runs[j]); });
-  for (const std::size_t i : newest.kept) study.runs.push_back(std::move(runs[i]));
+  Newest newest = newest_of(marks, [&](std::size_t i, std::size_t j) {
+    return trim ? are_at_odds(read_record(files[i]), read_record(files[j]))
+                : are_at_odds(runs[i], runs[j]);
+  });
+  // In place, since two lists of records take twice the memory.
+  for (std::size_t k = 0; k < newest.kept.size(); ++k) {
+    std::size_t from = newest.kept[k];
+    while (from < k) from = newest.kept[from];  // where an earlier exchange has put it
+    if (from != k) std::swap(runs[k], runs[from]);
+  }
+  runs.resize(newest.kept.size());
+  study.runs = std::move(runs);
   study.superseded = newest.superseded;
   study.disputed = std::move(newest.disputed);
 }
@@ -209,7 +233,8 @@ std::optional<FieldFrames> Study::fields_of(const Record& record) const {
   return std::nullopt;
 }
 
-Study read_study(const std::vector<std::string>& folders, const Listener& listener) {
+Study read_study(const std::vector<std::string>& folders, const Listener& listener,
+                 const Trim& trim) {
   std::error_code unknown;
   for (const fs::path folder : folders) {
     require(!fs::is_regular_file(folder, unknown), [&] {
@@ -224,7 +249,7 @@ Study read_study(const std::vector<std::string>& folders, const Listener& listen
   std::set<std::string> known;
   for (const fs::path folder : folders) read_rest(study, folder, known);
   std::ranges::sort(study.audits, {}, &AuditedOptimizer::name);
-  read_runs(study, folders, listener);
+  read_runs(study, folders, listener, trim);
   return study;
 }
 
@@ -301,6 +326,7 @@ bool is_told(const MeasuredPrices& prices, const MeasuredPrice& price) {
 
 Prices::Prices(const Sheet* sheet) {
   if (sheet == nullptr || !sheet->prices) return;
+  forward_seconds_ = sheet->prices->forward_seconds;
   for (const MeasuredPrice& each : sheet->prices->oracles)
     if (each.oracle != kInference && is_told(*sheet->prices, each))
       measured_[each.oracle] = each.price;
@@ -317,6 +343,15 @@ Real Prices::cost(const Record& record) const {
   for (std::size_t kind = 0; kind < kOracles; ++kind)
     sum += price(record, kind) * Real(record.counts[kind]);
   return sum;
+}
+
+std::optional<Real> Prices::seconds(const Record& record) const {
+  for (std::size_t kind = 0; kind < kOracles; ++kind)
+    if (record.counts[kind] > 0 && kOracleNames[kind] != "forward" &&
+        !is_measured(kOracleNames[kind]))
+      return std::nullopt;
+  if (forward_seconds_ < kShortestCall) return std::nullopt;
+  return forward_seconds_ * cost(record);
 }
 
 std::vector<Real> Prices::costs_of(const Record& record, const Columns& counts,
@@ -354,7 +389,8 @@ OracleCounts counts_at(const Record& record, Real work) {
       if (const auto* column = column_of(columns, kind); column && i < column->size())
         counts[kind] = (*column)[i];
   };
-  if (record.hits && !record.hits->counts.empty())
+  const auto is_hit = [&](std::int64_t each) { return Real(each) == work; };  // else one in x
+  if (record.hits && !record.hits->counts.empty() && std::ranges::any_of(record.hits->work, is_hit))
     read(record.hits->counts, record.hits->work);
   else
     read(record.curve.counts, record.curve.work);
@@ -364,7 +400,7 @@ OracleCounts counts_at(const Record& record, Real work) {
 BestKnown::BestKnown(const Study& study) {
   for (const Record& record : study.runs) {
     if (record.imported) continue;  // imported values change no other run's targets
-    const auto key = std::pair(record.request.problem.spec, record.request.seed);
+    const auto key = std::pair(record.request.problem.spec, instance_of(record.request.seed));
     Real& least = least_.emplace(key, kNever).first->second;
     const Real best = record.summary.best_loss;
     if (record.status != Status::inapplicable && best < least) least = best;
@@ -373,7 +409,7 @@ BestKnown::BestKnown(const Study& study) {
 
 Real BestKnown::minimum(const Record& record) const {
   if (record.minimum) return *record.minimum;
-  const auto found = least_.find({record.request.problem.spec, record.request.seed});
+  const auto found = least_.find({record.request.problem.spec, instance_of(record.request.seed)});
   if (found != least_.end()) return found->second;
   return record.imported ? record.summary.best_loss : std::nan("");
 }

@@ -33,10 +33,19 @@ struct TunedRate {
   // For a grid: its values, and the work of each to its tolerance, the median over the tuning
   // seeds; infinite if it was not reached.
   std::vector<Real> values, work;
-  bool is_at_edge = false;  // the best value is the first or the last
+  // The families that the value was chosen on, of a value for another family, and the mean score of
+  // each value there; such a row has no `work`.
+  std::vector<std::string> families;
+  std::vector<Real> mean_scores;
+  std::optional<Real> standard, value;  // the option's default, and what was chosen
+  Real spent = 0;                       // nominal work of all trials: of the pair, or of the method
+  bool is_at_edge = false;              // the best value is the first or the last
 
   bool is_tuned() const { return !values.empty(); }
+  bool is_left_out() const { return !families.empty(); }
   bool is_ever_solved() const;
+  // The work of one of the values; infinite where it was not tried or did not reach the tolerance.
+  Real work_of(Real tried) const;
 };
 
 std::vector<TunedRate> rates_from_text(const std::string& text, const std::string& origin);
@@ -64,8 +73,11 @@ struct Study {
 };
 
 // Folders are laid out as core/records/sheet.h says; a missing one is a UsageError. The listener is
-// told of the records.
-Study read_study(const std::vector<std::string>& folders, const Listener& listener = {});
+// told of the records. `trim` takes out of each record, once it is read, what its reader does not
+// use: 100,000 whole ones take more than a gigabyte.
+using Trim = std::function<void(Record&)>;
+Study read_study(const std::vector<std::string>& folders, const Listener& listener = {},
+                 const Trim& trim = {});
 
 // Among all records of a cell the newest counts, independent of its build: what decides between
 // them, and the order of several.
@@ -156,32 +168,32 @@ class Prices {
   bool is_measured(std::string_view oracle) const { return measured_.contains(oracle); }
 
   Real cost(const Record& record) const;  // of all that the run asked
+  // The processor time of all that the run asked; nothing where some of it was not measured.
+  std::optional<Real> seconds(const Record& record) const;
+  Real price(const Record& record, std::size_t kind) const;
   // At each point of the curve.
   std::vector<Real> curve_costs(const Record& record) const;
   // At each hit, infinite where never reached.
   std::vector<Real> hit_costs(const Record& record) const;
 
  private:
-  Real price(const Record& record, std::size_t kind) const;
   // From counts by oracle in columns as long as `work`, which it is where nothing is measured.
   std::vector<Real> costs_of(const Record& record, const Columns& counts,
                              const std::vector<std::int64_t>& work) const;
 
   std::map<std::string, Real, std::less<>> measured_;  // by oracle
+  Real forward_seconds_ = 0;
 };
 
 // The raw counts when the declared work of the run was `work`: of its hit, or, in older records, of
 // the first kept point from there on.
 OracleCounts counts_at(const Record& record, Real work);
 
-// The least loss any run of a problem and seed has reached: f_L where none is declared.
+// The least loss any run of a problem and instance has reached: f_L where none is declared.
 class BestKnown {
  public:
-  using Minima = std::map<std::pair<std::string, std::uint64_t>, Real>;  // by problem and seed
-
   explicit BestKnown(const Study& study);
-  explicit BestKnown(Minima least) : least_(std::move(least)) {}
-  // Declared, else the best known; not-a-number where no run of its problem and seed is.
+  // Declared, else the best known; not-a-number where no run of its problem and instance is.
   Real minimum(const Record& record) const;
   // s of f ≤ f_L + τ s; f₀ − f_L where older records lack it.
   Real scale(const Record& record) const {
@@ -189,7 +201,7 @@ class BestKnown {
   }
 
  private:
-  Minima least_;
+  std::map<std::pair<std::string, std::uint64_t>, Real> least_;  // by problem and instance
 };
 
 // The counts of a run when it first met a target.

@@ -231,15 +231,23 @@ std::vector<ProblemAxis> problem_axis(const Study& study) {
     axis.push_back({.spec = spec, .name = name, .sheet = sheet_of(study, "problem", spec, name)});
   for (ProblemAxis& problem : axis)
     if (problem.has_own_sheet()) problem.prices = Prices(problem.sheet);
+  std::map<std::string, std::map<std::uint64_t, Real>> goals;  // by problem and seed
   for (const Record& record : study.runs) {
     const auto at = std::ranges::find(axis, record.request.problem.spec, &ProblemAxis::spec);
     const bool could_declare = record.status != Status::inapplicable;
     if (could_declare && !record.minimum) at->is_minimum_declared = false;
     if (record.aim == Aim::x && record.x_scale) at->aim = Aim::x;
     at->is_learned = record.request.problem.is_learned;
+    if (at->aim == Aim::x && record.x_scale && could_declare)
+      goals[at->spec].emplace(record.request.seed, x_goal(0, 1, record.x_floor / *record.x_scale));
     if (!record.foreign.problem) continue;
     at->is_foreign = true;
     at->label = record.foreign.problem->label;
+  }
+  for (ProblemAxis& problem : axis) {
+    std::vector<Real> all;
+    for (const auto& [seed, goal] : goals[problem.spec]) all.push_back(goal);
+    if (!all.empty()) problem.least_goal = median_of(std::move(all));
   }
   return axis;
 }

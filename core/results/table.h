@@ -57,7 +57,15 @@ struct ProblemAxis {
   bool is_minimum_declared = true;  // otherwise f_L is the least loss any run of its seed reached
   Aim aim = Aim::loss;              // what its user wants, as its records say
   bool is_learned = false;
+  // For an aim in x: the least error that counts as solved, 1.1 of the floor, over ‖x*‖; the median
+  // over seeds.
+  Real least_goal = 0;
 
+  // Where even the best possible x is this far off, being solved means little.
+  bool is_ill_posed() const {
+    constexpr Real kMostError = 0.1;
+    return least_goal > kMostError;
+  }
   bool has_own_sheet() const { return sheet != nullptr && sheet->spec == spec; }
   // "toy", "physics", "classical", "learned"; "other" where its sheet says nothing.
   std::string group() const {

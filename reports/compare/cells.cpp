@@ -1,6 +1,5 @@
-// Turns records into cells of a comparison, each as it is read, and writes and reads baselines:
-// what a gate remembers of a study. What many cells share stands in tables at the top of a
-// baseline, and a cell names its rows.
+// Turns records into cells of a comparison, each as it is read, and writes and reads baselines,
+// whose cells name rows of tables of what many cells share.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,6 +12,7 @@
 #include "core/errors.h"
 #include "core/files.h"
 #include "core/json.h"
+#include "core/seeds.h"
 #include "core/status.h"
 #include "reports/compare/gate.h"
 #include "reports/sections/words.h"
@@ -35,7 +35,7 @@ std::shared_ptr<const Value> shared_value(const std::string& key, const Value& v
 
 std::string title_of(const ComparedCell& cell) {
   return fmt::format("{} × {}, seed {}", shown_spec(cell.problem->spec),
-                     shown_spec(cell.optimizer->spec), cell.seed);
+                     shown_spec(cell.optimizer->spec), seed_text(cell.seed));
 }
 
 Json component_json(const Component& component) {

@@ -9,6 +9,7 @@
 #include <map>
 #include <set>
 
+#include "core/seeds.h"
 #include "reports/formats/formats.h"
 #include "reports/sections/words.h"
 
@@ -113,14 +114,15 @@ void add_files(Export& out, const Comparison& c, std::size_t p, std::size_t s,
     const Points curve = curve_of(run);
     if (curve.empty()) {
       out.left_out.push_back(fmt::format("{} × {}, seed {}: no finite loss above f_L",
-                                         c.problems[p].spec, c.optimizers[s].label, seed));
+                                         c.problems[p].spec, c.optimizers[s].label,
+                                         seed_text(seed)));
       continue;
     }
     const Points targets = targets_of(run, curve);
     by_target += block_of(targets, run.minimum);
     by_evaluation += block_of(curve, run.minimum);
     const Point& last = targets.back();
-    instances += fmt::format(", {}:{}|{:.1e}", seed + 1,
+    instances += fmt::format(", {}:{}|{:.1e}", instance_of(seed) + 1,
                              std::max(last.evaluations, curve.back().evaluations), last.best);
   }
   if (instances.empty()) return;
@@ -130,8 +132,8 @@ void add_files(Export& out, const Comparison& c, std::size_t p, std::size_t s,
   std::ranges::replace(label, '\'', '"');
   const std::string index = fmt::format(
       "funcId = {}, DIM = {}, Precision = 1.000e-08, algId = '{}'\n"
-      "% {}; evaluations are forward solves, and the start is the first; instances are seeds + "
-      "1\n"
+      "% {}; evaluations are forward solves, and the start is the first; instances are "
+      "counted from 1\n"
       "{}.dat{}\n",
       p + 1, dimension, label, c.problems[p].spec, table, instances);
   out.files[fmt::format("{}/isoline_f{}.info", folder, p + 1)] = index;

@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "core/oracle.h"
+#include "core/seeds.h"
 #include "reports/formats/formats.h"
 #include "reports/sections/words.h"
 
@@ -32,6 +33,9 @@ CsvColumns columns_of_runs(const Yardstick& yardstick) {
   add("problem", [](const Record& record) { return record.request.problem.spec; });
   add("optimizer", [](const Record& record) { return record.request.optimizer.spec; });
   add("seed", [](const Record& record) { return std::to_string(record.request.seed); });
+  add("instance",
+      [](const Record& record) { return std::to_string(instance_of(record.request.seed)); });
+  add("start", [](const Record& record) { return std::to_string(start_of(record.request.seed)); });
   add("status", [](const Record& record) { return name_of(record.status); });
   add_summary("iterations", &Summary::iterations);
   add_summary("work", &Summary::work);
@@ -68,6 +72,8 @@ std::string planned_text(const PlannedCell& cell, const std::string& column) {
   if (column == "problem") return csv_field(cell.problem);
   if (column == "optimizer") return csv_field(cell.optimizer);
   if (column == "seed") return std::to_string(cell.seed);
+  if (column == "instance") return std::to_string(instance_of(cell.seed));
+  if (column == "start") return std::to_string(start_of(cell.seed));
   if (column == "status") return "missing";
   return column == "cell" ? csv_field(cell.cell) : "";
 }
@@ -84,7 +90,9 @@ void add_line(std::string& csv, const CsvColumns& columns, Text text) {
 std::string csv_report(const Document& document) {
   const Comparison& c = document.comparison;
   const CsvColumns columns = columns_of_runs(c.yardstick);
+  constexpr std::size_t kRow = 512;  // bytes, about: a text that grows is there twice
   std::string csv;
+  csv.reserve(kRow * c.runs.size());
   add_line(csv, columns, [](const CsvColumn& column) { return column.name; });
   for (const Run& run : c.runs)
     if (!run.is_repeated)

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <span>
 
+#include "core/text.h"
 #include "reports/formats/formats.h"
 
 namespace isoline::reports {
@@ -81,7 +82,7 @@ std::string exact_csv_field(std::string_view text) {
 }
 
 std::string csv_field(std::string_view text) {
-  const std::string field = escaped(text, {});
+  const std::string field = escaped(printable(text), {});
   const bool is_formula = !field.empty() && std::string_view("=+-@").find(field[0]) < 4;
   return exact_csv_field(is_formula ? "'" + field : field);
 }

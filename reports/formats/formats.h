@@ -36,8 +36,8 @@ std::string curves_csv(const Comparison& comparison);
 
 // Data folders of COCO, which its post-processing reads: for each method FOLDER/isoline_fN.info and
 // FOLDER/data_fN/isoline_fN_DIMn.dat and .tdat. Problems are its functions, numbered as
-// functions.csv says; seed s is its instance s + 1; an evaluation is one forward solve of declared
-// work, counted from 1, the start. Its values are f − f_L.
+// functions.csv says; instance s is its instance s + 1; an evaluation is one forward solve of
+// declared work, counted from 1, the start. Its values are f − f_L.
 struct Export {
   std::map<std::string, std::string> files;  // text by name below a folder; a single file: no name
   std::vector<std::string> left_out = {};    // a sentence each

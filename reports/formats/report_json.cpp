@@ -198,7 +198,7 @@ Json table_json(const Table& table) {
 }
 
 Json plot_json(const Plot& plot, const Comparison& c) {
-  constexpr const char* kKinds[] = {"steps", "dots", "bars", "lines"};
+  constexpr const char* kKinds[] = {"steps", "lines"};
   const auto series_json = [&](const PlotSeries& one) -> Json {
     return {{"optimizer", c.optimizers[one.optimizer.value()].label},
             {"name", one.name},
@@ -215,7 +215,6 @@ Json plot_json(const Plot& plot, const Comparison& c) {
           {"x_label", plot.x_label},
           {"y_label", plot.y_label},
           {"log_x", plot.is_log_x},
-          {"rows", list_of(plot.rows, [](const PlotRow& row) { return row.name; })},
           {"series", list_of(plot.series, series_json)}};
 }
 
@@ -358,6 +357,7 @@ std::string json_report(const Document& document) {
                           [](const Reading& reading) { return reading.text; })},
       {"claims", claims_json(document.claims)},
       {"audit", audit_json(document)},
+      {"ranked", list_of(c.order.settings, [&](std::size_t p) { return c.problems[p].spec; })},
       {"leader", decision_json(c, c.decision)},
       {"open_leader", decision_json(c, c.open_decision)},
       {"optimizers",
@@ -365,7 +365,7 @@ std::string json_report(const Document& document) {
       {"pairs", list_of(all_pairs(c), [&](const MethodPair& pair) { return pair_json(c, pair); })},
       {"profiles", profiles_json(c)},
       {"statistics", statistics_json(document)},
-      {"cells", cells}};
+      {"cells", std::move(cells)}};
   return json_text(json, 1) + "\n";
 }
 

@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
+#include "core/seeds.h"
 #include "reports/formats/formats.h"
-#include "reports/sections/figures.h"
 #include "reports/sections/words.h"
 
 namespace isoline::reports {
@@ -134,7 +134,7 @@ std::string failure_lines(const Comparison& c) {
     const Record& record = *c.runs[run].record;
     lines.push_back(fmt::format("{}: {} / {} / seed {}: {}", name_of(record.status),
                                 record.request.problem.spec, record.request.optimizer.spec,
-                                record.request.seed, record.message));
+                                seed_text(record.request.seed), record.message));
   }
   for (const Unreadable& file : c.study->unreadable)
     lines.push_back(fmt::format("unreadable: {}: {}", file.file, file.reason));
@@ -261,13 +261,14 @@ std::string terminal_table(const Document& document) {
   for (const auto& row : c.cells)
     cells += static_cast<std::size_t>(
         std::ranges::count_if(row, [](const Cell& cell) { return cell.planned > 0; }));
+  const std::vector<Table>& tables = document.section("standings").tables;
   std::string text = document.headline + "\n";
   if (!document.incomplete.empty())
     text += wrapped("INCOMPLETE: " + terminal_text(document.incomplete));
   if (cells <= kFewCells)
     text += every_cell(c);
   else
-    text += "\n" + table_text(document.section("standings").tables[0]) + best_of_each(c) + "\n";
+    text += "\n" + (tables.empty() ? "" : table_text(tables[0])) + best_of_each(c) + "\n";
   for (const Reading& sentence : document.section("standings").readings)
     text += wrapped(terminal_text(sentence.text));
   if (const std::string legend = marks_legend(c); !legend.empty()) text += wrapped(legend);

@@ -105,7 +105,7 @@ std::string options_html(const Comparison& c, std::size_t s, const Sheet& sheet)
       html_text(sheet.name), rows);
 }
 
-// "3rd of 36 on the 17 settings that all ranked methods were given", or that it is not ranked.
+// "3rd of 36 on the 17 settings that all ranked methods ran on", or that it is not ranked.
 std::string place_text(const Comparison& c, std::size_t s) {
   if (!c.order.has(s)) return "Not ranked with the others";
   const Real score = c.optimizers[s].tightest().score;

@@ -4,21 +4,31 @@
 
 const DATA = JSON.parse(document.getElementById('data').textContent);
 
+// The sentence of a key, its names filled by values.
+const worded = (key, values = {}) => DATA.words[key].replace(/\{(\w+)\}/g, (_, name) => values[name]);
+
+// −k in a list of the report stands for k more of the number before it.
+function inFull(list) {
+  const all = [];
+  for (const value of list)
+    for (let k = Math.max(1, -value); k > 0; --k) all.push(value < 0 ? all[all.length - 1] : value);
+  return all;
+}
+
 // Rows of the data by name.
 for (const problem of DATA.problems) {
   problem.cells = problem.cells.map(([s, reached = [], medians = [], failed = 0, missing = 0, records = []]) =>
-    ({s, reached, medians, failed, missing, records, origin: problem.origins?.[s]}));
+    ({s, reached: inFull(reached), medians, failed, missing, records, origin: problem.origins?.[s]}));
   if (problem.learned !== undefined)
     problem.learned.rows = problem.learned.rows.map(([s, error, low, high, loss, runs, diverged]) => ({s, error, low, high, loss, runs, diverged}));
 }
 
 const isMeasured = (cell) => cell.reached.length > 0;
-// As printed, times in ms; 0 is the one before.
+// As printed, times in ms; 0 stands for those of the first measure.
 function mediansOf(cell, measure) {
   const medians = cell.medians[measure] ?? [];
-  if (medians === 0) return mediansOf(cell, 0);  // the same
-  medians.forEach((median, i) => { if (i > 0 && median === 0) medians[i] = medians[i - 1]; });
-  return medians;
+  if (medians === 0) return mediansOf(cell, 0);
+  return cell.medians[measure] = inFull(medians);
 }
 const takenBy = (cell, target = view.target, measure = view.measure) => mediansOf(cell, measure)[TARGETS.indexOf(target)] ?? Infinity;
 const reachedOf = (cell, target = view.target) => cell.reached.filter((count) => count > target).length;
@@ -49,7 +59,7 @@ function standingsAt(measure, target) {
   const flat = DATA.standings[measure][same], all = [];
   for (let i = 0; i < flat.length; i += 6) {
     const [s, score, solved, wins, typical, reached] = flat.slice(i, i + 6), [settings, runs, failed] = DATA.given[s];
-    all.push({s, score, solved, wins, typical: typical ?? Infinity, reached, settings, runs, failed, isApart: !DATA.ranked.includes(s)});
+    all.push({s, score, solved, wins, typical: typical ?? Infinity, reached, settings, runs, failed});
   }
   return all;
 }

@@ -39,7 +39,7 @@ const viewOf = (area) => area.getAttribute('viewBox').split(' ').map(Number);
 // Grid lines and figures of what is in view; the names of both axes stay.
 function drawAxes(chart) {
   const area = areaOf(chart), box = boxOf(area), [left, top, width, height] = viewOf(area), axes = chart.querySelector('.axes');
-  const names = [...axes.querySelectorAll('text')].filter((text) => text.matches('.name') || Number.isNaN(Number(text.textContent.replace('%', '')))), made = [];
+  const names = [...axes.querySelectorAll('text')].filter((text) => Number.isNaN(Number(text.textContent.replace('%', '')))), made = [];
   const word = (kind, value) => (kind === 'share' ? `${Math.round(100 * value)}%` : value > 9999 ? value.toExponential(0).replace('+', '') : figure(value));
   const x = axisOf(chart, 'x'), y = axisOf(chart, 'y');
   for (const tick of ticksOf(valueAt(x, left / AREA), valueAt(x, (left + width) / AREA), x.kind === 'log')) {
@@ -195,18 +195,6 @@ function moveTolerance(chart) {
   line.setAttribute('d', `M${-4 * AREA} ${y}h${9 * AREA}`);
 }
 
-// Rows of methods move up into the places of those filtered out.
-function closeRows(plot) {
-  const step = Number(plot.dataset.row), hidden = new Set(hiddenMethods());
-  let place = 0;
-  [...plot.querySelectorAll('g[data-method]')].forEach((row, i) => {
-    row.setAttribute('transform', `translate(0 ${step * (place - i)})`);
-    if (!hidden.has(row.dataset.method)) ++place;
-  });
-  const [left, top, width] = plot.getAttribute('viewBox').split(' ');
-  plot.setAttribute('viewBox', `${left} ${top} ${width} ${Number(plot.dataset.edge) + step * place}`);
-}
-
 document.addEventListener('pointermove', explainPoint);
 document.addEventListener('pointerout', (event) => {
   const chart = event.target.closest?.('.chart');
@@ -230,6 +218,5 @@ document.addEventListener('click', ({target}) => {
   showLinesIn(place, lines);
 });
 ON_UNPACK.push((place) => {
-  place.querySelectorAll('svg[data-row]').forEach((plot) => live(plot, () => closeRows(plot)));
   if (!place.matches('article')) place.querySelectorAll('.chart').forEach((chart) => live(chart, () => fitView(chart)));
 });

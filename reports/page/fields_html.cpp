@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <ranges>
 
+#include "core/seeds.h"
 #include "reports/formats/formats.h"
 #include "reports/page/page.h"
 #include "reports/sections/words.h"
@@ -155,9 +156,8 @@ std::string key_html(const FoundFields& all) {
 }
 
 std::string fields_reading(const Comparison& c, const FoundFields& all) {
-  const std::string sample =
-      all.is_learned ? fmt::format("the first sample of the validation, seed {}", all.seed)
-                     : fmt::format("seed {}", all.seed);
+  const std::string seed = fmt::format("seed {}", seed_text(all.seed));
+  const std::string sample = all.is_learned ? "the first sample of the validation, " + seed : seed;
   std::string text = fmt::format("The best method of each kind, on {}.", sample);
   if (!all.frames().has_truth()) return text;
   const auto end = [](const FoundField& found) { return found.apart.back(); };

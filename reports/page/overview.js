@@ -21,7 +21,7 @@ function trackOf(s, score) {
 }
 
 function standingRow({s, score, solved, settings, wins, typical, reached, runs, failed}, place, isRest) {
-  const row = element('tr', {className: isRest ? 'rest' : ''}, cellWith(place === undefined ? '–' : String(place + 1)),
+  const row = element('tr', {className: isRest ? 'rest' : ''}, cellWith(String(place + 1)),
       element('th', {scope: 'row'}, ...nameOfMethod(s)), trackOf(s, score), cellWith(score.toFixed(3)), cellWith(String(solved), `/${settings}`),
       cellWith(wins === 0 ? '·' : String(wins)), cellWith(multiple(typical)), cellWith(String(reached), `/${runs}`),
       cellWith(failed === 0 ? '·' : String(failed), '', {className: failed === 0 ? '' : 'lost'}));
@@ -32,11 +32,11 @@ function standingRow({s, score, solved, settings, wins, typical, reached, runs, 
 function drawStandings(table) {
   const rows = standingsNow().filter((standing) => standing.settings > 0);  // others learn alone
   const shown = rows.filter(({s}) => isShown('s', s));  // what the reader chose is not folded
-  const heads = ['#', 'optimizer', 'score, 0 to 1', 'score', 'solved', 'wins', 'median slowdown', 'runs', 'failed'];
+  const heads = worded('ranking-columns').split(' | ');
   if (rows.length === 0 || DATA.allLearned)
-    return table.replaceChildren(element('caption', {}, 'No problem here is ranked by work; learned problems are compared by the error in x.'));
-  filledTable(table, `Standings to ${tauName(view.target)} by ${measureNow().counted}`,
-      [element('tr', {}, ...heads.map((head) => element('th', {scope: 'col'}, head)))], rows.map((row) => standingRow(row, row.isApart ? undefined : rows.indexOf(row), shown.indexOf(row) >= SHOWN_AT_FIRST)));
+    return table.replaceChildren(element('caption', {}, worded('all-learned')));
+  filledTable(table, worded('ranking', {tau: tauName(view.target), measure: measureNow().counted}),
+      [element('tr', {}, ...heads.map((head) => element('th', {scope: 'col'}, head)))], rows.map((row) => standingRow(row, rows.indexOf(row), shown.indexOf(row) >= SHOWN_AT_FIRST)));
   makeSortable(table);
 }
 
@@ -57,7 +57,7 @@ function learnedCell(problem, s) {
   const row = problem.learned.rows.find((one) => one.s === s), least = problem.learned.rows[0]?.error;
   if (row === undefined) return heatCell(cellOf(problem, s), 0, 0);
   if (row.error === null) return cellWith('✗', '', {className: 'no'});
-  return cellWith(short(row.error), row.diverged > 0 ? `${row.diverged} diverged` : '', {className: row.error === least ? 'h0 best' : heatOf(row.error, least)});
+  return cellWith(short(row.error), row.diverged > 0 ? worded('diverged', {runs: row.diverged}) : '', {className: row.error === least ? 'h0 best' : heatOf(row.error, least)});
 }
 
 // Best first; where all is learned, by how often each is nearest in x at equal work.
@@ -71,7 +71,7 @@ function heatHeads(columns) {
   for (const p of columns) groups.set(DATA.problems[p].group, (groups.get(DATA.problems[p].group) ?? 0) + 1);
   const head = (text, properties) => element('th', {scope: 'col', ...properties}, text);
   return [element('tr', {}, head('optimizer', {rowSpan: 2}), head('solved', {rowSpan: 2}),
-      ...[...groups].map(([group, count]) => head(group === 'learned' ? 'learned: error in x' : group, {className: 'group', colSpan: count, scope: 'colgroup'}))),
+      ...[...groups].map(([group, count]) => head(group === 'learned' ? worded('learned') : group, {className: 'group', colSpan: count, scope: 'colgroup'}))),
     element('tr', {}, ...columns.map((p) => {
       const made = head(element('a', {href: `#problem-${p}`}, element('span', {}, DATA.problems[p].spec)));
       made.dataset.p = p;
@@ -103,7 +103,7 @@ function drawHeat(table) {
     row.dataset.s = s;
     return row;
   });
-  filledTable(table, `Median ${counted} to ${tauName(view.target)}${unit === counted ? '' : `, in ${unit}`}; of learned problems the error in x at equal work`,
+  filledTable(table, worded('heat', {measure: counted, tau: tauName(view.target), unit: unit === counted ? '' : worded('unit', {unit})}),
       heatHeads(columns), rows);
 }
 
@@ -118,7 +118,7 @@ function makeMore(table, draw) {
   const label = () => {
     const rest = table.querySelectorAll('.rest').length, all = table.tBodies[0]?.rows.length ?? 0;
     button.hidden = rest === 0;
-    button.textContent = table.classList.contains('folded') ? `all ${all}` : `the first ${all - rest}`;
+    button.textContent = table.classList.contains('folded') ? worded('more', {rows: all}) : worded('less', {rows: all - rest});
   };
   return () => {
     draw(table);

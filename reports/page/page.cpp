@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <map>
 #include <set>
 #include <string_view>
@@ -25,14 +26,17 @@ namespace {
 
 using Parts = std::map<std::string, std::string, std::less<>>;
 
-// Replaces each {{name}} once; what is put in is not searched again.
+// Replaces each {{name}} once, by its part or else by the sentence of that key; what is put in is
+// not searched again.
 std::string filled(std::string_view page, const Parts& parts) {
   std::string out;
   while (true) {
     const std::size_t open = page.find("{{"), close = page.find("}}", open);
     if (open == std::string_view::npos || close == std::string_view::npos) break;
     out += page.substr(0, open);
-    out += parts.at(std::string(page.substr(open + 2, close - open - 2)));
+    const std::string_view name = page.substr(open + 2, close - open - 2);
+    const auto part = parts.find(name);
+    out += part == parts.end() ? html_text(words(name)) : part->second;
     page.remove_prefix(close + 2);
   }
   return out.append(page);
@@ -82,17 +86,15 @@ std::string title_of(const Comparison& c) {
 std::string legend_html(const Comparison& c) {
   const Marks shown = marks_shown(c);
   std::string legend;
-  if (shown.is_foreign) legend += " ·\n  <b>‡</b>: computed by another program";
-  if (shown.is_imported)
-    legend += " ·\n  <b>§</b>: imported from others, by their own figures, never verified";
+  if (shown.is_foreign) legend += " · " + html_text(words("marks.foreign"));
+  if (shown.is_imported) legend += " · " + html_text(words("marks.imported"));
   return legend;
 }
 
 // The plot itself stands among the statistics.
 std::string profile_html(const Comparison& c) {
   if (!has_order(c))
-    return fmt::format("With {} a profile says no more than the standings; none is drawn.",
-                       counted_settings(c, c.problems.size()));
+    return html_text(words("page.no-profile", counted_settings(c, c.problems.size())));
   return html_text(profile_reading(c, kTightest));
 }
 
@@ -101,19 +103,19 @@ std::string overview_html(const Document& document) {
   const Comparison& c = document.comparison;
   std::string html;
   if (!document.incomplete.empty())
-    html += fmt::format("<p class=alert role=alert><b>Incomplete.</b> {}</p>\n",
-                        html_text(document.incomplete));
+    html += fmt::format("<p class=alert role=alert><b>{}</b> {}</p>\n",
+                        html_text(words("page.incomplete")), html_text(document.incomplete));
   const std::size_t unread = c.study->unreadable.size();
   if (!c.failures.empty() || unread > 0)
-    html += fmt::format(
-        "<p class=alert><b>{} failed</b>{} — <a href=\"#failures\">which, and why</a></p>\n",
-        counted(c.failures.size(), "run"),
-        unread > 0 ? fmt::format(", {} unreadable", counted(unread, "file")) : "");
-  if (const std::vector<std::string> sentences = verdict(c); !sentences.empty()) {
-    html += fmt::format("<p class=verdict>{}</p>\n", html_text(short_verdict(c)));
-    html += "<details><summary>All that these runs say</summary>";
-    for (const std::string& sentence : sentences)
-      html += fmt::format("<p class=lead>{}</p>\n", html_text(sentence));
+    html += fmt::format("<p class=alert><b>{}</b>{} — <a href=\"#failures\">{}</a></p>\n",
+                        html_text(words("page.failed", c.failures.size())),
+                        unread > 0 ? html_text(words("page.unreadable", unread)) : "",
+                        html_text(words("page.why")));
+  if (const auto& sentences = document.section("standings").readings; !sentences.empty()) {
+    html += fmt::format("<p class=verdict>{}</p>\n", html_text(sentences[0].text));
+    html += "<details><summary>" + html_text(words("page.all-sentences")) + "</summary>";
+    for (const Reading& sentence : sentences)
+      html += fmt::format("<p class=lead>{}</p>\n", html_text(sentence.text));
     html += "</details>\n";
   }
   html += "<dl class=settled>";
@@ -123,8 +125,8 @@ std::string overview_html(const Document& document) {
 }
 
 std::string endings_html(const Comparison& c) {
-  std::string html =
-      fmt::format("<li><b>{}<small>/{}</small></b>runs complete</li>", c.answered, c.planned);
+  std::string html = fmt::format("<li><b>{}<small>/{}</small></b>{}</li>", c.answered, c.planned,
+                                 html_text(words("page.complete")));
   for (const auto& [status, count] : c.statuses)
     html += fmt::format("<li class=\"{}\"><b>{}</b>{}<small>{}</small></li>",
                         is_failure(status) ? "bad" : "", count, status_meaning(status),
@@ -134,14 +136,9 @@ std::string endings_html(const Comparison& c) {
 
 // --- kinds of methods as colours, dashes and words
 
-const std::map<std::string_view, std::string> kTitles = {{"gradient", "Gradient"},
-                                                         {"adaptive", "Adaptive gradient"},
-                                                         {"quasi-newton", "Quasi-Newton"},
-                                                         {"second-order", "Second order"},
-                                                         {"least-squares", "Least squares"},
-                                                         {"half-inverse", "Half-inverse gradients"},
-                                                         {"inversion", "Inversion of the physics"},
-                                                         {"derivative-free", "Derivative-free"}};
+bool is_kind(std::string_view kind) {
+  return all_sentences().contains(fmt::format("kind.{}", kind));
+}
 
 constexpr std::array<std::string_view, 5> kDashes = {"none", "7 3", "2 3", "9 3 2 3", "14 4"};
 constexpr std::array<int, 3> kShares = {100, 72, 50};  // of the kind's colour; the rest is ink
@@ -149,8 +146,7 @@ constexpr std::array<int, 3> kShares = {100, 72, 50};  // of the kind's colour; 
 }  // namespace
 
 std::string kind_title(std::string_view kind) {
-  const auto at = kTitles.find(kind);
-  return at == kTitles.end() ? "Other" : at->second;
+  return words(fmt::format("kind.{}", is_kind(kind) ? kind : "other"));
 }
 
 std::string kind_rules(const Comparison& c) {
@@ -158,7 +154,7 @@ std::string kind_rules(const Comparison& c) {
   std::map<std::string, std::size_t> counts;
   for (std::size_t s = 0; s < c.optimizers.size(); ++s) {
     std::string kind = c.optimizers[s].mathematics();
-    if (!kTitles.contains(kind)) kind = "other";
+    if (!is_kind(kind)) kind = "other";
     const std::size_t place = counts[kind]++;
     rules += fmt::format(
         "[data-s=\"{}\"]{{--series:color-mix(in oklab,var(--{}) {}%,var(--ink));--dash:{}}}\n", s,
@@ -170,27 +166,33 @@ std::string kind_rules(const Comparison& c) {
 std::string marks_html(const OptimizerAxis& axis) {
   std::string marks;
   if (!axis.privileges.empty())
-    marks = fmt::format("<sup><a href=\"#privileges\" title=\"given: {}\">†</a></sup>",
-                        html_text(joined(axis.privileges)));
-  if (axis.is_imported) marks += "<sup title=\"imported: by its own figures\">§</sup>";
+    marks = fmt::format("<sup><a href=\"#privileges\" title=\"{}\">†</a></sup>",
+                        html_text(words("page.given", joined(axis.privileges))));
+  if (axis.is_imported)
+    marks += fmt::format("<sup title=\"{}\">§</sup>", html_text(words("page.imported")));
   return marks;
 }
 
 std::string html_report(const Document& document) {
   const Comparison& c = document.comparison;
   const AllFields fields = all_found_fields(c);
+  Section order = document.section("standings"), apart{.id = "apart", .title = order.title};
+  const auto is_apart = [](const Table& table) { return table.id != "standings-table"; };
+  std::ranges::copy_if(order.tables, std::back_inserter(apart.tables), is_apart);
+  std::erase_if(order.tables, is_apart);
   Parts parts{{"title", html_text(title_of(c))},
               {"style", std::string(embedded_page_css()) + kind_rules(c)},
               {"scripts", std::string(embedded_page_js())},
               {"tau", tau_name(c)},
               {"headline", head_html(document)},
-              {"counted", std::string(counted_name(c))},
-              {"unit", std::string(unit_name(c))},
-              {"setting", std::string(setting_noun(c))},
+              {"page.ranking",
+               html_text(words("page.ranking", counted_name(c), setting_noun(c), tau_name(c)))},
+              {"page.heat", html_text(words("page.heat", unit_name(c)))},
               {"overview", overview_html(document)},
               {"endings", endings_html(c)},
               {"remarks", remarks_html(document)},
-              {"order", section_html(document.section("standings"))},
+              {"order", section_html(order)},
+              {"apart", apart.is_empty() ? "" : section_html(apart)},
               {"matrix", section_html(document.section("problems"))},
               {"problems", problems_html(c, fields)},
               {"profile", profile_html(c)},

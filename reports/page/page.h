@@ -91,7 +91,7 @@ std::string swatch();  // a short line in the colour and dash of the element aro
 std::string topic_attributes(const Topic& topic);
 
 // All drawings as SVG that needs no browser: axes, and an area of lines in coordinates from 0 to
-// 5,000, so that a script zooms by a change of the view and reads every point; dots and bars.
+// 5,000, so that a script zooms by a change of the view and reads every point.
 
 struct Frame {
   Real left = 0, top = 0, width = 0, height = 0;  // on the paper

@@ -25,8 +25,20 @@ std::string indices(const Indices& all) {
   return json_list(all, [](std::size_t index) { return std::to_string(index); });
 }
 
-// Medians to targets by each measure as they are printed, costs with a digit more: 0 where as the
-// one before, or where all are those of the first measure.
+// −k stands for k more of the number before it; no number here is negative.
+std::string repeats_json(const std::vector<std::string>& numbers) {
+  std::vector<std::string> shown;
+  std::size_t repeats = 0;
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    repeats = i > 0 && numbers[i] == numbers[i - 1] ? repeats + 1 : 0;
+    if (repeats > 1) shown.pop_back();
+    shown.push_back(repeats > 0 ? fmt::format("-{}", repeats) : numbers[i]);
+  }
+  return "[" + joined(shown, ",") + "]";
+}
+
+// Medians to targets by each measure as they are printed, costs with a digit more: 0 where all are
+// those of the first measure.
 std::string medians_json(const Comparison& c, const Cell& cell) {
   const std::vector<std::size_t> targets = targets_of(c);
   const auto medians = [&](Measure by) {
@@ -38,13 +50,12 @@ std::string medians_json(const Comparison& c, const Cell& cell) {
   const std::vector<Measure> measures = measures_of(c);
   return json_list(measures, [&](Measure by) {
     if (by != measures[0] && medians(by) == medians(measures[0])) return std::string("0");
-    std::string last;
-    return json_list(medians(by), [&](Real median) {
-      std::string text = by == Measure::time   ? milliseconds(median)
-                         : by == Measure::cost ? fmt::format("{:.5g}", median)
-                                               : fmt::format("{:.12g}", median);
-      return text == last ? "0" : last = text;
-    });
+    std::vector<std::string> texts;
+    for (const Real median : medians(by))
+      texts.push_back(by == Measure::time   ? milliseconds(median)
+                      : by == Measure::cost ? fmt::format("{:.5g}", median)
+                                            : fmt::format("{:.12g}", median));
+    return repeats_json(texts);
   });
 }
 
@@ -54,17 +65,18 @@ std::string medians_json(const Comparison& c, const Cell& cell) {
 std::string cell_json(const Comparison& c, std::size_t p, std::size_t s) {
   const Cell& cell = c.cell(p, s);
   if (!cell.runs.empty() && !cell.is_measured()) return fmt::format("[{}]", s);
-  std::vector<std::size_t> reached;
-  for (const std::size_t run : cell.runs) reached.push_back(c.runs[run].targets.size());
-  constexpr std::size_t kRecords = 10'000, kLeast = 1;  // of all cells; of one
+  std::vector<std::string> reached;
+  for (const std::size_t run : cell.runs)
+    reached.push_back(std::to_string(c.runs[run].targets.size()));
+  constexpr std::size_t kRecords = 5'000, kLeast = 1;  // of all cells; of one
   const std::size_t most = std::max(kLeast, kRecords / (c.problems.size() * c.optimizers.size()));
   const std::span runs(cell.runs.data(), std::min(most, cell.runs.size()));
   const std::string records = json_list(runs, [&](std::size_t run) {
     const std::string name = c.runs[run].record->file_name();
     return json_quoted(name.substr(0, name.find('.')));
   });
-  return fmt::format("[{},{},{},{},{},{}]", s, indices(reached), medians_json(c, cell), cell.failed,
-                     cell.missing(), records);
+  return fmt::format("[{},{},{},{},{},{}]", s, repeats_json(reached), medians_json(c, cell),
+                     cell.failed, cell.missing(), records);
 }
 
 // {"optimizer": "3.8e-5, tuned"}, of those whose options a table of rates chose.
@@ -97,14 +109,13 @@ std::string problem_json(const Comparison& c, std::size_t p,
   std::vector<std::size_t> asked;
   for (std::size_t s = 0; s < c.optimizers.size(); ++s)
     if (c.cell(p, s).planned > 0) asked.push_back(s);
+  const std::vector<std::size_t> ranked = ranking(c, p);
   return fmt::format(
              "{{\"spec\":{},\"name\":{},\"group\":\"{}\",\"isOrdered\":{},\"cells\":{},"
              "\"order\":{},\"lines\":{}",
              json_quoted(problem_name(problem)), json_quoted(problem.name), problem.group(),
              is_ordered(c, p), json_list(asked, [&](std::size_t s) { return cell_json(c, p, s); }),
-             indices(ranking(c, p)),
-             json_list(shown_at_first(c, ranking(c, p)),
-                       [](std::size_t s) { return std::to_string(s); })) +
+             indices(ranked), indices(shown_at_first(c, ranked))) +
          origins_json(c, p) + learned_json(c, p) +
          (fields ? ",\"fields\":" + fields_json(*fields) : "") + "}";
 }
@@ -193,6 +204,16 @@ std::string measures_json(const Comparison& c) {
   });
 }
 
+// The sentences that scripts fill, by key.
+std::string script_words() {
+  constexpr std::string_view kPrefix = "script.";
+  std::vector<std::string> all;
+  for (const auto& [key, sentence] : all_sentences())
+    if (key.starts_with(kPrefix))
+      all.push_back(json_quoted(key.substr(kPrefix.size())) + ":" + json_quoted(sentence.text));
+  return "{" + joined(all, ",") + "}";
+}
+
 }  // namespace
 
 std::vector<std::size_t> targets_of(const Comparison& c) {
@@ -224,13 +245,13 @@ std::string page_data(const Document& document, const AllFields& fields) {
   std::string text = fmt::format(
       "{{\"runs\":{},\"by\":\"{}\",\"allLearned\":{},\"shades\":{},\"measures\":{},\"isTimedTogether\":{},"
       "\"rungs\":{},\"targets\":{},{},\"given\":{},\"ranked\":{},\"common\":{},\"claims\":{},"
-      "\"standings\":{},\"problems\":[",
+      "\"words\":{},\"standings\":{},\"problems\":[",
       json_quoted(runs_address(document)), name_of(c.yardstick.by), is_all_learned(c),
       json_list(kShades, exact_figure), measures_json(c), c.is_any_timed_together,
       json_list(c.yardstick.tolerances,
                 [](const Tolerance& tolerance) { return std::to_string(tolerance.rung); }),
       indices(targets_of(c)), axes_json(c), given_json(c), indices(c.order.methods),
-      indices(c.order.settings), claims_about(document), standings_json(c));
+      indices(c.order.settings), claims_about(document), script_words(), standings_json(c));
   for (std::size_t p = 0; p < c.problems.size(); ++p)
     text += (p > 0 ? "," : "") + problem_json(c, p, fields[p]);
   std::string safe;  // no </script and no <!-- can stand in it

@@ -28,21 +28,17 @@ function medianInterval(ascending) {
 }
 
 // Problems of one name count as one: the median over the settings that both were run on.
-const pairOf = (a, b) => pairOfAll([[a, b]]);
-
-// Of several pairs the median over their settings too: of all methods in two results.
-function pairOfAll(pairs) {
+function pairOf(a, b) {
   const names = new Map();
-  DATA.problems.forEach((problem, p) => pairs.forEach(([a, b]) => {
+  DATA.problems.forEach((problem, p) => {
     const mine = cellOf(problem, a), other = cellOf(problem, b);
     if (!problem.isOrdered || mine === undefined || other === undefined) return;
     const [x, y] = [takenBy(mine), takenBy(other)], one = names.get(problem.name) ?? {name: problem.name, values: [], settings: [], isSolved: false};
     names.set(problem.name, one);
     one.isSolved = one.isSolved || x < Infinity || y < Infinity;
-    if (pairs.length > 1 && x === Infinity && y === Infinity) return;  // it says nothing of the two
     one.values.push(doublingsOf(x, y));
     one.settings.push({p, a: x, b: y});
-  }));
+  });
   const all = [...names.values()], solved = all.filter((one) => one.isSolved)
       .map((one) => ({...one, doublings: medianOf([...one.values].sort((x, y) => x - y))}));
   const sorted = solved.map((one) => one.doublings).sort((x, y) => x - y), count = (isCounted) => sorted.filter(isCounted).length;

@@ -90,10 +90,10 @@ namespace {
 
 using Rows = std::vector<std::vector<Real>>;
 
-Drawing plane_drawing(const Comparison& c, std::size_t p, const Landscape& landscape,
-                      const char* space, Rows Path::*rows, const std::vector<Real>& goal) {
+Drawing plane_drawing(const Comparison& c, std::size_t p, const std::vector<Path>& all,
+                      const Landscape& landscape, const char* space, Rows Trajectory::*rows,
+                      const std::vector<Real>& goal) {
   constexpr Real kMostStretch = 12;  // beyond it a valley would be a line
-  const std::vector<Path> all = paths(c, p);
   const std::size_t points = std::clamp<std::size_t>(8000 / all.size(), 12, 120);
   const auto& [left, right, low, high] = landscape.window;
   const Real stretch = std::max((right - left) / (high - low), (high - low) / (right - left));
@@ -109,10 +109,11 @@ Drawing plane_drawing(const Comparison& c, std::size_t p, const Landscape& lands
     out.ground.push_back(isoline(landscape, level));
   for (const Path& path : all) {
     PlotSeries& line = out.plot.series.emplace_back();
-    line.optimizer = path.index;
-    line.name = optimizer_name(c.optimizers[path.index]);
-    for (const std::size_t i : thinned((path.*rows).size(), points)) {
-      const std::vector<Real>& point = (path.*rows)[i];
+    const Rows& all_points = path.points->*rows;
+    line.optimizer = path.optimizer;
+    line.name = optimizer_name(c.optimizers[path.optimizer]);
+    for (const std::size_t i : thinned(all_points.size(), points)) {
+      const std::vector<Real>& point = all_points[i];
       line.x.push_back(point.size() == 2 ? point[0] : NAN);
       line.y.push_back(point.size() == 2 ? point[1] : NAN);
     }
@@ -126,9 +127,8 @@ Drawing plane_drawing(const Comparison& c, std::size_t p, const Landscape& lands
 }
 
 // Of the paths in x or in y; empty where fewer than two say anything.
-std::string path_reading(const Comparison& c, std::size_t problem, Rows Path::*rows) {
-  std::vector<Path> all = paths(c, problem);
-  const auto length = [rows](const Path& path) { return detour(path.*rows); };
+std::string path_reading(const Comparison& c, std::vector<Path> all, Rows Trajectory::*rows) {
+  const auto length = [rows](const Path& path) { return detour(path.points->*rows); };
   std::erase_if(all, [&](const Path& path) { return length(path) == kNever; });
   if (all.size() < 2) return "";
   const auto [straight, winding] = std::ranges::minmax(all, {}, length);
@@ -136,9 +136,9 @@ std::string path_reading(const Comparison& c, std::size_t problem, Rows Path::*r
   const Real least = length(straight);
   return fmt::format(
       "Straightest: {}, {}. Longest way round: {}, {} the direct distance.",
-      shown_spec(straight.optimizer),
+      shown_spec(c.optimizers[straight.optimizer].label),
       least < kStraight ? "a straight line" : multiple(least) + " the direct distance",
-      shown_spec(winding.optimizer), multiple(length(winding)));
+      shown_spec(c.optimizers[winding.optimizer].label), multiple(length(winding)));
 }
 
 }  // namespace
@@ -147,18 +147,19 @@ std::string path_reading(const Comparison& c, std::size_t problem, Rows Path::*r
 std::string planes_html(const Comparison& c, std::size_t p) {
   const Sheet* sheet = c.problems[p].sheet;
   const bool has_planes = sheet != nullptr && (sheet->landscape_x || sheet->landscape_y);
-  if (!has_planes || paths(c, p).empty()) return "";
+  const std::vector<Path> all = has_planes ? paths(c, p) : std::vector<Path>();
+  if (all.empty()) return "";
   std::string html = "<div class=planes>";
   const auto add = [&](const std::optional<Landscape>& landscape, const char* space,
-                       Rows Path::*rows, const std::vector<Real>& goal, const char* title) {
+                       Rows Trajectory::*rows, const std::vector<Real>& goal, const char* title) {
     if (!landscape) return;
-    const Drawing drawing = plane_drawing(c, p, *landscape, space, rows, goal);
+    const Drawing drawing = plane_drawing(c, p, all, *landscape, space, rows, goal);
     html += fmt::format("<figure class=plane><figcaption><b>{}</b> {} {}</figcaption>{}</figure>",
-                        title, html_text(path_reading(c, p, rows)), html_text(drawing.plot.caption),
-                        drawing_svg(drawing));
+                        title, html_text(path_reading(c, all, rows)),
+                        html_text(drawing.plot.caption), drawing_svg(drawing));
   };
-  add(sheet->landscape_x, "x", &Path::x, sheet->truth, "Paths in x, over the loss.");
-  add(sheet->landscape_y, "y", &Path::y, sheet->target, "The same paths in y.");
+  add(sheet->landscape_x, "x", &Trajectory::x, sheet->truth, "Paths in x, over the loss.");
+  add(sheet->landscape_y, "y", &Trajectory::y, sheet->target, "The same paths in y.");
   return html + fmt::format(
                     "</div><p class=legend>Thin lines: equal loss, {}. Paths of the lowest seed; "
                     "points are steps, drawn for runs of few steps. ○ start, ● solution in x, "

@@ -9,6 +9,7 @@
 
 #include "core/files.h"
 #include "core/records/sheet.h"
+#include "core/seeds.h"
 #include "reports/formats/formats.h"
 #include "reports/page/page.h"
 #include "reports/sections/sections.h"
@@ -41,7 +42,7 @@ std::string cell_html(const Table& table, const TableCell& cell, std::size_t col
   if (align == 'c' && !text.empty()) text = "<code>" + text + "</code>";
   if (!cell.link.empty()) text = fmt::format("<a href=\"{}\">{}</a>", html_text(cell.link), text);
   if (cell.is_best) text = "<b>" + text + "</b>";
-  if (!cell.remark.empty()) text += "<br><small>" + html_text(cell.remark) + "</small>";
+  if (!cell.remark.empty()) text += "<small>" + html_text(cell.remark) + "</small>";
   return fmt::format("<{}>{}", tag, text);
 }
 
@@ -195,7 +196,8 @@ std::string cell_command(const Comparison& c, const Cell& cell) {
   std::uint64_t next = first.seed;
   for (const std::size_t run : cell.runs) {
     const Request& request = c.runs[run].record->request;
-    if (request.seed != next++ || request.optimizer.spec != first.optimizer.spec ||
+    if (request.seed != next++ || is_pair(request.seed) ||
+        request.optimizer.spec != first.optimizer.spec ||
         budget_options(request) != budget_options(first))
       return command;
   }

@@ -1,10 +1,8 @@
-// Axes, lines, dots and bars as SVG; colours and dashes are in page.css.
+// Axes and lines as SVG; colours and dashes are in page.css.
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <limits>
 
 #include "reports/formats/formats.h"
 #include "reports/page/page.h"
@@ -116,12 +114,15 @@ Frame frame_of(const Drawing& drawing) {
               .top = kTop,
               .width = width - kLeft - (drawing.has_names ? kNameWidth : 16),
               .height = height - kTop - kBelow,
-              .window = drawing.window.value_or(window_of(shown_lines(drawing))),
               .is_log_x = plot.is_log_x,
               .is_log_y = plot.is_log_y};
   Window& window = frame.window;
-  if (plot.kind == Plot::Kind::steps && !drawing.window)
+  if (drawing.window)
+    window = *drawing.window;
+  else if (plot.kind == Plot::Kind::steps)
     window = {plot.series[0].x.front(), plot.series[0].x.back(), 0, 1};
+  else
+    window = window_of(shown_lines(drawing));
   if (drawing.is_to_scale) {
     const Real unit = std::max((window.x_high - window.x_low) / frame.width,
                                (window.y_high - window.y_low) / frame.height);
@@ -346,146 +347,15 @@ std::string names_html(const Drawing& drawing) {
   return "<div class=names>" + shown + "</div>" + others;
 }
 
-// Dots and bars, a row each.
-
-namespace {
-
-constexpr Real kPlotWidth = 720, kNames = 190, kRow = 18, kPlotTop = 26;
-constexpr const char* kMarks[] = {"●", "■", "▲", "◆", "▼", "○", "□", "△"};
-
-// Shapes, so that colour is not needed to tell series apart; of an optimizer in every plot the
-// same.
-std::string mark_of(const PlotSeries& series, std::size_t place) {
-  return kMarks[series.optimizer.value_or(place) % std::size(kMarks)];
-}
-
-// The finite numbers of bars or dots, from the least to the greatest.
-std::array<Real, 2> extent_of(const Plot& plot) {
-  if (plot.window) return *plot.window;
-  Real low = std::numeric_limits<Real>::infinity(), high = -low;
-  const bool are_bars = plot.kind == Plot::Kind::bars;
-  for (const PlotSeries& series : plot.series)
-    for (const auto* column : {are_bars ? &series.y : &series.x, &series.low, &series.high})
-      for (const Real value : *column) {
-        if (!std::isfinite(value)) continue;
-        low = std::min(low, value);
-        high = std::max(high, value);
-      }
-  if (are_bars) return {std::min(low, 0.0), std::max(high, 0.0)};
-  return {low, high};
-}
-
-// A frame with a row a name.
-Frame rows_frame(const Plot& plot) {
-  auto [low, high] = extent_of(plot);
-  if (plot.is_log_x) low = std::pow(10.0, std::floor(std::log10(std::max(low, 1.0))));
-  if (plot.is_log_x) high = std::max(high, 10 * low);
-  if (!(high > low)) high = low + 1;
-  return {.left = kNames,
-          .top = kPlotTop,
-          .width = kPlotWidth - kNames - 20,
-          .height = kRow * static_cast<Real>(plot.rows.size()),
-          .window = {low, high, 0, 1},
-          .is_log_x = plot.is_log_x};
-}
-
-std::string row_opened(const Plot& plot, const Frame& frame, std::size_t row) {
-  return fmt::format("<g{}><text x={:.0f} y={:.0f} text-anchor=end>{}</text>",
-                     topic_attributes(plot.rows[row].topic), frame.left - 8,
-                     frame.top + kRow * (static_cast<Real>(row) + 0.7),
-                     html_text(plot.rows[row].name));
-}
-
-// The mark of one series in a row, with its interval where it has one.
-std::string dot_svg(const Frame& frame, const PlotSeries& series, std::size_t place, std::size_t i,
-                    Real shift) {
-  const Real y = frame.top + kRow * (series.y[i] + 0.5) + shift;
-  const auto x = [&](Real value) { return std::clamp(frame.x(value), frame.left, frame.right()); };
-  std::string svg = fmt::format("<g{}>", line_attributes(series, place, "")), range;
-  if (!series.low.empty()) {
-    svg += fmt::format("<path class=whisker d=\"M{:.1f} {:.1f}H{:.1f}\"/>", x(series.low[i]), y,
-                       x(series.high[i]));
-    range = fmt::format(" [{}–{}]", reached_figure(series.low[i]), reached_figure(series.high[i]));
-  }
-  return svg + fmt::format(
-                   "<text class=mark x={:.1f} y={:.1f} text-anchor=middle>{}<title>{}: {}{}"
-                   "</title></text></g>",
-                   x(series.x[i]), y + 3.5, mark_of(series, place), html_text(series.name),
-                   figure(series.x[i]), range);
-}
-
-// Series of different things in one row are moved apart; a row that is an optimizer has one.
-std::string dots_svg(const Plot& plot) {
-  const Frame frame = rows_frame(plot);
-  std::vector<std::string> rows;
-  for (std::size_t row = 0; row < plot.rows.size(); ++row)
-    rows.push_back(row_opened(plot, frame, row));
-  const bool are_apart = !plot.rows.empty() && plot.rows[0].topic.problem.has_value();
-  const Real n = static_cast<Real>(plot.series.size());
-  for (std::size_t s = 0; s < plot.series.size(); ++s)
-    for (std::size_t i = 0; i < plot.series[s].x.size(); ++i)
-      rows[static_cast<std::size_t>(plot.series[s].y[i])] +=
-          dot_svg(frame, plot.series[s], s, i,
-                  are_apart ? (static_cast<Real>(s) - (n - 1) / 2) * 0.7 * kRow / n : 0);
-  return x_axis(frame, plot.x_label) + joined(rows, "</g>") + (rows.empty() ? "" : "</g>");
-}
-
-std::string bars_svg(const Plot& plot) {
-  const Frame frame = rows_frame(plot);
-  const PlotSeries& series = plot.series[0];
-  std::string svg = x_axis(frame, plot.y_label);
-  for (std::size_t i = 0; i < series.y.size(); ++i) {
-    const Real end = std::clamp(frame.x(series.y[i]), frame.left, frame.right());
-    svg +=
-        row_opened(plot, frame, i) +
-        fmt::format(
-            "<rect class=\"{}\" x={:.1f} y={:.1f} width={:.1f} height={:.0f}><title>{}: "
-            "{:+.2f}</title></rect></g>",
-            series.y[i] < 0 ? "c0" : "c1", std::min(frame.x(0), end),
-            frame.top + kRow * static_cast<Real>(i) + 3, std::max(1.0, std::abs(end - frame.x(0))),
-            kRow - 6, html_text(plot.rows[i].name), series.y[i]);
-  }
-  return svg;
-}
-
-// What the marks of a plot mean, where its rows do not say.
-std::string marks_html(const Plot& plot) {
-  if (plot.kind != Plot::Kind::dots || plot.rows.empty() || plot.rows[0].topic.optimizer) return "";
-  std::string html = "<p class=marks>";
-  for (std::size_t s = 0; s < plot.series.size(); ++s)
-    html += fmt::format("<span{}><b>{}</b> {}</span> ", line_attributes(plot.series[s], s, ""),
-                        mark_of(plot.series[s], s), html_text(plot.series[s].name));
-  return html + "</p>";
-}
-
-std::string rows_svg(const Plot& plot) {
-  // Rows of methods close up where some are hidden: the scripts read how high a row is.
-  const bool is_closing = !plot.rows.empty() && !plot.rows[0].topic.method.empty();
-  return fmt::format(
-             "<svg class=rows{} viewBox=\"0 0 {:.0f} {:.0f}\" role=img aria-label=\"{}\"><title>{}"
-             "</title>",
-             is_closing ? fmt::format(" data-row={:.0f} data-edge={:.0f}", kRow, kPlotTop + kBelow)
-                        : "",
-             kPlotWidth, kPlotTop + kRow * static_cast<Real>(plot.rows.size()) + kBelow,
-             html_text(plot.title + ". " + plot.reading), html_text(plot.title)) +
-         (plot.kind == Plot::Kind::dots ? dots_svg(plot) : bars_svg(plot)) + "</svg>";
-}
-
-}  // namespace
-
 std::string plot_html(const Plot& plot) {
   const bool is_steps = plot.kind == Plot::Kind::steps;
   const Drawing drawing{
       .plot = plot, .join = is_steps ? Join::steps : Join::straight, .has_names = is_steps};
-  const std::string drawn = is_steps || plot.kind == Plot::Kind::lines
-                                ? drawing_svg(drawing) + names_html(drawing)
-                                : rows_svg(plot) + marks_html(plot);
-  std::string figure = fmt::format(
-      "<figure class=plot id={}><figcaption><b>{}.</b> {}</figcaption>{}<p class=legend>{}</p>"
+  return fmt::format(
+      "<figure class=plot id={}><figcaption><b>{}.</b> {}</figcaption>{}{}<p class=legend>{}</p>"
       "</figure>\n",
-      plot.id, html_text(plot.title), html_text(plot.reading), drawn, html_text(plot.caption));
-  if (!plot.is_folded) return figure;
-  return fmt::format("<details><summary>{}</summary>{}</details>\n", html_text(plot.title), figure);
+      plot.id, html_text(plot.title), html_text(plot.reading), drawing_svg(drawing),
+      names_html(drawing), html_text(plot.caption));
 }
 
 }  // namespace isoline::reports

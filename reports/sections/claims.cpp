@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/seeds.h"
 #include "reports/sections/words.h"
 
 namespace isoline::reports {
@@ -94,7 +95,7 @@ Table runs_table(const Evidence& evidence, const std::string& id) {
   for (const EvidenceTerm& term : evidence.terms)
     for (const EvidenceRun& run : term.runs)
       table.rows.push_back({shown_spec(term.problem) + " × " + shown_spec(term.optimizer),
-                            std::to_string(run.seed),
+                            seed_text(run.seed),
                             TableCell(figure(run.figure), {{"figure", run.figure}}),
                             std::string(name_of(run.status)), run.file});
   return table;
@@ -252,7 +253,6 @@ Section papers_section(const std::vector<Judgement>& judgements) {
     auto table = std::ranges::find(section.tables, judgement.paper, &Table::title);
     if (table == section.tables.end()) {
       table = section.tables.insert(table, worded_table("papers-table"));
-      table->id.clear();
       table->title = judgement.paper;
     }
     constexpr Real kMinute = 60;
@@ -280,14 +280,12 @@ Section papers_section(const std::vector<Judgement>& judgements) {
 
 Section claims_summary(const std::vector<Judgement>& judgements) {
   Section section = worded_section("claims-summary");
-  section.id = "claims";
   section.readings = {{"", claims_reading(judgements)}};
   Table& table = section.tables.emplace_back(worded_table("claims-summary-table"));
-  table.id.clear();
-  for (const Verdict verdict : {Verdict::not_reproduced, Verdict::partly, Verdict::consistent,
-                                Verdict::reproduced, Verdict::too_short, Verdict::not_comparable})
+  constexpr auto kDecided = static_cast<std::size_t>(Verdict::too_short);
+  for (std::size_t i = 0; i < kVerdictNames.size(); ++i)
     for (const Judgement& judgement : judgements)
-      if (judgement.verdict == verdict)
+      if (judgement.verdict == static_cast<Verdict>(i < kDecided ? kDecided - 1 - i : i))
         table.rows.push_back({judgement.id, marked_verdict(judgement), judgement.published,
                               value_text(judgement), seeds_text(judgement)});
   return section;

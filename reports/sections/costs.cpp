@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
+#include <utility>
 
 #include "core/results/statistics.h"
 #include "core/results/study.h"
@@ -38,16 +38,6 @@ Calls calls_of(const Comparison& c, std::size_t s) {
   return calls;
 }
 
-const MeasuredPrice* price_of(const MeasuredPrices& prices, std::string_view oracle) {
-  const auto at = std::ranges::find(prices.oracles, oracle, &MeasuredPrice::oracle);
-  return at == prices.oracles.end() ? nullptr : &*at;
-}
-
-// Also those that are not used.
-const MeasuredPrices* prices_of(const ProblemAxis& problem) {
-  return problem.has_own_sheet() && problem.sheet->prices ? &*problem.sheet->prices : nullptr;
-}
-
 TableCell price_cell(const MeasuredPrices& prices, std::string_view oracle) {
   const MeasuredPrice* price = price_of(prices, oracle);
   if (price == nullptr) return "";
@@ -63,6 +53,15 @@ TableCell price_cell(const MeasuredPrices& prices, std::string_view oracle) {
 
 }  // namespace
 
+const MeasuredPrice* price_of(const MeasuredPrices& prices, std::string_view oracle) {
+  const auto at = std::ranges::find(prices.oracles, oracle, &MeasuredPrice::oracle);
+  return at == prices.oracles.end() ? nullptr : &*at;
+}
+
+const MeasuredPrices* prices_of(const ProblemAxis& problem) {
+  return problem.has_own_sheet() && problem.sheet->prices ? &*problem.sheet->prices : nullptr;
+}
+
 Table calls_table(const Comparison& c) {
   Table table = worded_table("calls", tau_name(c), priced_unit(c));
   std::vector<Calls> all;
@@ -77,13 +76,18 @@ Table calls_table(const Comparison& c) {
   }
   for (std::size_t kind = 0; kind < kOracles; ++kind)
     if (is_asked[kind]) table.columns.emplace_back(kOracleNames[kind]);
-  for (const char* column : {"work", "cost", "n runs", "failed"}) table.columns.push_back(column);
+  for (const char* column : {"work", "cost", "own time", "n runs", "failed"})
+    table.columns.push_back(column);
   for (std::size_t s = 0; s < all.size(); ++s) {
     std::vector<TableCell> row = {count_cell(all[s].reached)};
     for (std::size_t kind = 0; kind < kOracles; ++kind)
       if (is_asked[kind]) row.push_back(number_cell("sum", all[s].counts[kind]));
     row.push_back(number_cell("sum", all[s].work));
     row.push_back(number_cell("sum", all[s].cost));
+    const Spread own = own_time(c, s);
+    row.push_back(
+        own.n == 0 ? TableCell("")
+                   : TableCell(percent(own.median), {{"median", own.median}, {"n", Real(own.n)}}));
     row.push_back(count_cell(all[s].runs));
     row.push_back(failed_cell(c, s));
     add_row(table, c, s, std::move(row));
@@ -173,10 +177,13 @@ TableCell restart_cell(const Comparison& c, std::size_t p, std::size_t s, std::s
       reached_figure(expected),
       {{"expected", expected}, {"reached", Real(successes)}, {"n", Real(attempts.size())}}};
   rescued += expected < kNever && !cell.headline[kTightest].is_solved();
-  if (expected < kNever && attempts.size() > 1) {
+  const bool is_few = attempts.size() < kFewestForInterval;
+  if (expected < kNever && (!is_few || std::cmp_equal(successes, attempts.size()))) {
     const std::string key = c.problems[p].spec + " " + c.optimizers[s].label;
     const std::vector<Real> costs = simulated_restarts(attempts, key);
-    const Real low = quantile(costs, 0.1), high = quantile(costs, 0.9);
+    const auto [least, most] = std::ranges::minmax(attempts, {}, &Attempt::cost);
+    const Real low = is_few ? least.cost : quantile(costs, 0.1);
+    const Real high = is_few ? most.cost : quantile(costs, 0.9);
     if (low < high) {
       shown.text += fmt::format(" [{}–{}]", figure(low), figure(high));
       shown.numbers.push_back({"low", low});

@@ -93,7 +93,7 @@ std::vector<Path> paths(const Comparison& c, std::size_t problem) {
     for (const std::size_t run : c.cell(problem, s).runs) {
       const auto& trajectory = c.runs[run].record->trajectory;
       if (!trajectory || trajectory->x.empty()) continue;
-      all.push_back({c.optimizers[s].label, s, trajectory->x, trajectory->y});
+      all.push_back({s, &*trajectory});
       break;
     }
   return all;

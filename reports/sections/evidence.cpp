@@ -203,7 +203,6 @@ void add_curve(EvidenceTerm& term, const Runs& runs, Place place, bool is_over_t
   const Curve& longest = (*std::ranges::max_element(runs, {}, [](const Record* run) {
                            return run->curve.iteration.size();
                          }))->curve;
-  place.seconds.reset();
   for (const std::size_t i : points_of(longest, place)) {
     place.iteration = longest.iteration[i];
     std::vector<Real> values;

@@ -39,9 +39,8 @@ std::size_t point_at(const std::vector<Value>& axis, Value place) {
 
 // The path of each optimizer, of the lowest seed that has one.
 struct Path {
-  std::string optimizer;
-  std::size_t index = 0;  // of the optimizer
-  std::vector<std::vector<Real>> x, y;
+  std::size_t optimizer = 0;
+  const Trajectory* points = nullptr;
 };
 std::vector<Path> paths(const Comparison& comparison, std::size_t problem);
 // The length of a path over the distance between its ends, infinite where that says nothing.

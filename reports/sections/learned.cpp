@@ -93,11 +93,9 @@ std::vector<std::size_t> instances_of(const Comparison& c, std::size_t learned) 
 
 // Seconds of an example; not-a-number where it was not measured.
 Real inference_seconds(const ProblemAxis& problem) {
-  const Sheet* sheet = problem.sheet;
-  if (sheet == nullptr || sheet->spec != problem.spec || !sheet->prices) return kUnknown;
-  const auto& rows = sheet->prices->oracles;
-  const auto row = std::ranges::find(rows, kInference, &MeasuredPrice::oracle);
-  return row == rows.end() ? kUnknown : row->price * sheet->prices->forward_seconds;
+  const MeasuredPrices* prices = prices_of(problem);
+  const MeasuredPrice* price = prices == nullptr ? nullptr : price_of(*prices, kInference);
+  return price == nullptr ? kUnknown : price->price * prices->forward_seconds;
 }
 
 // `seconds_of` each run; what failed or is missing never got there.

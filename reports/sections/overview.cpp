@@ -1,11 +1,10 @@
 // Puts the sections of a report in order; its first sentences, and those that read its charts.
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <map>
 #include <optional>
 #include <set>
 
+#include "core/seeds.h"
 #include "reports/sections/sections.h"
 #include "reports/sections/words.h"
 
@@ -53,7 +52,7 @@ std::size_t methods_of(const Comparison& c, std::optional<std::size_t> problem =
 Leading leaders(const Comparison& c, const Profile& profile, Real factor) {
   Leading first;
   for (const std::size_t s : c.order.methods)
-    first.offer(profile.share(s, factor), shown_spec(c.optimizers[s].label));
+    first.offer(profile.share(s, factor), name_in_sentence(c.optimizers[s]));
   return first;
 }
 
@@ -62,15 +61,15 @@ std::string least_loss_reading(const Comparison& c, std::size_t problem,
   const std::size_t best = *std::ranges::min_element(
       order, {}, [&](std::size_t s) { return c.cell(problem, s).loss.median; });
   const Real loss = c.cell(problem, best).loss.median;
-  return words(loss == kNever ? "curve.none-finite" : "curve.least-loss", tau_name(c),
-               shown_spec(c.optimizers[best].label), loss);
+  return words(loss == kNever ? "curve.none-finite" : "curve.least-loss",
+               words(c.problems[problem].aim == Aim::x ? "curve.x-error" : "curve.gap"),
+               tau_name(c), name_in_sentence(c.optimizers[best]), loss);
 }
 
 // "; next adam, 1.3× as much", and on how many of the seeds that both ran the first took less.
 std::string runner_up(const Comparison& c, const Cell& first, const Cell& second,
                       const std::string& name) {
   const Real best = first.headline[kTightest].median, next = second.headline[kTightest].median;
-  if (next <= best) return fmt::format(", tied with {}", name);
   const auto pairs = c.join(first.runs, second.runs, [](const Run& run) { return run.seed; });
   const auto less = std::ranges::count_if(pairs, [&](const auto& pair) {
     return c.taken(c.runs[pair.first], c.yardstick.by, kTightest) <
@@ -86,20 +85,18 @@ std::string missing_text(const Comparison& comparison) {
   constexpr std::size_t kNamed = 5;
   const auto& missing = comparison.missing;
   if (missing.empty()) return "";
-  std::string text =
-      fmt::format("{} of {} cells, missing: ", comparison.answered, comparison.planned);
+  std::vector<std::string> cells;
   for (std::size_t i = 0; i < missing.size() && i < kNamed; ++i)
-    text += fmt::format("{}{} / {} / seed {}", i == 0 ? "" : "; ", missing[i].problem,
-                        missing[i].optimizer, missing[i].seed);
-  if (missing.size() > kNamed) text += fmt::format("; and {} more", missing.size() - kNamed);
-  return text;
+    cells.push_back(words("overview.cell", missing[i].problem, missing[i].optimizer,
+                          seed_text(missing[i].seed)));
+  const std::size_t more = missing.size() - cells.size();
+  return words("overview.missing", comparison.answered, comparison.planned, joined(cells, "; "),
+               more == 0 ? "" : words("overview.more", more));
 }
 
 std::string headline(const Comparison& c) {
-  std::string problems = counted(c.names, "problem");
-  if (c.problems.size() > c.names) problems += fmt::format(" ({} settings)", c.problems.size());
-  return fmt::format("{} on {}, {}, {}", counted(methods_of(c), "optimizer"), problems,
-                     counted(c.seeds.size(), "seed"), counted(c.study->runs.size(), "run"));
+  return words(c.problems.size() > c.names ? "overview.headline-settings" : "overview.headline",
+               methods_of(c), c.names, c.problems.size(), c.seeds.size(), c.study->runs.size());
 }
 
 std::vector<std::string> remarks(const Comparison& c) {
@@ -109,7 +106,7 @@ std::vector<std::string> remarks(const Comparison& c) {
   std::vector<std::string> partial;  // problems that were not asked of every optimizer
   for (std::size_t p = 0; p < c.problems.size(); ++p)
     if (const std::size_t planned = methods_of(c, p); planned < methods_of(c))
-      partial.push_back(fmt::format("{}: {}", problem_name(c.problems[p]), planned));
+      partial.push_back(words("remarks.count", problem_name(c.problems[p]), planned));
   if (!partial.empty())
     all.push_back(words("remarks.partial", counted_settings(c, c.order.settings.size()),
                         methods_of(c), first_of(partial, kNamed)));
@@ -123,7 +120,7 @@ std::vector<std::string> remarks(const Comparison& c) {
       sources[run.record->request.optimizer.name].insert(run.record->imported->source);
   std::vector<std::string> named;
   for (const auto& [method, those] : sources)
-    named.push_back(fmt::format("{} ({})", method, joined({those.begin(), those.end()}, "; ")));
+    named.push_back(words("remarks.source", method, joined({those.begin(), those.end()}, "; ")));
   if (!named.empty()) all.push_back(words("remarks.imported", joined(named)));
   for (const ProblemAxis& problem : c.problems)
     if (!problem.is_minimum_declared)
@@ -139,10 +136,10 @@ std::string profile_reading(const Comparison& c, std::size_t tolerance) {
   const auto text = [](const Leading& first) {  // many are counted, not named
     constexpr std::size_t kNamed = 3;
     const std::size_t count = first.names.size();
-    return count > kNamed ? fmt::format("{} methods", count) : joined(first.names, " and ");
+    return count > kNamed ? words("profile.methods", count) : listed(first.names);
   };
-  return words("profile.reading", text(fast), text(fast).find(' ') == std::string::npos,
-               percent(fast.value), tau, counted_name(c), percent(robust.value), text(robust));
+  return words("profile.reading", text(fast), fast.names.size(), percent(fast.value), tau,
+               counted_name(c), percent(robust.value), text(robust));
 }
 
 std::string curve_reading(const Comparison& c, std::size_t problem) {
@@ -153,16 +150,23 @@ std::string curve_reading(const Comparison& c, std::size_t problem) {
       std::ranges::count_if(order, [&](std::size_t s) { return work(s).is_solved(); }));
   if (solved == 0) return least_loss_reading(c, problem, order);
   const Spread first = work(order[0]);
+  std::vector<std::string> tied;
+  for (const std::size_t s : order) {
+    if (!(work(s).median <= first.median)) break;
+    tied.push_back(name_in_sentence(c.optimizers[s]));
+  }
+  const bool is_tied = tied.size() > 1;
   const std::string range =
       range_figure(first, c.yardstick.by == Measure::time ? milliseconds : reached_figure);
-  const std::size_t unsolved = order.size() - solved;
+  const std::size_t unsolved = order.size() - solved, next = tied.size();
   return words("curve.least", counted_name(c), tau_name(c),
-               shown_spec(c.optimizers[order[0]].label),
+               is_tied ? words("curve.tied", listed(tied)) : tied[0],
                c.cell(problem, order[0]).is_bound[kTightest] ? "≤ " : "", amount(c, first.median),
-               unit_name(c), range.empty() ? "" : fmt::format(" ({} over seeds)", range),
-               solved < 2 ? ""
-                          : runner_up(c, c.cell(problem, order[0]), c.cell(problem, order[1]),
-                                      shown_spec(c.optimizers[order[1]].label)),
+               unit_name(c), range.empty() || is_tied ? "" : " " + words("curve.range", range),
+               solved <= next
+                   ? ""
+                   : runner_up(c, c.cell(problem, order[0]), c.cell(problem, order[next]),
+                               name_in_sentence(c.optimizers[order[next]])),
                words(unsolved == 0 ? "curve.all" : "curve.unsolved", unsolved, order.size()));
 }
 
@@ -178,16 +182,18 @@ std::vector<std::string> learned_sentences(const Comparison& c) {
     const auto order = equal.nearest_first();
     if (order.empty() || !equal.methods[order[0]]->x_error.is_solved()) continue;
     ++problems;
-    ++nearest[optimizer_text(c, order[0])];
+    const auto name = [&](std::size_t place) {
+      return name_in_sentence(c.optimizers[order[place]]);
+    };
+    ++nearest[name(0)];
     const Real least = equal.methods[order[0]]->x_error.median;
     const std::size_t diverged = equal.methods[order[0]]->diverged;
     const std::string next = order.size() < 2
                                  ? ""
-                                 : words("learned.next", optimizer_text(c, order[1]),
+                                 : words("learned.next", name(1),
                                          multiple(equal.methods[order[1]]->x_error.median / least));
     if (all.size() < kFew)
-      all.push_back(words("learned.nearest", problem_name(c.problems[p]),
-                          optimizer_text(c, order[0]), least,
+      all.push_back(words("learned.nearest", problem_name(c.problems[p]), name(0), least,
                           diverged == 0 ? "" : " " + words("learned.diverged", diverged), next));
   }
   if (problems < 2) return all;
@@ -196,7 +202,7 @@ std::vector<std::string> learned_sentences(const Comparison& c) {
                            &std::pair<std::string, std::size_t>::second);
   std::vector<std::string> parts;  // on how many of the problems each is nearest in x
   for (const auto& [name, count] : ranked)
-    if (parts.size() < kNamed) parts.push_back(fmt::format("{} on {}", name, count));
+    if (parts.size() < kNamed) parts.push_back(words("learned.on", name, count));
   all.insert(all.begin(), words("learned.summary", problems, joined(parts)));
   return all;
 }

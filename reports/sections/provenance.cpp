@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <set>
 
+#include "core/seeds.h"
 #include "reports/sections/sections.h"
 #include "reports/sections/words.h"
 
@@ -76,7 +77,7 @@ Section failures_section(const Comparison& c) {
     const Run& run = c.runs[index];
     const Record& record = *run.record;
     table.rows.push_back({record.request.problem.spec, record.request.optimizer.spec,
-                          std::to_string(record.request.seed), std::string(name_of(record.status)),
+                          seed_text(record.request.seed), std::string(name_of(record.status)),
                           record.message, rerun_command(record.request)});
     table.row_topics.push_back({.optimizer = run.optimizer, .problem = run.problem});
   }

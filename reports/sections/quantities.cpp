@@ -1,7 +1,5 @@
 // Figures of runs, columns of their curves and what their paths come to; the quantities made of
 // medians of them; and when these agree with what was published.
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -10,6 +8,7 @@
 #include <ranges>
 
 #include "core/json.h"
+#include "core/records/sheet.h"
 #include "core/results/statistics.h"
 #include "reports/sections/claims.h"
 #include "reports/sections/figures.h"
@@ -21,7 +20,6 @@ using Json = nlohmann::json;
 
 namespace {
 
-constexpr Real kAbsent = std::numeric_limits<Real>::quiet_NaN();
 constexpr std::string_view kSeries = "series: ";
 constexpr std::string_view kUntil = "until: ";  // then a column, and what it falls to
 
@@ -60,7 +58,7 @@ Real deviation(const std::vector<PrintedRow>& rows, bool is_mean) {
       largest = std::max(largest, distance);
       sum += distance;
     }
-  if (rows.empty()) return kAbsent;
+  if (rows.empty()) return kUnknown;
   return is_mean ? sum / count : largest;
 }
 
@@ -97,12 +95,12 @@ Real path_figure(const Record& record, const Place& place) {
   if (column == "bend") return bend(y, row);
   if (column == "least_coordinate") return least_coordinate(x, row);
   if (column == "distance") return std::hypot(x.at(row).at(0), x.at(row).at(1));
-  if (row == 0) return kAbsent;  // the others are of the step that led to the row
+  if (row == 0) return kUnknown;  // the others are of the step that led to the row
   if (column == "alignment") return first_step(x, false);
   if (column == "turn") return first_step(y, true);
   const Real before = x.at(row - 1).at(1), step = std::abs(x.at(row).at(1) - before);
   if (column == "step_2") return step;
-  return column == "relative_step_2" ? step / std::abs(before) : kAbsent;
+  return column == "relative_step_2" ? step / std::abs(before) : kUnknown;
 }
 
 // How many times slower the logarithm of the error in x falls over the last third of the iterations
@@ -115,7 +113,7 @@ Real slowdown(const Curve& curve, std::size_t index) {
     return std::log(curve.x_error.at(i) / curve.x_error.at(j)) / steps;
   };
   const Real first = fall(0, all / 3), last = fall(2 * all / 3, all);
-  if (!(first > 0)) return kAbsent;
+  if (!(first > 0)) return kUnknown;
   return last > 0 ? first / last : kNever;
 }
 
@@ -125,7 +123,7 @@ Real spent_until(const Record& record, const Place& place) {
   const Curve& curve = record.curve;
   const auto& [name, bound] = bound_of(place.column);
   const std::vector<Real>* column = column_of(record, name);
-  if (column == nullptr) return kAbsent;
+  if (column == nullptr) return kUnknown;
   for (std::size_t i = 0; i <= index_at(curve, place); ++i) {
     if (!(value_at(*column, i) <= bound)) continue;
     if (place.seconds) return curve.processor_seconds.at(i);
@@ -168,21 +166,21 @@ Real figure_of(const Record& record, const Place& place) {
   const std::string& name = place.column;
   if (name == "milliseconds")
     return record.summary.iterations == 0
-               ? kAbsent
+               ? kUnknown
                : 1e3 * record.summary.wall_seconds / static_cast<Real>(record.summary.iterations);
-  if (curve.iteration.empty()) return kAbsent;
+  if (curve.iteration.empty()) return kUnknown;
   const std::size_t index = index_at(curve, place);
   if (name == "loss_peak") return std::ranges::max(curve.loss | std::views::take(index + 1));
   if (name == "loss_drop") return curve.loss[0] - curve.loss[index];
   if (name == "slowdown") return slowdown(curve, index);
   if (name.starts_with(kUntil)) return spent_until(record, place);
   if (const auto* column = column_of(record, name)) {
-    if (column->empty()) return kAbsent;
+    if (column->empty()) return kUnknown;
     const Real value = value_at(*column, index);
     const bool is_lost = std::isnan(value) && name.find("gradient") == std::string::npos;
     return is_lost && !name.starts_with(kSeries) ? kNever : value;  // it diverged
   }
-  return record.trajectory ? path_figure(record, place) : kAbsent;
+  return record.trajectory ? path_figure(record, place) : kUnknown;
 }
 
 std::string column_words(const std::string& column) {
@@ -266,7 +264,7 @@ Chosen chosen_of(const Term& term, const Places& seeds) {
     std::vector<Real> values;
     for (const std::size_t seed : seeds) values.push_back(figures.at(seed));
     const bool is_absent = std::ranges::all_of(values, [](Real v) { return std::isnan(v); });
-    return is_absent ? kAbsent : term.scale * median_of(std::move(values));
+    return is_absent ? kUnknown : term.scale * median_of(std::move(values));
   });
 }
 
@@ -274,7 +272,7 @@ Chosen chosen_of(const Term& term, const Places& seeds) {
 Real share(const Term& term, const Places& seeds) {
   if (std::ranges::any_of(term.figures,
                           [&](const auto& one) { return std::isnan(one.at(seeds[0])); }))
-    return kAbsent;
+    return kUnknown;
   return best_alternative(term,
                           [&](const std::vector<Real>& figures) {
                             const auto reach = std::ranges::count_if(seeds, [&](std::size_t seed) {
@@ -296,7 +294,7 @@ Real quantity_over(const std::string& kind, const std::vector<Term>& terms, cons
   std::vector<Real> medians, at;
   for (const Term& term : terms) {
     medians.push_back(chosen_of(term, seeds).level);
-    if (std::isnan(medians.back())) return kAbsent;
+    if (std::isnan(medians.back())) return kUnknown;
     at.push_back(term.at);
   }
   return quantity_of(kind, medians, at);
@@ -344,7 +342,7 @@ std::optional<Interval> prediction_of(const std::vector<Real>& values) {
 
 Measurement measure(const std::string& kind, const std::vector<Term>& terms,
                     const std::string& stream) {
-  Measurement out{.low = kAbsent, .high = kAbsent, .n = terms.at(0).figures.at(0).size()};
+  Measurement out{.low = kUnknown, .high = kUnknown, .n = terms.at(0).figures.at(0).size()};
   const Places seeds = all_seeds(terms[0]);
   out.value = quantity_over(kind, terms, seeds);
   std::vector<Real> values;  // the quantity of each seed by itself

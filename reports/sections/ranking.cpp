@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "core/results/statistics.h"
+#include "core/seeds.h"
 #include "reports/sections/sections.h"
 #include "reports/sections/words.h"
 
@@ -23,8 +25,17 @@ Real doublings_of(Real a, Real b) {
 std::string names_text(const Comparison& c, const std::vector<std::size_t>& methods,
                        std::size_t most) {
   std::vector<std::string> names;
-  for (const std::size_t s : methods) names.push_back(optimizer_text(c, s));
+  for (const std::size_t s : methods) names.push_back(name_in_sentence(c.optimizers[s]));
   return first_of(std::move(names), most);
+}
+
+// Seeds of the runs on ranked settings; all where there are none.
+std::vector<std::uint64_t> ranked_seeds(const Comparison& c) {
+  if (c.order.settings.empty()) return c.seeds;
+  std::set<std::uint64_t> seeds;
+  for (const Run& run : c.runs)
+    if (c.order.has_setting(run.problem)) seeds.insert(run.seed);
+  return {seeds.begin(), seeds.end()};
 }
 
 // "19 test problems (5 from physics, at most 64 unknowns; 3 starting points each)"
@@ -36,27 +47,32 @@ std::string settings_text(const Comparison& c) {
     if (const Sheet* sheet = c.problems[p].sheet) unknowns = std::max(unknowns, sheet->unknowns);
   }
   const std::size_t settings = c.order.settings.size(), names = names_of(c, c.order);
-  std::string text = counted(names, "test problem");
-  if (names < settings) text = fmt::format("{} of {}", counted(settings, "setting"), text);
   std::vector<std::string> parts;
-  if (physics > 0) parts.push_back(fmt::format("{} from physics", physics));
-  if (unknowns > 0)
-    parts.push_back(fmt::format("at most {}", counted(std::size_t(unknowns), "unknown")));
+  if (physics == settings)
+    parts.push_back(words("ranking.all-physics"));
+  else if (physics > 0)
+    parts.push_back(words("ranking.physics", physics));
+  if (unknowns > 0) parts.push_back(words("ranking.unknowns", unknowns));
   std::string about = joined(parts);
-  if (c.seeds.size() > 1)
-    about += fmt::format("{}{} starting points each", about.empty() ? "" : "; ", c.seeds.size());
-  return text + (about.empty() ? "" : " (" + about + ")");
+  const std::vector<std::uint64_t> seeds = ranked_seeds(c);
+  const std::size_t instances = distinct(seeds, instance_of), starts = distinct(seeds, start_of);
+  const bool is_crossed = seeds.size() > std::max(instances, starts);
+  if (seeds.size() > 1)
+    about += (about.empty() ? "" : "; ") + (is_crossed ? words("ranking.crossed", instances, starts)
+                                                       : words("ranking.starts", starts));
+  return words(names < settings ? "ranking.settings" : "ranking.problems", settings, names,
+               about.empty() ? "" : " (" + about + ")");
 }
 
 std::string decision_sentence(const Comparison& c, const Decision& decision) {
-  const auto score_text = [&](const results::Place& place, const std::string& more) {
-    return words("ranking.score", optimizer_text(c, place.method), place.score, place.solved, more);
+  const auto name = [&](const results::Place& place) {
+    return name_in_sentence(c.optimizers[place.method]);
   };
   const results::Place& first = decision.places[0];
   const std::string on = settings_text(c), measure(counted_name(c)), tau = tau_name(c);
   std::string text;
   if (decision.places.size() == 1) {
-    text = words("ranking.alone", on, score_text(first, ""));
+    text = words("ranking.alone", on, name(first), first.score, first.solved);
   } else if (decision.tied > 1) {
     std::vector<std::size_t> tied;
     for (std::size_t i = 0; i < decision.tied; ++i) tied.push_back(decision.places[i].method);
@@ -66,14 +82,16 @@ std::string decision_sentence(const Comparison& c, const Decision& decision) {
     const auto open =
         std::find_if(decision.places.begin() + 1, decision.places.end(),
                      [](const results::Place& place) { return place.p > kSignificant; });
-    const results::Place& rival = open == decision.places.end() ? decision.places[1] : *open;
-    text = words(decision.is_lead ? "ranking.lead" : "ranking.open", on, score_text(first, ""),
-                 measure, tau, score_text(rival, words("ranking.test", rival.p)));
+    const auto rival = open == decision.places.end() ? decision.places.begin() + 1 : open;
+    const auto rank = static_cast<std::size_t>(rival - decision.places.begin()) + 1;
+    text = words(decision.is_lead ? "ranking.lead" : "ranking.open", on, measure, tau, name(first),
+                 first.score, first.solved, name(*rival), rank == 2 ? "next" : ordinal(rank),
+                 rival->score, rival->solved, rival->p);
   }
   for (const Choice& choice : decision.choices)
     if (choice.varied == Varied::measure && choice.value == name_of(Measure::time) &&
         !choice.is_kept && !choice.first.empty())
-      text += " " + words("ranking.by-time", names_text(c, choice.first, 2));
+      text += " " + words("ranking.by-time", names_text(c, choice.first, 2), choice.first.size());
   return text;
 }
 
@@ -84,8 +102,8 @@ std::string group_text(const Comparison& c, const Decision& decision) {
 
 std::string robustness_text(const Comparison& c, const Decision& decision) {
   const results::Place& first = decision.places[0];
-  const auto share_text = [&](const results::Place& place, const char* between) {
-    return optimizer_text(c, place.method) + between + percent(place.share_first);
+  const auto share_text = [&](const char* key, const results::Place& place) {
+    return words(key, name_in_sentence(c.optimizers[place.method]), percent(place.share_first));
   };
   std::vector<results::Place> often = decision.places;
   std::ranges::stable_sort(often, std::ranges::greater{}, &results::Place::share_first);
@@ -97,12 +115,12 @@ std::string robustness_text(const Comparison& c, const Decision& decision) {
   for (const Choice& choice : decision.choices) {
     kept += choice.is_kept;
     if (!choice.is_kept && !choice.first.empty())
-      lost.push_back(fmt::format("{} {}", names_text(c, choice.first, 1), choice_text(choice)));
+      lost.push_back(names_text(c, choice.first, 1) + " " + choice_text(choice));
   }
-  return words("ranking.robustness", share_text(first, " ranks first in "),
-               has_other ? fmt::format(" ({})", share_text(*other, " in ")) : "", kept,
+  return words("ranking.robustness", share_text("ranking.share", first),
+               has_other ? " " + share_text("ranking.share-other", *other) : "", kept,
                decision.choices.size(),
-               lost.empty() ? "" : "; first otherwise: " + first_of(lost, 3));
+               lost.empty() ? "" : words("ranking.otherwise", first_of(lost, 3)));
 }
 
 std::string not_run(const Comparison& c) {
@@ -168,12 +186,14 @@ std::vector<MethodPair> all_pairs(const Comparison& c) {
 }
 
 std::string choice_text(const Choice& choice) {
-  constexpr std::array<const char*, 5> kBefore = {"with profile end ", "to accuracy ", "by ",
-                                                  "without ", "with seed "};
-  static_assert(static_cast<std::size_t>(Varied::seed) + 1 == kBefore.size());
-  const std::string before = kBefore[static_cast<std::size_t>(choice.varied)];
-  if (choice.varied != Varied::measure) return before + choice.value;
-  return before + std::string(counted_name(measure_of(choice.value).value_or(Measure::work)));
+  constexpr std::array<const char*, 6> kKeys = {"choice.end",     "choice.tolerance",
+                                                "choice.measure", "choice.prices",
+                                                "choice.family",  "choice.seed"};
+  static_assert(static_cast<std::size_t>(Varied::seed) + 1 == kKeys.size());
+  const bool is_measure = choice.varied == Varied::measure;
+  return words(kKeys[static_cast<std::size_t>(choice.varied)],
+               is_measure ? counted_name(measure_of(choice.value).value_or(Measure::work))
+                          : std::string_view(choice.value));
 }
 
 std::vector<std::string> verdict(const Comparison& c) {
@@ -184,40 +204,52 @@ std::vector<std::string> verdict(const Comparison& c) {
   });
   if (!is_any_solved) return {words("ranking.none-solved", tau_name(c))};
   std::vector<std::string> all;
+  std::string left_out = left_out_text(c);
+  if (!left_out.empty()) left_out = "Not ranked: " + left_out;
   if (!has_order(c) || !c.decision) {  // with few problems: a sentence on each
     constexpr std::size_t kFew = 4;
     for (std::size_t p = 0; p < c.problems.size() && p < kFew; ++p)
       all.push_back(fmt::format("{}: {}", problem_name(c.problems[p]), curve_reading(c, p)));
+    if (!left_out.empty()) all.push_back(std::move(left_out));
     return all;
   }
-  all = {decision_sentence(c, *c.decision),
-         "Not significantly worse than the best: " + group_text(c, *c.decision),
+  all = {decision_sentence(c, *c.decision), words("ranking.best-group", group_text(c, *c.decision)),
          robustness_text(c, *c.decision)};
   if (c.open_decision && c.open_decision->places[0].method != c.decision->places[0].method)
-    all.push_back("Among the methods without extra information: " +
-                  decision_sentence(c, *c.open_decision));
+    all.push_back(words("ranking.without-extra", decision_sentence(c, *c.open_decision)));
   if (c.yardstick.by == Measure::time && c.is_any_timed_together)
     all.push_back(words("ranking.shared-time"));
   all.push_back(unranked_sentence(c));
+  all.push_back(std::move(left_out));
   for (std::string& sentence : learned_sentences(c)) all.push_back(std::move(sentence));
   std::erase(all, "");
   return all;
 }
 
-std::string short_verdict(const Comparison& c) {
-  const std::vector<std::string> sentences = verdict(c);
-  return sentences.empty() ? "" : sentences[0];
-}
-
 std::vector<Reading> ranking_facts(const Comparison& c) {
   std::vector<Reading> facts;
   if (has_order(c) && c.decision)
-    facts = {{"Not significantly worse than the best", group_text(c, *c.decision)},
-             {"Robustness", robustness_text(c, *c.decision)}};
+    facts = {{words("fact.group"), group_text(c, *c.decision)},
+             {words("fact.robustness"), robustness_text(c, *c.decision)}};
   else
-    facts = {{"Ranking", words("ranking.none")}};
-  facts.push_back({"Not run", not_run(c)});
+    facts = {{words("fact.ranking"), words("ranking.none")}};
+  if (const std::string left_out = left_out_text(c); !left_out.empty())
+    facts.push_back({words("fact.not-ranked"), left_out});
+  facts.push_back({words("fact.not-run"), not_run(c)});
   return facts;
+}
+
+std::string left_out_text(const Comparison& c) {
+  std::vector<std::string> parts, ill_posed;
+  std::size_t sanity = 0;
+  for (std::size_t p = 0; p < c.problems.size(); ++p) {
+    sanity += is_sanity(c, p);
+    if (is_ill_posed(c, p)) ill_posed.push_back(problem_name(c.problems[p]));
+  }
+  if (sanity > 0) parts.push_back(words("ranking.sanity", sanity));
+  if (!ill_posed.empty())
+    parts.push_back(words("ranking.ill-posed", ill_posed.size(), first_of(ill_posed, 4)));
+  return joined(parts, " ");
 }
 
 std::string unranked_sentence(const Comparison& c) {
@@ -226,7 +258,7 @@ std::string unranked_sentence(const Comparison& c) {
     const auto shared = static_cast<std::size_t>(std::ranges::count_if(
         c.order.settings, [&](std::size_t p) { return c.cell(p, s).planned > 0; }));
     if (c.optimizers[s].applicable > 0 && shared > 0 && shared < c.order.settings.size())
-      names.push_back(fmt::format("{} ({})", shown_spec(c.optimizers[s].label), shared));
+      names.push_back(words("ranking.run-on", name_in_sentence(c.optimizers[s]), shared));
   }
   return names.empty() ? "" : words("ranking.unranked", common_settings(c), joined(names));
 }
@@ -269,12 +301,83 @@ Table ranking_table(const Comparison& c) {
   return table;
 }
 
+// Classical and toy problems beside a ranking of physics: most solved first.
+Table sanity_table(const Comparison& c) {
+  Table table = worded_table("sanity", c.order.settings.size(), counted_name(c), tau_name(c));
+  Leading first;
+  const Measure by = c.yardstick.by;
+  const std::size_t rung = c.yardstick.tightest().rung;
+  std::vector<Ranked> all = standings_over(c, c.sanity, by, rung);
+  std::ranges::stable_sort(all, std::ranges::greater{},
+                           [](const Ranked& each) { return each.standing.solved; });
+  for (const auto& [s, standing] : all) {
+    std::vector<Real> medians;
+    for (const std::size_t p : c.sanity.settings) medians.push_back(c.cell(p, s).median(by, rung));
+    const Real median = median_of(std::move(medians));
+    add_row(table, c, s,
+            {{fmt::format("{}/{}", standing.solved, standing.settings),
+              {{"solved", Real(standing.solved)}, {"settings", Real(standing.settings)}}},
+             {amount(c, median), {{"median", median}}},
+             {fmt::format("{}/{}", standing.reached, standing.runs),
+              {{"reached", Real(standing.reached)}, {"runs", Real(standing.runs)}}}});
+    first.offer(Real(standing.solved), optimizer_text(c, s));
+  }
+  table.is_folded = true;
+  table.reading = words("sanity.reading", first.value, c.sanity.settings.size(), first.text());
+  return table;
+}
+
+// The error in x at a quarter, a half and all of the budget; the least at the end first.
+Table ill_posed_table(const Comparison& c) {
+  constexpr std::array<Real, 3> kShares = {0.25, 0.5, 1};
+  Table table = worded_table("ill-posed");
+  std::vector<std::size_t> settings;
+  for (std::size_t p = 0; p < c.problems.size(); ++p)
+    if (is_ill_posed(c, p)) settings.push_back(p);
+  for (const std::size_t p : settings) {
+    table.columns.push_back(words("ill-posed.setting", problem_name(c.problems[p]),
+                                  percent(c.problems[p].least_goal / x_goal(0, 1, 1))));
+  }
+  std::vector<Real> least(settings.size(), kNever);
+  for (std::size_t s = 0; s < c.optimizers.size(); ++s) {
+    std::vector<TableCell> row;
+    for (std::size_t i = 0; i < settings.size(); ++i) {
+      const Cell& cell = c.cell(settings[i], s);
+      TableCell& shown = row.emplace_back(cell.inapplicable.empty() ? "" : "n/a");
+      if (!cell.is_measured()) continue;
+      std::vector<std::string> texts;
+      for (const Real share : kShares) {
+        const Real error = x_error_at(c, settings[i], s, share).median;
+        texts.push_back(error == kNever ? "✗" : fmt::format("{:.3g}", error));
+        shown.numbers.push_back({fmt::format("at_{:g}", share), error});
+      }
+      shown.text = joined(texts, " · ");
+      least[i] = std::min(least[i], shown.numbers.back().second);
+    }
+    if (std::ranges::any_of(row, [](const TableCell& cell) { return !cell.numbers.empty(); }))
+      add_row(table, c, s, std::move(row));
+  }
+  for (auto& row : table.rows)
+    for (std::size_t i = 0; i < settings.size(); ++i)
+      row[i + 1].is_best =
+          !row[i + 1].numbers.empty() && row[i + 1].numbers.back().second <= least[i];
+  std::vector<std::string> readings;
+  for (std::size_t i = 0; i < settings.size(); ++i)
+    readings.push_back(fmt::format("{} {:.3g}", problem_name(c.problems[settings[i]]), least[i]));
+  table.is_folded = true;
+  table.reading = words("ill-posed.reading", joined(readings));
+  return table;
+}
+
 }  // namespace
 
 Section standings_section(const Comparison& c) {
   Section section = worded_section("standings", tau_name(c));
   for (std::string& sentence : verdict(c)) section.readings.push_back({"", std::move(sentence)});
   if (!c.order.settings.empty()) section.tables.push_back(ranking_table(c));
+  if (!c.sanity.settings.empty()) section.tables.push_back(sanity_table(c));
+  if (Table table = ill_posed_table(c); !table.rows.empty())
+    section.tables.push_back(std::move(table));
   return section;
 }
 
@@ -329,8 +432,10 @@ std::vector<std::string> limits_of_evidence(const Comparison& c) {
     if (decision.detectable < kNever)
       all.push_back(words("limits.detectable", decision.detectable));
   }
-  if (c.seeds.size() < kFewestForInterval)
-    all.push_back(words("limits.seeds", counted(c.seeds.size(), "seed")));
+  const std::vector<std::uint64_t> seeds = ranked_seeds(c);
+  const auto independent = std::max(distinct(seeds, instance_of), distinct(seeds, start_of));
+  if (independent < kFewestForInterval)
+    all.push_back(words("limits.seeds", counted(independent, "independent seed")));
   all.push_back(words("limits.problems"));
   return all;
 }

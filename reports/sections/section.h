@@ -1,7 +1,6 @@
 // The nouns of a report, which every format lays out: sections of sentences, tables and plots.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <optional>
 #include <string>
@@ -60,7 +59,7 @@ struct Table {
 };
 
 // The part of one optimizer, or of one quantity. Steps: y(x) from each x on, with a band. Lines:
-// y(x) from point to point, with a band. Dots: x in the row y. Bars: y in the row x.
+// y(x) from point to point, with a band.
 struct PlotSeries {
   std::optional<std::size_t> optimizer = {};
   std::string name = {};
@@ -68,22 +67,14 @@ struct PlotSeries {
   std::vector<Real> x = {}, y = {}, low = {}, high = {};
 };
 
-struct PlotRow {
-  std::string name;
-  Topic topic = {};
-};
-
 struct Plot {
-  enum class Kind { steps, dots, bars, lines };
+  enum class Kind { steps, lines };
   Kind kind = Kind::steps;
   std::string id, title;
   std::string reading;  // a sentence on this very data
   std::string caption;  // what is drawn, of how many, and how many of them failed
   std::string x_label, y_label;
   bool is_log_x = false, is_log_y = false;
-  bool is_folded = false;                          // where a format can fold
-  std::optional<std::array<Real, 2>> window = {};  // of x; else as wide as the numbers
-  std::vector<PlotRow> rows = {};                  // of dots, bars and matrix
   std::vector<PlotSeries> series = {};
   std::vector<PlotSeries> published = {};  // drawn into lines; of one point: where it is read
 };

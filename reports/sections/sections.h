@@ -55,8 +55,9 @@ std::string headline(const Comparison& comparison);
 std::string missing_text(const Comparison& comparison);
 std::vector<std::string> remarks(const Comparison& comparison);
 std::vector<std::string> verdict(const Comparison& comparison);    // what the decision says
-std::string short_verdict(const Comparison& comparison);           // its first sentence
 std::vector<Reading> ranking_facts(const Comparison& comparison);  // the group, how robust, not run
+// Which settings the ranking leaves out, and why; empty where it leaves out none.
+std::string left_out_text(const Comparison& comparison);
 // Which methods were run on some of the common settings only; empty where none was.
 std::string unranked_sentence(const Comparison& comparison);
 std::vector<std::string> learned_sentences(const Comparison& comparison);  // at equal work
@@ -74,6 +75,7 @@ std::vector<std::string> limits_of_evidence(const Comparison& comparison);
 Table profile_table(const Comparison& comparison);
 Table leader_table(const Comparison& comparison);
 Table choices_table(const Comparison& comparison);
+Table variation_table(const Comparison& comparison);  // empty where no instances and starts cross
 Table loss_without_x_table(const Comparison& comparison);
 Table data_profile_table(const Comparison& comparison);
 Table restart_table(const Comparison& comparison);
@@ -105,6 +107,9 @@ Measure cost_measure(const Comparison& comparison);
 std::string cost_unit(const Comparison& comparison);
 // "equivalent forward solves at measured cost", …
 std::string priced_unit(const Comparison& comparison);
+// The prices that the component metadata of this very problem hold, used or not; null where none.
+const MeasuredPrices* prices_of(const ProblemAxis& problem);
+const MeasuredPrice* price_of(const MeasuredPrices& prices, std::string_view oracle);
 Real in_units(Measure by, Real value);  // as tables and axes have it: times in ms
 
 // Two methods over the families of problems that both were run on and one of them solves.

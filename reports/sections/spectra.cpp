@@ -16,7 +16,6 @@
 namespace isoline::reports {
 namespace {
 
-constexpr Real kNone = std::numeric_limits<Real>::quiet_NaN();
 constexpr Real kVisible = 1e-6;  // of the largest, the usual cut-off
 
 // The run of the least seed that kept spectra.
@@ -47,7 +46,7 @@ std::vector<Seen> seen_on(const Comparison& c, std::size_t problem) {
 
 // σ₁/σ_r; nothing where the smallest is 0.
 Real condition(const std::vector<Real>& sigma) {
-  return sigma.back() > 0 ? sigma.front() / sigma.back() : kNone;
+  return sigma.back() > 0 ? sigma.front() / sigma.back() : kUnknown;
 }
 
 std::ptrdiff_t visible(const std::vector<Real>& sigma) {
@@ -58,7 +57,7 @@ PlotSeries values(std::string name, const std::vector<Real>& sigma) {
   PlotSeries line{.optimizer = {}, .name = std::move(name)};
   for (std::size_t i = 0; i < sigma.size(); ++i) {
     line.x.push_back(Real(i + 1));
-    line.y.push_back(sigma[i] > 0 ? sigma[i] : kNone);
+    line.y.push_back(sigma[i] > 0 ? sigma[i] : kUnknown);
   }
   return line;
 }

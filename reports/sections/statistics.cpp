@@ -18,7 +18,7 @@ namespace {
 
 // In the order of a report: what sections.h declares stands in it once it is named here.
 constexpr Table (*kTables[])(const Comparison&) = {
-    profile_table,      leader_table,  choices_table, loss_without_x_table,
+    profile_table,      leader_table,  choices_table, variation_table, loss_without_x_table,
     data_profile_table, restart_table, calls_table,   prices_table};
 constexpr Plots (*kPlots[])(const Comparison&) = {profile_plot, data_profile_plot, runtime_plot};
 
@@ -42,6 +42,7 @@ Section statistics_section(const Comparison& c) {
     else
       section.tables[i - std::size(kPlots)] = kTables[i - std::size(kPlots)](c);
   });
+  std::erase_if(section.tables, [](const Table& table) { return table.id.empty(); });
   for (Table& table : section.tables) table.is_folded = true;
   for (Plots& some : plots)
     for (Plot& plot : some) section.plots.push_back(std::move(plot));
@@ -210,6 +211,7 @@ PlotSeries share_series(const Comparison& c, std::size_t s, const Costs& measure
     if (group.n > 0) groups.push_back(std::move(group));
   }
   Band band = bootstrap_ratio(groups, "problems");
+  if (groups.size() < kFewestForInterval) band.low = band.high = band.value;
   for (auto* values : {&band.value, &band.low, &band.high}) values->resize(grid.size(), 0);
   return {s, optimizer_text(c, s), grid, band.value, band.low, band.high};
 }

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <optional>
 #include <set>
 
 #include "reports/sections/sections.h"
@@ -11,6 +13,17 @@
 
 namespace isoline::reports {
 namespace {
+
+// The trials on the setting of a value that was chosen on other families; null where none are
+// known.
+const TunedRate* trials_of(const Comparison& c, const TunedRate& rate) {
+  if (!rate.is_left_out()) return &rate;
+  const std::string file = rate.file.substr(0, rate.file.rfind(".json")) + "-tuned.json";
+  for (const TunedRate& trials : c.study->rates)
+    if (trials.problem == rate.problem && trials.optimizer == rate.optimizer && trials.file == file)
+      return &trials;
+  return nullptr;
+}
 
 // The rates of one method over its settings.
 struct Rates {
@@ -46,11 +59,12 @@ Rates rates_of(const Comparison& c, std::size_t s) {
 // The mean over settings of the expected score of the best of b values, b = 1, 2, …; grids of fewer
 // values keep their last. The score is 1 of the value of least work, 0 of one with at least 64
 // times as much, or unsolved.
-std::vector<Real> best_of_curve(const Rates& rates) {
+std::vector<Real> best_of_curve(const Comparison& c, const Rates& rates) {
   std::vector<std::vector<Real>> all;
   std::size_t longest = 0;
-  for (const TunedRate* rate : rates.tuned) {
-    if (rate->work.empty()) continue;
+  for (const TunedRate* chosen : rates.tuned) {
+    const TunedRate* rate = trials_of(c, *chosen);
+    if (rate == nullptr || rate->work.empty()) continue;
     const Real least = std::max(std::ranges::min(rate->work), 1.0);
     std::vector<Real> scores;
     for (const Real work : rate->work)
@@ -69,7 +83,7 @@ Table rates_table(const Comparison& c, const std::vector<Rates>& all) {
   Table table = worded_table("rates", setting_noun(c), n_column(c));
   for (const Rates& rates : all) {
     if (rates.tuned.empty() && rates.published == 0) continue;
-    const std::vector<Real> curve = best_of_curve(rates);
+    const std::vector<Real> curve = best_of_curve(c, rates);
     const auto score = [&](std::size_t b) -> TableCell {
       if (curve.size() <= b) return "";
       return {fmt::format("{:.2f}", curve[b]), {{"score", curve[b]}}};
@@ -88,10 +102,55 @@ Table rates_table(const Comparison& c, const std::vector<Rates>& all) {
   return table;
 }
 
+// For each setting, the work of tuning's runs with a method's value of its option: chosen on other
+// families, the best on the setting itself, and the default.
+constexpr std::size_t kChoices = 3;
+
+Table three_choices_table(const Comparison& c) {
+  std::array<Costs, kChoices> costs;
+  costs.fill(Costs(c.problems.size(), std::vector<std::optional<Real>>(c.optimizers.size())));
+  std::vector<Real> spent(c.optimizers.size(), 0);
+  for (std::size_t s = 0; s < c.optimizers.size(); ++s)
+    for (std::size_t p = 0; p < c.problems.size(); ++p) {
+      const TunedRate* chosen = rate_of(c, p, s);
+      const TunedRate* trials =
+          chosen && chosen->is_left_out() && chosen->value ? trials_of(c, *chosen) : nullptr;
+      if (trials == nullptr || trials->work.empty() || !trials->standard) continue;
+      costs[0][p][s] = trials->work_of(*chosen->value);
+      costs[1][p][s] = std::ranges::min(trials->work);
+      costs[2][p][s] = trials->work_of(*trials->standard);
+      spent[s] = chosen->spent;
+    }
+  Table table = worded_table("tuning-choices", setting_noun(c), n_column(c));
+  std::array<Costs, kChoices> ratios;
+  for (std::size_t i = 0; i < kChoices; ++i) ratios[i] = ratios_of(costs[i]);
+  for (std::size_t s = 0; s < c.optimizers.size(); ++s) {
+    std::size_t settings = 0;
+    std::array<Real, kChoices> sums{};
+    for (std::size_t p = 0; p < c.problems.size(); ++p) {
+      if (!costs[0][p][s]) continue;
+      ++settings;
+      for (std::size_t i = 0; i < kChoices; ++i)
+        if (const Real ratio = ratios[i][p][s].value_or(kNever); ratio < kNever)
+          sums[i] += score_of(ratio, kProfileEnd);
+    }
+    if (settings == 0) continue;
+    std::vector<TableCell> cells{count_cell(settings)};
+    for (const Real sum : sums) {
+      const Real score = sum / static_cast<Real>(settings);
+      cells.push_back({fmt::format("{:.2f}", score), {{"score", score}}});
+    }
+    cells.push_back(number_cell("work", spent[s]));
+    add_row(table, c, s, std::move(cells));
+  }
+  return table;
+}
+
 }  // namespace
 
 std::string rates_text(const Comparison& c) {
   std::set<std::string> methods, tuned, published, tunable;
+  bool is_left_out = false;
   for (std::size_t s = 0; s < c.optimizers.size(); ++s) {
     const std::string& method = c.optimizers[s].method;
     methods.insert(method);
@@ -99,7 +158,10 @@ std::string rates_text(const Comparison& c) {
     if (sheet != nullptr && !sheet->tunable.empty()) tunable.insert(method);
     for (std::size_t p = 0; p < c.problems.size(); ++p) {
       const Origin origin = origin_of(c, p, s);
-      if (origin == Origin::tuned) tuned.insert(method);
+      if (origin == Origin::tuned) {
+        tuned.insert(method);
+        is_left_out |= rate_of(c, p, s)->is_left_out();
+      }
       if (origin == Origin::published) published.insert(method);
     }
   }
@@ -107,7 +169,8 @@ std::string rates_text(const Comparison& c) {
   for (const std::string& method : tuned) published.erase(method);
   // Older sheets do not say which options can be tuned.
   const std::size_t fixed = tunable.empty() ? 0 : methods.size() - tunable.size();
-  return words("tuning.methods", methods.size(), tuned.size(), setting_noun(c),
+  return words("tuning.methods", methods.size(), tuned.size(),
+               is_left_out ? words("tuning.others") : words("tuning.same", setting_noun(c)),
                published.empty() ? "" : fmt::format(", and {} published ones", published.size()),
                fixed == 0 ? "" : fmt::format(", {} with nothing to tune", fixed));
 }
@@ -126,6 +189,8 @@ Section tuning_section(const Comparison& c) {
     }
     if (rows > 0) section.readings.push_back({"", words("tuning.edges", edges, rows, never)});
     section.tables.push_back(rates_table(c, all));
+    if (Table choices = three_choices_table(c); !choices.rows.empty())
+      section.tables.push_back(std::move(choices));
   } else if (std::ranges::any_of(
                  c.runs, [](const Run& run) { return !run.record->request.rates.empty(); })) {
     section.readings.push_back({"", words("tuning.untold")});

@@ -11,6 +11,7 @@
 #include <stdexcept>
 
 #include "core/results/statistics.h"
+#include "core/seeds.h"
 #include "core/shell.h"
 #include "core/spec.h"
 
@@ -265,6 +266,20 @@ std::string optimizer_text(const Comparison& c, std::size_t s) {
   return optimizer_name(c.optimizers[s]) + marks_of(c.optimizers[s]);
 }
 
+std::string name_in_sentence(const OptimizerAxis& optimizer) {
+  std::string name = shown_spec(optimizer.brief);
+  const std::size_t close = name.rfind(']'), from = close == std::string::npos ? 0 : close;
+  const std::size_t comma = name.find(", ", from);
+  return comma == std::string::npos ? name : name.replace(comma, 2, " (") + ")";
+}
+
+std::string listed(const std::vector<std::string>& names) {
+  std::string text;
+  for (std::size_t i = 0; i < names.size(); ++i)
+    text += (i == 0 ? "" : i + 1 < names.size() ? ", " : " and ") + names[i];
+  return text;
+}
+
 Marks marks_shown(const Comparison& c) {
   Marks shown;
   for (const ProblemAxis& problem : c.problems) shown.is_foreign |= problem.is_foreign;
@@ -330,7 +345,8 @@ std::string budget_options(const Request& request) {
 
 std::string rerun_arguments(const Request& request) {
   return fmt::format("--problem {} --optimizer {} --seeds ={} {}", shell_word(request.problem.spec),
-                     shell_word(request.optimizer.spec), request.seed, budget_options(request));
+                     shell_word(request.optimizer.spec), seed_text(request.seed),
+                     budget_options(request));
 }
 
 std::string rerun_command(const Request& request) {

@@ -84,7 +84,10 @@ std::string shown_spec(std::string_view spec);
 std::string problem_name(const ProblemAxis& problem);
 std::string optimizer_name(const OptimizerAxis& optimizer);
 std::string optimizer_text(const Comparison& comparison, std::size_t optimizer);  // "sip †"
-Marks marks_shown(const Comparison& comparison);         // by any problem or method
+// In a sentence: without marks, which tables explain, and without a comma: "sip (given P⁻¹)".
+std::string name_in_sentence(const OptimizerAxis& optimizer);
+std::string listed(const std::vector<std::string>& names);  // "a, b and c"
+Marks marks_shown(const Comparison& comparison);            // by any problem or method
 std::string marks_legend(const Comparison& comparison);  // what †, ‡ and § mean, of those shown
 // " †" of a method that sees what others do not, " §" of one whose figures are claims of others.
 std::string marks_of(const OptimizerAxis& optimizer);

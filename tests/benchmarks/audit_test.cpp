@@ -1,5 +1,5 @@
-// The audit: its problems are what they claim, the laws that theory knows are recovered, a false
-// declaration is seen, a crash costs one audit alone.
+// The audit: its problems are as declared, known power laws are recovered, a false declaration is
+// found, and a crash affects one audit only.
 #include "benchmarks/audit/audit.h"
 
 #include <gtest/gtest.h>

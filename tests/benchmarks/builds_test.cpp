@@ -1,5 +1,5 @@
-// What computes a run is known by its sources: an edit changes the part that it belongs to, and no
-// other; a record of another build is not taken for one of this.
+// The digest of a build: an edit changes the digest of its own part only, and a record of another
+// build is not reused.
 
 #include <fstream>
 #include <set>
@@ -126,7 +126,7 @@ TEST(Builds, EveryComponentOfTheTreeHasADigestOfItsOwn) {
 }
 
 TEST(Builds, OfAProgramBuiltElsewhereAreOfItsOwnFiles) {
-  const std::string whole = source_digest("mine/twist.cpp");  // nobody lists it: the whole program
+  const std::string whole = source_digest("mine/twist.cpp");  // not listed: the whole program
   set_program_sources("mine/twist.cpp 0123456789abcdef\nmain.cpp fedcba9876543210\n");
   EXPECT_EQ(source_digest("/home/me/mine/twist.cpp"), "0123456789abcdef");
   EXPECT_EQ(source_digest("other.cpp"), whole);

@@ -1,10 +1,8 @@
-// Fields of a run stand beside its record, change nothing of it, and stay with it where it goes.
+// Fields of a run are stored beside its record, do not change it, and are copied with it.
 
 #include "benchmarks/merge/merge.h"
 #include "core/decompose.h"
-#include "core/errors.h"
 #include "core/files.h"
-#include "core/records/npy.h"
 #include "tests/benchmarks/builtin.h"
 #include "tests/benchmarks/matrix.h"
 #include "tests/benchmarks/pieces.h"
@@ -272,7 +270,7 @@ TEST(Spectra, AreNoPartOfTheResultAndAreMadeOnce) {
   Folder folder(requests, {.jobs = 1});
   const Record without = folder.records[0], with = folder.run(requests, kKeeping);
   EXPECT_FALSE(without.spectrum);
-  ASSERT_TRUE(with.spectrum) << "a record without them is made anew";
+  ASSERT_TRUE(with.spectrum) << "a record without them is made again";
   EXPECT_TRUE(same_result(without, with));
   Record other = with;
   other.spectrum->sigma[1][0] *= 1 + 1e-15;

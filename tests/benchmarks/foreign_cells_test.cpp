@@ -1,5 +1,5 @@
-// Cells that another program computes: what it does wrong costs its own cell, what it is stands in
-// the record, and what it asks is counted.
+// Cells that another program computes: its errors affect its own cell only, its identity is
+// recorded, and its oracle calls are counted.
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -11,6 +11,7 @@
 #include "core/records/json_view.h"
 #include "tests/benchmarks/builtin.h"
 #include "tests/clients/programs.h"
+#include "tests/refusal.h"
 #include "tests/temporary_folder.h"
 
 namespace isoline::benchmarks {
@@ -104,14 +105,9 @@ TEST_F(ForeignCells, WithoutAProductAreInapplicableWithTheReason) {
 // --- certificates
 
 TEST_F(ForeignCells, AreRunOnlyWhereTheProblemIsCertified) {
-  const auto complaint = [&](const std::string& misdeed) -> std::string {
+  const auto complaint = [&](const std::string& misdeed) {
     const Request request = request_of(process_of(misbehaving("misbehaving.py " + misdeed)), "gd");
-    try {
-      run_plan(catalog(), "trial", {request}, folder.path(), options, {});
-    } catch (const UsageError& error) {
-      return error.what();
-    }
-    return "";
+    return refusal([&] { run_plan(catalog(), "trial", {request}, folder.path(), options, {}); });
   };
   const std::string sign = complaint("has-a-wrong-sign"), random = complaint("is-random");
   EXPECT_NE(
@@ -178,7 +174,8 @@ TEST_F(ForeignCells, OfAnOptimizerKeepWhatItClaimsAndPrintsAndFailWithWhatItDid)
   EXPECT_EQ(record.status, Status::converged) << record.message;
   EXPECT_EQ(record.claimed, "a small loss, I believe");
   EXPECT_EQ(record.output, "what I think of it\n");
-  EXPECT_EQ(record.counts[0], 1) << "it asked nothing, and finished where nobody had been";
+  EXPECT_EQ(record.counts[0], 1)
+      << "it called no oracle and returned an x that was never evaluated";
   const Record refused = record_of_method("asks-what-it-did-not-declare");
   EXPECT_EQ(refused.status, Status::failed);
   EXPECT_EQ(refused.message,

@@ -111,7 +111,7 @@ struct Hostile {
     if (misdeed == "stop-parent") kill(getppid(), SIGSTOP);
     if (misdeed == "end-parent") kill(getppid(), SIGTERM);
     if (misdeed == "chatter")
-      for (int i = 0; i < 20000; ++i) std::printf("%s", "\x1b[31mI write what nobody asked for\n");
+      for (int i = 0; i < 20000; ++i) std::printf("%s", "\x1b[31munexpected output\n");
   }
   void misbehave(Vector& theta, State& s) const {
     if (misdeed == "throw") throw std::runtime_error("thrown on purpose");
@@ -193,7 +193,7 @@ inline Request request_for(const Catalog& catalog, const std::string& problem,
                 .budget = {.iterations = 50}});
 }
 
-// A process that has ended, and is reaped by nobody, has no memory.
+// A process that has ended and is not yet reaped has no memory.
 inline bool lives(pid_t process) {
   const auto figures = figures_of(process);
   return figures && figures->resident_bytes > 0;

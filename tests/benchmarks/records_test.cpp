@@ -1,19 +1,22 @@
-// What every record must hold, over every problem with every optimizer.
+// Properties of every record, over every problem with every optimizer.
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "benchmarks/plan/catalog.h"
+#include "core/errors.h"
 #include "core/json.h"
 #include "core/records/json_view.h"
 #include "optimizers/optimizer.h"
 #include "problems/problem.h"
 #include "tests/benchmarks/builtin.h"
 #include "tests/benchmarks/matrix.h"
+#include "tests/benchmarks/pieces.h"
 
 namespace isoline::benchmarks {
-
 using optimizers::why_inapplicable;
 using problems::Problem;
+
 namespace {
 
 constexpr std::int64_t kIterations = 300, kSlowIterations = 10;
@@ -134,6 +137,254 @@ TEST(Records, BudgetsAreObeyed) {
                 record.summary.work + dearest + 1 >= budget.work)
         << title_of(record) << " used " << record.summary.work;
   }
+}
+
+// Repeated runs: where two runs of one cell differ is named by the column of the curve. Perturbed
+// starts differ in the last bit only, and their records are separate.
+
+constexpr Real kUnit = std::numeric_limits<Real>::epsilon();
+
+Request request_for(const std::string& problem) {
+  Request request;
+  request.problem.name = problem;
+  return request;
+}
+
+TEST(Perturbation, MovesEachComponentByOneUnitInTheLastPlace) {
+  const Vector start = Vector::LinSpaced(64, -3, 5);
+  const Vector moved = perturbed_start(start, request_for("square"), 1);
+  Index up = 0;
+  for (Index i = 0; i < start.size(); ++i) {
+    EXPECT_NE(moved[i], start[i]);
+    EXPECT_EQ(std::nextafter(start[i], moved[i]), moved[i]) << "not its neighbour";
+    up += moved[i] > start[i];
+  }
+  EXPECT_GT(up, 16) << "half of 64 random signs, give or take four deviations of 4";
+  EXPECT_LT(up, 48);
+}
+
+TEST(Perturbation, GivesAZeroTheUnitOfTheLargestComponent) {
+  Vector start(3);
+  start << 0, -4, 1;
+  EXPECT_EQ(std::abs(perturbed_start(start, request_for("square"), 1)[0]), 4 * kUnit);
+  const Vector origin = perturbed_start(Vector::Zero(5), request_for("square"), 1);
+  EXPECT_TRUE((origin.array().abs() == kUnit).all());
+  EXPECT_EQ(perturbed_start(Vector(0), request_for("square"), 1).size(), 0);
+}
+
+TEST(Perturbation, IsTheSameForItsNumberAndAnotherForTheNext) {
+  const Vector start = Vector::Ones(64);
+  const Request square = request_for("square"), beale = request_for("beale");
+  EXPECT_EQ(perturbed_start(start, square, 1), perturbed_start(start, square, 1));
+  EXPECT_NE(perturbed_start(start, square, 1), perturbed_start(start, square, 2));
+  EXPECT_NE(perturbed_start(start, square, 1), perturbed_start(start, beale, 1));
+}
+
+std::vector<Record> perturbed(const std::vector<Record>& records) {
+  return perturbed_records(catalog(), records, 1, {.jobs = 2}).value();
+}
+
+FinishedMatrix small_matrix() {
+  const Suite suite{.name = "small",
+                    .title = "",
+                    .blocks = {{.problems = {"rosenbrock"},
+                                .optimizers = {"gd", "newton", "hig"},
+                                .budget = {.iterations = 50}}}};
+  return FinishedMatrix(catalog(), suite, Rates::builtin());
+}
+
+TEST(PerturbedRuns, AnswerTheSameCellsFromAnotherStartAndLeaveTheRecordsAsTheyWere) {
+  const FinishedMatrix matrix = small_matrix();
+  const auto once = perturbed(matrix.records), again = perturbed(matrix.records);
+  ASSERT_EQ(once.size(), matrix.records.size());
+  for (std::size_t i = 0; i < once.size(); ++i) {
+    const Record& record = matrix.records[i];
+    EXPECT_EQ(once[i].cell, record.cell);
+    EXPECT_EQ(once[i].summary.loss, again[i].summary.loss);
+    EXPECT_NE(once[i].summary.start_loss, record.summary.start_loss) << title_of(record);
+    EXPECT_NEAR(once[i].summary.start_loss, record.summary.start_loss,
+                1e-12 * record.summary.start_loss);
+    const auto kept = Store::find_in(matrix.folder.path(), matrix.requests[i]);
+    ASSERT_TRUE(kept.has_value());
+    EXPECT_EQ(kept->summary.start_loss, record.summary.start_loss);
+    EXPECT_EQ(kept->repeat_wall_seconds, record.repeat_wall_seconds);
+  }
+}
+
+TEST(PerturbedRuns, RefuseAnotherBuildAndLeaveOutWhatAClockEndedAndWhatDoesNotApply) {
+  FinishedMatrix matrix = small_matrix();
+  matrix.records[0].is_nondeterministic = true;
+  matrix.records[1].status = Status::inapplicable;
+  EXPECT_EQ(perturbed(matrix.records).size(), matrix.records.size() - 2);
+  matrix.records[2].build = "0123456789abcdef";
+  EXPECT_THROW(perturbed(matrix.records), UsageError);
+}
+
+// --- two records of one cell
+
+Record run_of(const char* problem, const char* optimizer, std::int64_t iterations = 20) {
+  const Request request = cell_of(problem, optimizer, {.iterations = iterations, .target = 0});
+  return executed(catalog(), request);
+}
+
+TEST(SameResult, IsThatOfTheSameCellRunTwice) {
+  const Record a = run_of("square", "gd[rate=1e-4]"), b = run_of("square", "gd[rate=1e-4]");
+  EXPECT_TRUE(same_result(a, b));
+  const Comparison found = compare_results(a, b);
+  EXPECT_EQ(found.difference, "");
+  EXPECT_EQ(found.iterations, 20);
+}
+
+TEST(SameResult, IsNotThatOfOneBitMoreAndTheEarliestIterationIsNamed) {
+  const Record a = run_of("square", "gd[rate=1e-4]");
+  Record b = a;
+  b.curve.gradient_norm[5] = std::nextafter(b.curve.gradient_norm[5], 1e9);
+  EXPECT_FALSE(same_result(a, b));
+  EXPECT_TRUE(compare_results(a, b).difference.starts_with("gradient norm at iteration 5: "))
+      << compare_results(a, b).difference;
+  b.curve.loss[9] = 1;
+  b.curve.work[4] = 7;
+  EXPECT_TRUE(compare_results(a, b).difference.starts_with("work at iteration 4: "))
+      << compare_results(a, b).difference;
+}
+
+TEST(SameResult, NotANumberIsItself) {
+  Record a = run_of("square", "newton");
+  a.curve.x_error[1] = std::nan("");
+  EXPECT_EQ(compare_results(a, a).difference, "");
+  Record b = a;
+  b.curve.x_error[1] = 0;
+  EXPECT_EQ(compare_results(a, b).difference, "x error at iteration 1: \"nan\" against 0.0");
+}
+
+TEST(SameResult, ALongerRunDiffersUnlessAClockEndedOne) {
+  const Record a = run_of("square", "gd[rate=1e-4]", 20);
+  Record b = run_of("square", "gd[rate=1e-4]", 10);
+  EXPECT_EQ(compare_results(a, b).difference, "last iteration: 20 against 10");
+  b.is_nondeterministic = true;
+  const Comparison found = compare_results(a, b);
+  EXPECT_EQ(found.difference, "");
+  EXPECT_EQ(found.iterations, 9);
+  EXPECT_TRUE(found.is_up_to_there);
+}
+
+TEST(SameResult, TimesAndTheMachineAreNoDifference) {
+  const Record a = run_of("square", "newton");
+  Record b = a;
+  b.summary.wall_seconds = 7;
+  b.curve.wall_seconds[1] = 3;
+  b.repeat_wall_seconds = {1, 2};
+  b.provenance.run.command = "another";
+  EXPECT_EQ(compare_results(a, b).difference, "");
+  b.message = "another";
+  EXPECT_EQ(compare_results(a, b).difference, "message: \"\" against \"another\"");
+}
+
+// Suite `notebook` end to end, read back from the records it leaves. Origin of the values: the
+// table printed by the comparison notebook of the Physics-based Deep Learning book (single
+// precision: 1e-5), and the end points of Fig. 1 of Holl, Koltun, Thuerey (2022), recomputed from
+// the published script (1e-6).
+
+const FinishedMatrix& notebook() {
+  static const FinishedMatrix all(catalog(), cells_of("notebook"));
+  return all;
+}
+
+// The record of `square` with an optimizer, one option at a value.
+Record record_of(const std::string& optimizer, const std::string& option, Real value,
+                 const std::string& inverse = "") {
+  for (const Record& record : notebook().records) {
+    const Component& used = record.request.optimizer;
+    if (record.request.problem.name != "square" || used.name != optimizer) continue;
+    if (std::abs(used.options.number(option, NAN) - value) > 1e-15) continue;
+    if (inverse.empty() || used.options.text("inverse") == inverse) return record;
+  }
+  ADD_FAILURE() << "the suite has no " << optimizer << "[" << option << "=" << value << "]";
+  return {};
+}
+
+// x1 and x2 after each step.
+void expect_iterates(const Record& record, const std::vector<Real>& printed) {
+  ASSERT_TRUE(record.trajectory.has_value());
+  const std::vector<std::vector<Real>>& x = record.trajectory->x;
+  ASSERT_EQ(2 * x.size(), printed.size() + 2) << title_of(record);
+  EXPECT_EQ(x[0], (std::vector<Real>{3, 3}));
+  for (std::size_t i = 0; i < printed.size(); ++i)
+    EXPECT_NEAR(x[i / 2 + 1][i % 2], printed[i], 1e-5) << title_of(record) << ", number " << i;
+}
+
+TEST(NotebookSuite, EachMethodTakesItsTenStepsAsPrinted) {
+  expect_iterates(record_of("gd", "rate", 0.01),
+                  {2.94,      1.9200001, 2.8812,    1.6368846, 2.823576,  1.4614503, 2.7671044,
+                   1.3365935, 2.7117622, 1.2410815, 2.657527,  1.1646168, 2.6043763, 1.1014326,
+                   2.5522888, 1.0479842, 2.501243,  1.0019454, 2.4512184, 0.96171147});
+  expect_iterates(
+      record_of("newton", "rate", 1.0 / 3),
+      {2.0,       2.6666667,  1.3333333,  2.3703704,  0.88888884, 2.1069958,  0.59259254,
+       1.8728852, 0.39506167, 1.6647868,  0.26337445, 1.4798105,  0.17558296, 1.315387,
+       0.1170553, 1.1692328,  0.07803687, 1.0393181,  0.05202458, 0.92383826});
+  expect_iterates(
+      record_of("sip", "step", 0.3, "analytic"),
+      {2.1,        2.5099802, 1.4699999,  2.1000001,  1.0289999,  1.7569861,  0.72029996,
+       1.47,       0.50421,   1.2298902,  0.352947,   1.029,      0.24706289, 0.86092323,
+       0.17294402, 0.7203,    0.12106082, 0.60264623, 0.08474258, 0.50421});
+  expect_iterates(
+      record_of("sip", "step", 0.3, "lbfgs"),
+      {2.09999967, 2.50998022, 1.46999859, 2.10000011, 1.02899871, 1.75698602, 0.72029824,
+       1.4699998,  0.50420733, 1.22988982, 0.35294448, 1.02899957, 0.24705997, 0.86092355,
+       0.17294205, 0.72030026, 0.12106103, 0.60264817, 0.08474171, 0.50421247});
+}
+
+// Of the first update with the diagonal, toward the origin; at most √2.
+Real alignment(const Record& record) {
+  const std::vector<std::vector<Real>>& x = record.trajectory.value().x;
+  const Real d1 = x.at(0)[0] - x.at(1)[0], d2 = x.at(0)[1] - x.at(1)[1];
+  return (d1 + d2) / std::hypot(d1, d2);
+}
+
+TEST(NotebookSuite, FirstUpdatesAlignWithTheDiagonalAsPrinted) {
+  constexpr Real kPrinted = 1e-6;
+  EXPECT_NEAR(alignment(record_of("gd", "rate", 0.01)), 1.053930, kPrinted);
+  EXPECT_NEAR(alignment(record_of("newton", "rate", 1.0 / 3)), 1.264911, kPrinted);
+  EXPECT_NEAR(alignment(record_of("sip", "step", 0.3, "analytic")), 1.356443, kPrinted);
+  EXPECT_NEAR(alignment(record_of("sip", "step", 0.3, "lbfgs")), 1.356443, kPrinted);
+}
+
+void expect_end(const Record& record, std::int64_t steps, Real x1, Real x2) {
+  EXPECT_EQ(record.summary.iterations, steps) << title_of(record);
+  const std::vector<Real>& end = record.trajectory.value().x.back();
+  EXPECT_NEAR(end[0], x1, 1e-6) << title_of(record);
+  EXPECT_NEAR(end[1], x2, 1e-6) << title_of(record);
+}
+
+TEST(Figure1Suite, CirclesAndLinesEndWhereTheScriptEndsThem) {
+  expect_end(record_of("gd", "rate", 0.5 / 36), 10, 2.263480, 0.801555);
+  expect_end(record_of("newton", "rate", 0.5), 10, 0.00292969, 0.484517);
+  expect_end(record_of("gd", "rate", 0.005), 1000, 1.295e-4, 0.157537);
+  expect_end(record_of("newton", "rate", 0.1), 100, 7.97e-5, 0.101110);
+  expect_end(record_of("sip", "step", 0.05, "analytic"), 100, 0.0177616, 0.230835);
+  // By the formula: physics inversion is (x1 (1 − η), x2 √(1 − η)), the inverse gradient
+  // (x1 (1 − η), x2 (1 − η/2)) a step; the figure prints no figures of these.
+  const Real halved = 3 * std::pow(0.5, 10);
+  expect_end(record_of("sip", "step", 0.5, "analytic"), 10, halved, 3 * std::pow(0.5, 5));
+  expect_end(record_of("inverse-gradient", "rate", 0.5), 10, halved, 3 * std::pow(0.75, 10));
+}
+
+// A straight ray to the origin of y space: y1 and y2 shrink by one factor.
+TEST(Figure1Suite, PhysicsInversionIsAStraightRayInY) {
+  const Record record = record_of("sip", "step", 0.05, "analytic");
+  for (const std::vector<Real>& y : record.trajectory.value().y)
+    EXPECT_NEAR(y[1], 3 * y[0], 1e-12);  // rounding of a hundred steps
+}
+
+TEST(Figure5aSuite, KeepsThePathsOfTheSine) {
+  std::size_t count = 0;
+  for (const Record& record : notebook().records) {
+    if (record.request.problem.name != "sine") continue;
+    EXPECT_EQ(record.trajectory.value().x.size(), record.curve.iteration.size());
+    ++count;
+  }
+  EXPECT_EQ(count, 7U);  // the six methods of the figure, and the update that vanishes
 }
 
 }  // namespace

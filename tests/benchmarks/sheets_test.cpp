@@ -256,7 +256,7 @@ TEST(Prices, StandInTheSheetAndAreKeptByLaterRuns) {
   EXPECT_EQ(schema_violations(first, schema("component")), std::vector<std::string>{});
   EXPECT_EQ(to_json(sheet_from_json(first)), first);
   EXPECT_EQ(written(), first);
-  first["prices"]["build"] = "another";  // then they are measured anew
+  first["prices"]["build"] = "another";  // then they are measured again
   const Sheet other = sheet_from_json(first);
   store.write(other);
   EXPECT_NE(written().at("prices").at("build"), "another");

@@ -161,7 +161,7 @@ class Served(unittest.TestCase):
                 status, text = caller.raw("POST", "/Evaluate", body)
                 self.assertIn(status, (200, 400), text)
                 json.loads(text)
-                self.assertLess(len(text), 1000, "an error does not repeat what it was given")
+                self.assertLess(len(text), 1000, "an error does not repeat its input")
             for method, path in [("PUT", "/Evaluate"), ("GET", "/Evaluate"), ("POST", "/evaluate"),
                                  ("POST", "/../etc/passwd"), ("POST", "/" + "a" * 8000)]:
                 self.assertEqual(caller.raw(method, path, good)[0], 404, path)

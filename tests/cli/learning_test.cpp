@@ -1,4 +1,4 @@
-// Training and inference as a user meets them, and what they say to one who is wrong.
+// Training and inference on the command line, and their error messages.
 #include <gtest/gtest.h>
 
 #include <cmath>

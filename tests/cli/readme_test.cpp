@@ -1,5 +1,5 @@
-// What the README and the guide tell a reader to do works: their commands run, their two examples
-// compile and run. CITATION.cff names this very version, in the form that CFF 1.2.0 has.
+// The instructions of the README and the guide: their commands run, their two examples compile and
+// run. CITATION.cff names this very version, in the form that CFF 1.2.0 has.
 #include <gtest/gtest.h>
 
 #include <algorithm>

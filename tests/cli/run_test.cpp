@@ -1,4 +1,4 @@
-// The verbs that work on a result folder: run, with what it repeats, replay, report and validate.
+// The verbs on a result folder: run and its retries, replay, report and validate; full disks.
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -78,6 +78,18 @@ TEST_F(Run, AFlagAfterTheMatrixTakesEffect) {
   shell.expect(kMatrix + "--seeds 2..4 --jobs 2", {.out = {"9 cells: 9 run"}});
   shell.expect(kMatrix + "--seeds =9 --jobs 1", {.out = {"3 cells: 3 run"}});
   shell.expect(kMatrix + "--seeds 2 --exclusive", {.out = {"6 cells: 6 run"}});
+}
+
+TEST_F(Run, InstancesAndStartsAreCrossed) {
+  const std::string matrix = "./isoline run --problem sine --optimizer newton --out out ";
+  shell.expect(matrix + "--instances 2 --starts 3", {.out = {"6 cells: 6 run"}});
+  const std::string csv = read_text(out / "report" / "report.csv");
+  EXPECT_TRUE(contains(csv, "seed,instance,start,status")) << csv;
+  EXPECT_TRUE(contains(csv, ",1001002,1,2,")) << csv;
+  EXPECT_TRUE(contains(csv, "--seeds =1:2 ")) << csv;
+  shell.expect(matrix + "--seeds 1:2,=1 --dry-run", {.out = {"seed 1:2", "2 cells: 2 cached"}});
+  shell.expect(matrix + "--seeds 3 --starts 3",
+               {.exit_code = 1, .err = {"--seeds excludes --starts"}});
 }
 
 TEST_F(Run, RepetitionsAppendTimings) {
@@ -400,6 +412,64 @@ TEST_F(Replay, OfARunThatAClockEndedGoesAsFarAsBothWent) {
     record["curve"]["loss"][12] = 77;  // where it was ended, in the midst of a step
   };
   replay("gd", cut, {.out = {"equal up to iteration 11"}});
+}
+
+// Full, exhausted or read-only disks: a clear message, no corrupt file, and the same command
+// continues when there is room. The file systems are small and mounted in a separate namespace.
+
+const std::string kRun =
+    "./isoline run --problem square,beale,wood --optimizer gd,newton,adam --rates none "
+    "--iterations 300 --seeds 4 --out disk/out --jobs 2 ";
+
+class Disk : public testing::Test {
+ protected:
+  // A script in a namespace where `disk` is a file system of its own.
+  Finished on_disk(const std::string& options, const std::string& script) {
+    std::filesystem::create_directories(shell.folder() / "disk");
+    write_text(shell.folder() / "script.sh",
+               "set -u\nmount -t tmpfs -o " + options + " none disk || exit 99\n" + script);
+    return shell("unshare --user --map-root-user --mount bash script.sh");
+  }
+  void SetUp() override {
+    const Finished allowed = on_disk("size=1m", "exit 0");
+    if (allowed.exit_code != 0)
+      GTEST_SKIP() << "no file system can be mounted here: " << allowed.err;
+  }
+  Shell shell;
+};
+
+// Room for the plan and some records, in bytes or in inodes. The second run has room for all of
+// them.
+TEST_F(Disk, ThatIsFullEndsTheRunWithAMessageAndTheNextGoesOnToSoundFiles) {
+  for (const auto& [small, large] :
+       {std::pair("size=300k", "size=64m"), std::pair("size=64m,nr_inodes=24", "nr_inodes=4096")}) {
+    const Finished both =
+        on_disk(small, kRun + "--no-report 2>first.err; echo first $?\nmount -o remount," + large +
+                           " disk\n" + kRun +
+                           "2>second.err; echo second $?\n"
+                           "./isoline validate disk/out; echo valid $?\n"
+                           "ls disk/out/runs | grep -vc 'json$'");
+    const std::string first = read_text(shell.folder() / "first.err");
+    EXPECT_TRUE(contains(first, "No space left on device")) << first;
+    for (const char* part : {"first 2\n", "second 0\n", "valid 0\n"})
+      EXPECT_TRUE(contains(both.out, part))
+          << both.out << both.err << read_text(shell.folder() / "second.err");
+    EXPECT_TRUE(both.out.ends_with("\n0\n")) << both.out;
+  }
+}
+
+TEST_F(Disk, ThatIsReadOnlyIsTheCallersMistakeBeforeAnythingRuns) {
+  const Finished result = on_disk(
+      "size=64m", kRun + "--quiet --no-report; echo first $?\n" + "mount -o remount,ro disk\n" +
+                      kRun + "--force 2>second.err; echo second $?\n" +
+                      "./isoline run --problem square --optimizer gd --out disk/new "
+                      "2>third.err; echo third $?\n");
+  EXPECT_TRUE(contains(result.out, "first 0\nsecond 1\nthird 1\n")) << result.out << result.err;
+  for (const char* file : {"second.err", "third.err"}) {
+    const std::string message = read_text(shell.folder() / file);
+    EXPECT_TRUE(contains(message, "Read-only file system")) << message;
+    EXPECT_EQ(count_lines(message), 1U) << message;
+  }
 }
 
 }  // namespace

@@ -1,10 +1,13 @@
-// Help, versions, and what the command line says to a user who is wrong.
+// Help, versions, error messages of the command line, and output on a terminal.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
+#include <regex>
 #include <sstream>
 
+#include "core/records/provenance.h"
+#include "core/text.h"
 #include "tests/cli/shell.h"
 
 namespace isoline::benchmarks {
@@ -238,6 +241,202 @@ TEST(Completion, IsValidBashAndCompletesNames) {
            {"run --retry f", "failed"},
            {"run --dry", "--dry-run"}})
     EXPECT_EQ(complete(words), completion + "\n") << words;
+}
+
+// Foreign text is printed without its control sequences, and paths may have any bytes.
+
+constexpr const char* kEscape = "\x1b";
+
+// A shell that knows no $'…' makes the bytes by printf.
+TEST(ForeignText, AFolderWhoseNameIsNoUtf8IsAFolder) {
+  const Shell shell;
+  shell.expect(
+      "./isoline run --problem square --optimizer gd --iterations 3 --quiet "
+      "--out \"$(printf 'x\\377')\"");
+  EXPECT_EQ(count_records(shell.folder() / "x\xff"), 1U);
+  const Finished again = shell.expect(
+      "./isoline report \"$(printf 'x\\377')\" && ./isoline validate \"$(printf 'x\\377')\"");
+  EXPECT_EQ(valid_utf8(again.out), again.out);
+}
+
+TEST(ForeignText, NoControlSequenceOfAFileOrAnArgumentReachesTheTerminal) {
+  const Shell shell;
+  write_text(shell.folder() / "schema.json", R"({"schema": "isoline.\u001b[2Jrun/1"})");
+  write_text(shell.folder() / "numbers.csv", "1,2\n3,\x1b]0;owned\x07\n");
+  for (const char* command :
+       {"./isoline validate schema.json", "./isoline describe \"$(printf '\\033[31mred')\"",
+        "./isoline run --dry-run --problem \"$(printf 'sine[\\033[2J=1]')\" --optimizer gd",
+        "./isoline infer --model none.json --input numbers.csv --output out.csv",
+        "./isoline report \"$(printf 'no\\033[1mfolder')\""}) {
+    const Finished run = shell(command);
+    EXPECT_NE(run.exit_code, 0) << command;
+    EXPECT_FALSE(contains(run.out + run.err, kEscape)) << command;
+    EXPECT_NE(run.out + run.err, "") << command;
+  }
+  EXPECT_TRUE(contains(shell("./isoline validate schema.json").out, "\\u001b[2J"));
+}
+
+TEST(ForeignText, ARecordsMessageIsShownAsTextAndKeptAsItIs) {
+  const Shell shell;
+  shell.expect(
+      "./isoline run --problem square --optimizer gd --iterations 3 --quiet --no-report --out r");
+  const std::string change =
+      "sed -i 's/\"status\":\"[a-z]*\"/\"status\":\"failed\"/;"
+      "s/\"message\":\"[^\"]*\"/\"message\":\"\\\\u001b[2J\"/' r/runs/*.json && ";
+  const Finished report = shell(change + "./isoline report r");
+  EXPECT_FALSE(contains(report.err, kEscape)) << report.err;
+  const Finished printed = shell.expect("./isoline report r");
+  EXPECT_FALSE(contains(printed.out + printed.err, kEscape));
+}
+
+// Output on a terminal: summaries first, short lists, durations, and the next command after a
+// crash.
+
+TEST(Terminal, ARunSaysHowLongItTook) {
+  const Finished result =
+      Shell()("./isoline run --problem square --optimizer newton --no-report --out out");
+  EXPECT_TRUE(std::regex_search(
+      result.out, std::regex(R"(^1 cell: 1 run, 0 reused \(1 [a-z]+\) in \d+\.\d s\n)")))
+      << result.out;
+}
+
+TEST(Terminal, AnOptionOfSpecificationsMayBeRepeated) {
+  const std::string once = "./isoline run --problem square,scaling --optimizer gd,adam --dry-run";
+  const Shell shell;
+  const Finished twice = shell(
+      "./isoline run --problem square --problem scaling --optimizer gd --optimizer adam --dry-run");
+  EXPECT_TRUE(twice.out.starts_with("4 cells")) << twice.out;
+  EXPECT_EQ(twice.out, shell(once).out);
+}
+
+TEST(Terminal, ClaimsAreCountedThenListedTwentyAtMost) {
+  const Shell shell;
+  const std::string few = shell("./isoline claims --list").out;
+  EXPECT_TRUE(std::regex_search(few, std::regex(R"(^\d+ claims in \d+ groups: )"))) << few;
+  EXPECT_LE(count_lines(few), 30U) << "twenty claims, their groups and the summary";
+  EXPECT_TRUE(few.ends_with("more; --all lists them\n")) << few;
+  EXPECT_GT(count_lines(shell("./isoline claims --list --all").out), 100U);
+}
+
+TEST(Terminal, VerdictsOnClaimsAreCountedThenListedTwentyAtMost) {
+  const Shell shell;
+  shell("./isoline run --problem square --optimizer gd --no-report --quiet --out out");
+  const Finished few = shell("./isoline claims --no-run --out out");
+  EXPECT_TRUE(std::regex_search(few.out, std::regex(R"(^\d+ facts in \d+ claims: )"))) << few.out;
+  EXPECT_LE(count_lines(few.out), 30U) << few.out;
+  EXPECT_TRUE(contains(few.out, "more; --all lists them\n")) << few.out;
+  EXPECT_GT(count_lines(shell("./isoline claims --no-run --all --out out").out), 200U);
+}
+
+TEST(Terminal, AnAuditSaysWhatItFoundThenTwentyLines) {
+  const Shell shell;
+  const Finished few = shell("./isoline audit gd adam sip newton gauss-newton ceres-lm");
+  EXPECT_TRUE(few.out.starts_with("Scaling: ")) << few.out;
+  EXPECT_TRUE(contains(few.out, "… and 4 more; --all lists them\n")) << few.out;
+  const Finished all = shell("./isoline audit gd adam sip newton gauss-newton ceres-lm --all");
+  EXPECT_FALSE(contains(all.out, "more; --all")) << all.out;
+  EXPECT_GT(count_lines(all.out), count_lines(few.out));
+}
+
+TEST(Terminal, ATuningIsATableWithBarsAndJsonOnRequest) {
+  const Shell shell;
+  const std::string tune = "./isoline tune square --optimizer gd --work 50 --out t ";
+  const Finished table = shell.expect(tune, {.out = {"█"}});
+  EXPECT_TRUE(table.out.starts_with("1 pair tuned: ")) << table.out;
+  const Json rows = parse_json(shell(tune + "--json").out, "rows");
+  ASSERT_EQ(rows.size(), 1U);
+  EXPECT_EQ(rows[0].at("optimizer"), "gd");
+}
+
+TEST(Terminal, ATuningSaysEdgesAndTies) {
+  const Shell shell;
+  const std::string tune = "./isoline tune square --work 60 --tuning-seeds =100 --out t ";
+  shell.expect(tune + "--optimizer gd --grid rate=1e-9..1e-7x3",
+               {.out = {"1 with the best at the edge of the grid, 0 with a tie",
+                        "at the edge: the highest value tried"}});
+  shell.expect(tune + "--optimizer levenberg-marquardt --grid initial-damping=1e-300..1e-299x2",
+               {.out = {"0 with the best at the edge of the grid, 1 with a tie", "ties with "}});
+}
+
+TEST(Terminal, CellsRunInOneProcessForADebuggerAndLeaveNoRecord) {
+  const Shell shell;
+  shell.expect("./isoline run --problem square --optimizer newton,gd --in-process",
+               {.out = {"square × newton, seed 0: ", "no record was written"}});
+  EXPECT_FALSE(std::filesystem::exists(shell.folder() / "results"));
+}
+
+TEST(Terminal, ACrashSaysHowToDebugItAndTheCommandCrashesAgain) {
+  const Shell shell;
+  const Finished result =
+      shell.expect(OWN_BINARY " run --problem aborter --optimizer gd --out out --no-report",
+                   {.exit_code = 2,
+                    .err = {"crashed: signal 6", "\"message\" is the cause", "gdb --args ",
+                            "ulimit -c unlimited"}});
+  std::smatch found;
+  ASSERT_TRUE(std::regex_search(result.err, found, std::regex(R"(record +(out/runs/\S+\.json):)")))
+      << result.err;
+  EXPECT_TRUE(std::filesystem::exists(shell.folder() / found[1].str())) << found[1];
+  ASSERT_TRUE(std::regex_search(result.err, found, std::regex(R"(alone +(.*--in-process)\n)")))
+      << result.err;
+  const Finished again = shell("ulimit -c 0; " + found[1].str());
+  EXPECT_NE(again.exit_code, 0);
+  EXPECT_FALSE(contains(again.out, "no record was written")) << "it ended before";
+}
+
+TEST(Terminal, AComparisonBeginsWithItsVerdictAndIsShort) {
+  const Shell shell;
+  const std::string run = "./isoline run --problem square,sine --no-report --quiet --seeds 4 ";
+  shell(run + "--optimizer @matrix-free --iterations 20 --out a");
+  shell(run + "--optimizer @matrix-free --iterations 30 --out b");
+  const Finished result =
+      shell.expect("./isoline compare a b",
+                   {.exit_code = 2, .out = {"with another budget or other threads in NEW"}});
+  EXPECT_TRUE(result.out.starts_with("Comparison: worse: NEW lacks ")) << result.out;
+  EXPECT_FALSE(contains(result.out, "Only in NEW")) << "the same cells are not listed twice";
+  EXPECT_LE(count_lines(result.out), 30U) << result.out;
+}
+
+// A program with its own catalog has every verb, and its records name its own repository.
+
+const std::string kOwn = OWN_BINARY;
+
+class OwnProgram : public testing::Test {
+ protected:
+  Json only_record(const char* out) const {
+    for (const auto& entry : std::filesystem::directory_iterator(shell.folder() / out / "runs"))
+      return read_json(entry.path());
+    return nullptr;
+  }
+  Shell shell;
+};
+
+TEST_F(OwnProgram, ListsDescribesAndChecksWhatOnlyItHas) {
+  shell.expect(kOwn + " list problems --names", {.out = {"twist\n"}});
+  EXPECT_FALSE(contains(shell("./isoline list problems --names").out, "twist\n"));
+  shell.expect(kOwn + " describe twist", {.out = {"Twist"}});
+  shell.expect(kOwn + " check twist");
+}
+
+TEST_F(OwnProgram, ItsRecordsNameItsCommandAndItsCommit) {
+  shell.expect(kOwn + " run --problem twist --optimizer newton --out out --quiet");
+  const Json provenance = only_record("out").at("provenance");
+  EXPECT_EQ(provenance.at("commit"), "0f1e2d3c4b5a");
+  EXPECT_EQ(provenance.at("dirty"), true);
+  EXPECT_EQ(provenance.at("run").at("command"),
+            "isoline_own run --problem twist --optimizer newton --out out --quiet");
+  shell("./isoline run --problem square --optimizer newton --out plain --quiet --no-report");
+  EXPECT_EQ(provenance.at("isoline_commit"), only_record("plain")["provenance"]["commit"]);
+  shell.expect("./isoline validate out");
+}
+
+TEST_F(OwnProgram, MistakesAreSaidInItsName) {
+  const Finished result = shell.expect(kOwn + " rnu", {.exit_code = 1});
+  EXPECT_TRUE(result.err.starts_with("isoline_own: ")) << result.err;
+}
+
+TEST_F(OwnProgram, ACheckOfWhatThrowsSaysWhatWasThrown) {
+  for (const char* check : {" check thrower", " check thrower --json"})
+    shell.expect(kOwn + check, {.exit_code = 2, .out = {"it's on purpose"}});
 }
 
 }  // namespace

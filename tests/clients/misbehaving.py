@@ -66,7 +66,7 @@ def misbehave(x):
 def forward(x):
     global calls
     calls += 1
-    if calls == 3:  # later than the handshake, and than whoever only wants to know
+    if calls == 3:  # after the handshake and a check
         misbehave(x)
     if mode == "is-random":
         state[0] += 1e-9

@@ -14,7 +14,7 @@ import unittest
 import slurm
 
 # Some cells that take a moment, of methods that keep their state.
-MATRIX = ["--problem", "poisson[N=32]", "--optimizer", "gd,momentum", "--seeds", "6", "--target", "0"]
+MATRIX = ["--problem", "poisson[N=32]", "--optimizer", "gd[rate=2e-5],momentum[rate=2e-6]", "--seeds", "6", "--target", "0"]
 SHORT = MATRIX + ["--iterations", "2000"]
 LONG = MATRIX + ["--iterations", "40000"]
 CELLS = 12

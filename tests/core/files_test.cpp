@@ -1,4 +1,4 @@
-// Files under hostile names, and temporaries that belong to somebody else.
+// Files under hostile names, temporary files of other programs, and the formats NPY and JSON.
 #include "core/files.h"
 
 #include <fmt/format.h>
@@ -8,10 +8,18 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <algorithm>
+#include <cmath>
 #include <csignal>
+#include <cstring>
 #include <fstream>
+#include <nlohmann/json.hpp>
 
+#include "core/errors.h"
+#include "core/json.h"
+#include "core/records/json_view.h"
+#include "core/records/npy.h"
+#include "core/records/record.h"
+#include "core/text.h"
 #include "tests/refusal.h"
 #include "tests/temporary_folder.h"
 
@@ -125,7 +133,7 @@ TEST(Files, ATemporaryOfAnotherIsLeftAlone) {
   const std::string elsewhere = fmt::format("record.json.00000000-{}.tmp", gone);
   for (const std::string& name : {std::string("thesis.tmp"), std::string("notes.1.tmp"),
                                   fmt::format("record.json.{}.tmp", gone), elsewhere}) {
-    write_text(folder.path() / name, "somebody's");
+    write_text(folder.path() / name, "foreign");
     EXPECT_FALSE(is_abandoned(folder.path() / name)) << name;
   }
   const fs::path named = temporary_by(gone, folder.path() / "folder.json");
@@ -143,7 +151,7 @@ TEST(Files, MovedAsideNeverReplaceEachOther) {
   }
   EXPECT_EQ(read_text(aside / "plan.json"), "first");
   EXPECT_EQ(names_in(aside).size(), 3U);
-  EXPECT_THROW(move_into(aside, file), UsageError) << "there is none left";
+  EXPECT_THROW(move_into(aside, file), UsageError) << "no free name is left";
 }
 
 TEST(Files, AFailedWriteLeavesTheOldFileAndNoOther) {
@@ -173,7 +181,7 @@ TEST(Files, AFullDiskIsAnErrorAndLeavesNothingBehind) {
   EXPECT_TRUE(std::filesystem::is_empty(folder));
 }
 
-// What is told to be written is on the disk, or an error says that it may not be.
+// A written file is on the disk, or an error says that it may not be.
 TEST(Files, AFlushThatCannotBeIsAnError) {
   const TemporaryFolder owned;
   EXPECT_NO_THROW(flush_all(owned.path()));
@@ -186,6 +194,265 @@ TEST(Digest, IsFnv1a) {
   EXPECT_EQ(digest(""), "cbf29ce484222325");
   EXPECT_EQ(digest("a"), "af63dc4c8601ec8c");
   EXPECT_EQ(digest("foobar"), "85944171f73967e8");
+}
+
+// Arrays in files: NumPy's format and text.
+
+// The bytes of numpy.save for the array [[1, 2, 3], [4, 5, 6]] as '<f4' in column-major order, the
+// header as numpy 1.24 writes it.
+std::string by_numpy() {
+  std::string header = "{'descr': '<f4', 'fortran_order': True, 'shape': (2, 3), }";
+  header.append(118 - 1 - header.size(), ' ').push_back('\n');
+  std::string bytes("\x93NUMPY\x01\x00\x76\x00", 10);
+  bytes += header;
+  for (const float value : {1.F, 4.F, 2.F, 5.F, 3.F, 6.F}) {
+    char raw[4];
+    std::memcpy(raw, &value, 4);
+    bytes.append(raw, 4);
+  }
+  return bytes;
+}
+
+std::string refusal_of(const std::string& bytes) {
+  return refusal([&] { npy_from_bytes(bytes); });
+}
+
+TEST(Npy, ReadsWhatNumpyWrites) {
+  const TemporaryFolder folder;
+  write_text(folder.path() / "a.npy", by_numpy());
+  const NumberArray array = read_npy(folder.path() / "a.npy");
+  EXPECT_EQ(array.shape, (std::vector<Index>{2, 3}));
+  EXPECT_EQ(array.values, (std::vector<Real>{1, 2, 3, 4, 5, 6}));
+}
+
+TEST(Npy, SurvivesTheRoundTripAtEveryRank) {
+  const TemporaryFolder folder;
+  const auto file = folder.path() / "a.npy";
+  for (const std::vector<Index>& shape : {std::vector<Index>{4}, {2, 2}, {1, 2, 2}, {0, 7}}) {
+    Index count = 1;
+    for (const Index size : shape) count *= size;
+    NumberArray array{shape, {}};
+    for (Index i = 0; i < count; ++i) array.values.push_back(0.1 * static_cast<Real>(i));
+    write_npy(file, array);
+    EXPECT_EQ(read_npy(file).values, array.values);
+    EXPECT_EQ(read_npy(file).shape, shape);
+    EXPECT_EQ(read_text(file).find('\n') % 64, 63U);  // numbers begin at a multiple of 64
+  }
+}
+
+TEST(Npy, RefusesWhatItCannotTakeWithOneSentence) {
+  const std::string good = by_numpy();
+  EXPECT_NE(refusal_of("hello").find("no .npy file"), std::string::npos);
+  EXPECT_NE(refusal_of(good.substr(0, good.size() - 3)).find("bytes of numbers"),
+            std::string::npos);
+  std::string complex = good;
+  complex.replace(complex.find("<f4"), 3, "<c8");
+  EXPECT_NE(refusal_of(complex).find("'<c8'"), std::string::npos);
+  std::string infinite = good;
+  const float nan = NAN;
+  std::memcpy(infinite.data() + infinite.size() - 4, &nan, 4);
+  EXPECT_NE(refusal_of(infinite).find("not finite"), std::string::npos);
+}
+
+// A file of the format's first version, with any header and numbers of zero.
+std::string npy_of(const std::string& header, std::size_t bytes) {
+  std::string file("\x93NUMPY\x01\x00", 8);
+  file += {static_cast<char>(header.size() & 0xff), static_cast<char>(header.size() >> 8)};
+  return file + header + std::string(bytes, '\0');
+}
+
+std::string shaped(const std::string& shape, const char* order = "False") {
+  return fmt::format("{{'descr': '<f8', 'fortran_order': {}, 'shape': {}, }}\n", order, shape);
+}
+
+TEST(Npy, HeadersThatCannotBeAreRefusedBeforeRoomIsMade) {
+  const auto expect = [](const std::string& header, std::size_t bytes, const char* part) {
+    EXPECT_NE(refusal_of(npy_of(header, bytes)).find(part), std::string::npos)
+        << header.substr(0, 80);
+  };
+  // As many letters as a header's length can say made std::regex recurse until the stack ended.
+  for (const std::string& header :
+       {std::string(60'000, ' '), "{'descr': '" + std::string(60'000, 'a') + "'}",
+        shaped("(" + std::string(60'000, '1') + ")"), shaped("(" + std::string(60'000, ' ') + ")")})
+    expect(header, 0, "at most 10000");
+  // 2³² · 2³² is 0 in 64 bits: an index into what was allocated for it would lead anywhere.
+  for (const char* order : {"False", "True"})
+    for (const char* shape :
+         {"(4294967296, 4294967296)", "(9223372036854775807, 2)", "(3, 6148914691236517206)",
+          "(0, 9223372036854775807, 9223372036854775807)"})
+      expect(shaped(shape, order), 16, "more numbers than a file");
+  expect(shaped("(1000000000000,)"), 16, "it holds 16 bytes");
+  expect(shaped("(2305843009213693952,)"), 0, "it holds 0 bytes");  // of 8: 0 bytes in 64 bits
+  for (const char* shape : {"(-1,)", "(-2, -2)", "(99999999999999999999,)", "(1.5,)", "(x,)",
+                            "(1 2)", "(,)", "5", "[5]", "(True,)"})
+    expect(shaped(shape), 16, "its header must be like");
+  std::string many = "(";
+  for (int i = 0; i < 100; ++i) many += "1,";
+  expect(shaped(many + ")"), 8, "more than 64");
+}
+
+TEST(Npy, AHeaderThatIsNoDictionaryOfThreeKeysIsRefused) {
+  for (const char* header :
+       {"", "{", "{}", "[]", "{'descr': '<f8', 'fortran_order': False, }",
+        "{'descr': [('x', '<f8')], 'fortran_order': False, 'shape': (), }",
+        "{'descr': '<f8', 'descr': '<f8', 'fortran_order': False, 'shape': (), }",
+        "{'descr': '<f8', 'fortran_order': False, 'shape': (), 'more': 1, }",
+        "{'descr': '<f8', 'fortran_order': False, 'shape': (), } and more", "{'descr': '<f8",
+        "{'descr' '<f8'}", "{'descr': '<f8', 'fortran_order': Maybe, 'shape': (), }"})
+    EXPECT_NE(refusal_of(npy_of(header, 8)), "") << header;
+  EXPECT_EQ(refusal_of(npy_of(shaped("()"), 8)), "") << "one number without an index";
+  EXPECT_EQ(refusal_of(npy_of("{\"shape\":(1,),\"descr\":\"<f8\",\"fortran_order\":False}", 8)),
+            "");
+}
+
+TEST(Csv, IsReadWithOrWithoutAHeaderAndRefusesHoles) {
+  const TemporaryFolder folder;
+  const auto file = folder.path() / "a.csv";
+  write_text(file, "a,b\n1, 2\n3,4e1\r\n");
+  EXPECT_EQ(read_numbers(file).values, (std::vector<Real>{1, 2, 3, 40}));
+  EXPECT_EQ(read_numbers(file).shape, (std::vector<Index>{2, 2}));
+  for (const std::string text : {"1,2\n3\n", "1,2\n3,nan\n", "1,2\n3,x\n"}) {
+    write_text(file, text);
+    EXPECT_THROW(read_numbers(file), UsageError) << text;
+  }
+}
+
+// JSON: numbers are read back exactly, a view without a tree equals the tree, and errors name what
+// is missing or of another type.
+
+TEST(Numbers, SurviveTheRoundTripToTheLastBit) {
+  for (const Real value : {0.1, -0.0, 1e-308, 5e-324, 1.7976931348623157e308, 1.0 / 3}) {
+    const Real back = real_of(Json::parse(json_number(value).dump()));
+    EXPECT_EQ(std::signbit(back), std::signbit(value));
+    EXPECT_EQ(back, value);
+  }
+  for (const Real value : {Real{INFINITY}, -Real{INFINITY}})
+    EXPECT_EQ(real_of(Json::parse(json_number(value).dump())), value);
+  EXPECT_TRUE(std::isnan(real_of(Json::parse(json_number(NAN).dump()))));
+  EXPECT_THROW(real_of(Json("one")), UsageError);
+  EXPECT_THROW(real_of(Json()), UsageError);
+}
+
+std::string complaint_of_json(const std::string& text) {
+  return refusal([&] { parse_json(text, "given.json"); });
+}
+
+// 200,000 levels overflow the stack of a function that copies, compares or writes such a tree.
+TEST(Json, ThatNestsWithoutEndIsRefused) {
+  for (const std::string opening : {"[", "{\"a\":"}) {
+    std::string text;
+    for (int i = 0; i < 200'000; ++i) text += opening;
+    EXPECT_NE(complaint_of_json(text).find("nested deeper"), std::string::npos);
+  }
+  EXPECT_EQ(complaint_of_json("[\"[[[[\\\"[[[[\"]" + std::string(1000, ' ')), "");
+  EXPECT_EQ(complaint_of_json(std::string(150, '[') + std::string(150, ']')), "");
+}
+
+TEST(Json, OfNumbersThatNoDoubleHoldsIsAUsageError) {
+  EXPECT_NE(complaint_of_json("[1e400]").find("given.json"), std::string::npos);
+  EXPECT_NE(complaint_of_json("{\"a\": ").find("given.json"), std::string::npos);
+  EXPECT_NE(complaint_of_json("[" + std::string(400, '9') + "]").find("given.json"),
+            std::string::npos);
+}
+
+TEST(Json, ThatIsShownIsTheSameJson) {
+  const Json json = {{"message", "\x1b[2J \u009b \x7f \u202e \n \" \\ θ"}};
+  const std::string shown = printable(json_text(json));
+  EXPECT_EQ(Json::parse(shown), json);
+  EXPECT_EQ(shown.find('\x7f'), std::string::npos);
+}
+
+// Whatever a component says or a path is made of, JSON is written of it.
+TEST(Json, IsWrittenOfTextThatIsNoUtf8) {
+  EXPECT_EQ(json_text(Json{{"message", "x\xff"}}), "{\"message\":\"x\uFFFD\"}");
+  EXPECT_EQ(json_text(Json(std::string("cut \xCE"))), "\"cut \uFFFD\"");
+}
+
+constexpr const char* kText = R"({"integer":-7,"large":18446744073709551615,
+  "real":5.266142885157513e-10,"text":"½ \"quoted\"","truth":true,"nothing":null,"list":[0,1,2],
+  "reals":[1.0,"inf","-inf","nan",3],"lists":{"b":[1],"a":[]},"words":["x","y"]})";
+
+TEST(JsonView, ReadsEachTypeAsItStands) {
+  JsonReader reader;
+  const JsonView json = reader.parse(kText, "it");
+  EXPECT_EQ(json.json(), Json::parse(kText));
+  EXPECT_EQ(json.at("integer").get<std::int64_t>(), -7);
+  EXPECT_EQ(json.at("text").get<std::string>(), "½ \"quoted\"");
+  EXPECT_TRUE(json.at("truth").get<bool>());
+  EXPECT_TRUE(json.at("nothing").is_null());
+  EXPECT_TRUE(json.contains("list"));
+  EXPECT_FALSE(json.contains("absent"));
+  EXPECT_EQ(json.at("list").get<std::vector<std::int64_t>>(), (std::vector<std::int64_t>{0, 1, 2}));
+  EXPECT_EQ(json.at("words").get<std::vector<std::string>>(), (std::vector<std::string>{"x", "y"}));
+  const auto lists = json.at("lists").items();
+  ASSERT_EQ(lists.size(), 2U);
+  EXPECT_EQ(lists[0].first, "b");
+  EXPECT_EQ(lists[0].second.get<std::vector<std::int64_t>>(), std::vector<std::int64_t>{1});
+  EXPECT_TRUE(lists[1].second.values().empty());
+}
+
+TEST(JsonView, RealsKeepEveryBitAndWhatIsNotFinite) {
+  JsonReader reader;
+  const JsonView json = reader.parse(kText, "it");
+  EXPECT_EQ(real_of(json.at("real")), 5.266142885157513e-10);
+  const std::vector<Real> reals = reals_of(json.at("reals"));
+  ASSERT_EQ(reals.size(), 5U);
+  EXPECT_EQ(reals[1], INFINITY);
+  EXPECT_EQ(reals[2], -INFINITY);
+  EXPECT_TRUE(std::isnan(reals[3]));
+  EXPECT_EQ(reals[4], 3);
+}
+
+TEST(JsonView, SaysWhatItLacksAndWhatItFoundInstead) {
+  JsonReader reader;
+  const JsonView json = reader.parse(kText, "it");
+  EXPECT_NE(refusal([&] { json.at("absent"); }).find("absent"), std::string::npos);
+  EXPECT_NE(refusal([&] { json.at("text").get<std::int64_t>(); }).find("integer"),
+            std::string::npos);
+  EXPECT_NE(refusal([&] { real_of(json.at("text")); }).find("number"), std::string::npos);
+  EXPECT_NE(refusal([&] { reals_of(json.at("words")); }).find("number"), std::string::npos);
+  EXPECT_NE(refusal([&] { json.at("large").get<std::int64_t>(); }).find("integer"),
+            std::string::npos);
+  const std::string cut = std::string(kText).substr(0, 60);
+  EXPECT_NE(refusal([&] { reader.parse(cut, "runs/a.json"); }).find("runs/a.json"),
+            std::string::npos);
+  EXPECT_EQ(refusal([&] { reader.parse(kText, "it"); }), "") << "the reader is good for the next";
+}
+
+// Each law on an element that one of the column breaks is broken by the outline.
+TEST(Outline, KeepsOfALongColumnWhatLawsOnItsElementsAskFor) {
+  Json document{{"short", {1, 2, 3}}, {"mixed", Json::array()}, {"rows", Json::array()}};
+  Json column = Json::array();
+  for (int i = 0; i < 100; ++i) column.push_back(i);
+  document["counts"] = column;
+  column[50] = -7;
+  document["negative"] = column;
+  column[50] = "nan";
+  column[51] = 0.5;
+  column[52] = std::uint64_t{1} << 63;
+  document["mixed"] = column;
+  column[53] = nullptr;
+  document["rows"] = column;
+  const Json outline = outline_of(json_text(document), "given");
+  EXPECT_EQ(outline["short"], document["short"]);
+  EXPECT_EQ(outline["counts"], (Json{0, 99}));
+  EXPECT_EQ(outline["negative"], (Json{-7, 99}));
+  EXPECT_EQ(outline["mixed"],
+            (Json{0.5, 0.5, 0, 99, std::uint64_t{1} << 63, std::uint64_t{1} << 63, "nan"}));
+  EXPECT_EQ(outline["rows"], document["rows"]) << "null is neither number nor text";
+}
+
+// `validate` looks at outlines of records.
+TEST(Outline, LosesNothingThatTheSchemaOfRecordsAsksFor) {
+  const std::string schema = json_text(run_schema());
+  for (const char* law : {"minItems", "maxItems", "uniqueItems", "contains", "multipleOf"})
+    EXPECT_EQ(schema.find(law), std::string::npos) << law;
+}
+
+TEST(Outline, OfWhatIsNoJsonIsAUsageErrorThatNamesItsOrigin) {
+  for (const std::string& text : {std::string("{"), std::string("[1e400]"), std::string(2000, '[')})
+    EXPECT_NE(refusal([&] { outline_of(text, "given.json"); }).find("given.json"),
+              std::string::npos);
 }
 
 }  // namespace

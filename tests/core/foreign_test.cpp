@@ -1,5 +1,5 @@
-// Frames, handshakes and programs of others are whole and lawful, or an error says what is wrong; a
-// program that is started ends with its line.
+// Frames, handshakes and external programs are valid, or an error names the defect. A program ends
+// with its connection.
 #include <gtest/gtest.h>
 #include <sys/socket.h>
 #include <unistd.h>
@@ -7,7 +7,6 @@
 #include <array>
 #include <chrono>
 #include <cmath>
-#include <cstring>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
@@ -173,11 +172,11 @@ TEST(Programs, FindTheirEndOfTheLineByItsNumber) {
 }
 
 TEST(Programs, ThatAreNotThereAreNamed) {
-  EXPECT_EQ(refusal([] { const Line line({.command = "a-program-that-nobody-has 'x y'"}); }),
-            "cannot start 'a-program-that-nobody-has': No such file or directory");
+  EXPECT_EQ(refusal([] { const Line line({.command = "a-missing-program 'x y'"}); }),
+            "cannot start 'a-missing-program': No such file or directory");
 }
 
-// A process that has ended and that nobody has waited for has no command.
+// A process that has ended and is not yet waited for has no command.
 bool runs(const std::string& process) {
   std::ifstream file("/proc/" + process + "/cmdline");
   return file.get() != std::ifstream::traits_type::eof();

@@ -1,4 +1,4 @@
-// Specs, sweeps, seeds and durations are read as the command line says; options are completed,
+// Specs, sweeps, seeds and durations are read as the command line documents; options are completed,
 // checked and described as declared.
 #include "core/spec.h"
 
@@ -6,12 +6,17 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdio>
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "core/clock.h"
+#include "core/files.h"
 #include "core/options.h"
+#include "core/seeds.h"
 #include "core/text.h"
 #include "tests/refusal.h"
+#include "tests/temporary_folder.h"
 
 namespace isoline {
 namespace {
@@ -81,6 +86,7 @@ TEST(Spec, AnyTextComesBackFromTheSpecThatIsMadeOfIt) {
 
 TEST(Spec, AnAliasIsReadAsTheOptionItStandsFor) {
   EXPECT_EQ(options_of(parse_spec("gd[lr=2]")), options_of(parse_spec("gd[rate=2]")));
+  EXPECT_EQ(options_of(parse_spec("hig[way=qr]")), options_of(parse_spec("hig[factorization=qr]")));
   EXPECT_THROW(options_of(parse_spec("gd[lr=1,rate=2]")), UsageError);
 }
 
@@ -102,6 +108,24 @@ TEST(Seeds, CountsRangesAndSingles) {
                             "1000001", "0..999999,=7"})  // counted before they are listed
     EXPECT_THROW(parse_seeds(wrong), UsageError) << wrong;
   EXPECT_THROW(parse_seeds("0..9", 9), UsageError);
+}
+
+TEST(Seeds, NameAnInstanceAndAStart) {
+  using Seeds = std::vector<std::uint64_t>;
+  EXPECT_EQ(parse_seeds("2:1,=0:3"), (Seeds{1'002'001, 1'000'003}));
+  EXPECT_EQ(parse_seeds("7:7,=1007007"), (Seeds{7, 7})) << "a plain seed where both are equal";
+  EXPECT_EQ(crossed_seeds("2", "=0,=2"), (Seeds{0, 1'000'002, 1'001'000, 1'001'002}));
+  EXPECT_EQ(crossed_seeds("", "2"), (Seeds{0, 1'000'001}));
+  for (const std::uint64_t seed :
+       {0U, 3U, 999'999U, 1'002'001U, 1'000'999U, 1'999'000U, 2'000'000U}) {
+    EXPECT_EQ(seed_of(instance_of(seed), start_of(seed)), seed);
+    EXPECT_EQ(parse_seeds("=" + seed_text(seed)), Seeds{seed});
+  }
+  EXPECT_EQ(seed_text(1'002'001), "2:1");
+  for (const char* wrong : {"1000:1", "1:1000", "1:", ":1", "1:2:3", "0..1:2"})
+    EXPECT_THROW(parse_seeds(wrong), UsageError) << wrong;
+  EXPECT_THROW(crossed_seeds("=1000", "2"), UsageError);
+  EXPECT_THROW(crossed_seeds("2", "2:1"), UsageError);
 }
 
 TEST(Sweeps, AreCountedBeforeTheyAreMade) {
@@ -215,6 +239,83 @@ TEST(Options, ShortSpecsShowWhatDiffers) {
   EXPECT_EQ(short_spec(table, "sample", complete({})), "sample");
   EXPECT_EQ(short_spec(table, "sample", complete({{"rate", 1e-3}, {"bold", true}})),
             "sample[rate=0.001,bold=true]");
+}
+
+// Foreign text is made valid when it is read and harmless when it is printed. Instants are read
+// back.
+
+TEST(Text, ValidTextStaysToTheByte) {
+  for (const std::string text : {"", "plain", "θ ↦ x̃ = P⁻¹(y)", "\U0001F600", "a\nb\tc"})
+    EXPECT_EQ(valid_utf8(text), text);
+}
+
+// The examples of the Unicode standard, section 3.9, "U+FFFD substitution of maximal subparts".
+TEST(Text, WhatIsNoUtf8IsReplaced) {
+  const std::string broken = "\uFFFD";
+  EXPECT_EQ(valid_utf8("x\xff"), "x" + broken);
+  EXPECT_EQ(valid_utf8("\xC0\xAF"), broken + broken) << "overlong";
+  EXPECT_EQ(valid_utf8("\xED\xA0\x80"), broken + broken + broken) << "a surrogate";
+  EXPECT_EQ(valid_utf8("\xF4\x91\x92\x93"), broken + broken + broken + broken);
+  EXPECT_EQ(valid_utf8("\xE1\x80\xE2\xF0\x91\x92\xF1\xBF"
+                       "A"),
+            broken + broken + broken + broken + "A");
+  EXPECT_EQ(valid_utf8("\xCE"), broken) << "cut inside of a character";
+}
+
+TEST(Text, IsCutBetweenCharacters) {
+  const std::string text = "aθ\U0001F600z";  // of 1, 2, 4 and 1 bytes
+  EXPECT_EQ(cut(text, 0), "");
+  EXPECT_EQ(cut(text, 1), "a");
+  EXPECT_EQ(cut(text, 2), "a");
+  EXPECT_EQ(cut(text, 3), "aθ");
+  for (std::size_t most = 4; most < 7; ++most) EXPECT_EQ(cut(text, most), "aθ");
+  EXPECT_EQ(cut(text, 7), "aθ\U0001F600");
+  EXPECT_EQ(cut(text, 100), text);
+  const std::string rests(10, '\x80');
+  EXPECT_LE(cut(rests, 6).size(), 6U);
+}
+
+TEST(Text, EscapeSequencesAndTurnedDirectionsAreMadeVisible) {
+  EXPECT_EQ(printable("\x1b[31mred\x1b]0;title\x07"), "\\u001b[31mred\\u001b]0;title\\u0007");
+  EXPECT_EQ(printable("\u009b2J"), "\\u009b2J") << "a control character of the second set";
+  EXPECT_EQ(printable("gd\u202exyz\u2066"), "gd\\u202exyz\\u2066");
+  EXPECT_EQ(printable("over\rwritten\x7f"), "over\\u000dwritten\\u007f");
+  EXPECT_EQ(printable("a\xff"), "a\uFFFD");
+  for (const std::string text : {"", "two\nlines\tand θ", "sine × adam[rate=0.1]"})
+    EXPECT_EQ(printable(text), text);
+}
+
+TEST(Text, IsSaidPrintable) {
+  const TemporaryFolder folder;
+  const auto path = folder.path() / "said";
+  std::FILE* out = std::fopen(path.c_str(), "w");
+  say(out, "one \x1b[2J\n");
+  std::fclose(out);
+  EXPECT_EQ(read_text(path), "one \\u001b[2J\n");
+}
+
+TEST(Text, ThatCannotBeWrittenIsAnError) {
+  std::FILE* full = std::fopen("/dev/full", "w");
+  ASSERT_NE(full, nullptr);
+  std::setvbuf(full, nullptr, _IONBF, 0);
+  EXPECT_THROW(say(full, "text"), std::exception);
+  std::fclose(full);
+}
+
+// The seconds by `date -u -d TEXT +%s`.
+TEST(Instant, IsTheUniversalTimeOfSecondsSince1970AndNothingElse) {
+  EXPECT_EQ(instant_text(0), "1970-01-01T00:00:00Z");
+  EXPECT_EQ(instant_text(1769860800), "2026-01-31T12:00:00Z");
+  EXPECT_EQ(instant_from("2024-02-29T23:59:59Z"), 1709251199);
+  for (const std::int64_t seconds : {-1LL, 0LL, 951782400LL, 4102444799LL})
+    EXPECT_EQ(instant_from(instant_text(seconds)), seconds) << instant_text(seconds);
+  EXPECT_EQ(instant_from(instant_text(seconds_now())).value_or(0) / 100, seconds_now() / 100);
+  for (const std::string& text :
+       {std::string(), std::string("2026-01-31"), std::string("2026-01-31T12:00:00"),
+        std::string("2026-01-31T12:00:00Z "), std::string("2026-02-31T12:00:00Z"),
+        std::string("2026-1-31T12:00:00Z"), std::string("yesterday"),
+        std::string("2026-01-31T25:00:00Z"), std::string("2026-01-31T12:00:00Z\0more", 25)})
+    EXPECT_EQ(instant_from(text), std::nullopt) << text;
 }
 
 }  // namespace

@@ -140,7 +140,7 @@ void wire(std::string_view bytes) {
   expect_read_or_refused([&] { method_handshake(text, "it"); });
   expect_read_or_broken([&] {
     const auto line = line_after(bytes);
-    problem_handshake(line->receive_text(Verb::hello, kMostHandshake), line->who());
+    problem_handshake(line->receive_text(Verb::hello, kMostHandshake), line->sender());
     std::array<Real, 3> answer{};
     for (;;) line->receive_answer(Verb::linearize, answer);
   });

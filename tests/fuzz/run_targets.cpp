@@ -18,7 +18,7 @@
 namespace isoline::fuzz {
 namespace {
 
-// But for those that start the program that they are told: what is invented here is never run.
+// Without components that start a program: fuzzed commands are never run.
 const benchmarks::Catalog& catalog() {
   static const benchmarks::Catalog all = [] {
     benchmarks::Catalog whole = benchmarks::builtin_catalog();
@@ -45,7 +45,7 @@ void restore_from(const std::string& path) {
   constexpr double kNever = 1e9;
   try {
     benchmarks::Checkpoint(path, "cell", kNever).restore(*method, meter, theta);
-  } catch (const benchmarks::DamagedCheckpoint&) {  // the cell begins anew
+  } catch (const benchmarks::DamagedCheckpoint&) {  // the cell starts again
   }
 }
 

@@ -1,12 +1,11 @@
-// The U-net against PyTorch's, its products against each other, and what it promises of sameness.
+// The U-net against PyTorch's, its products against each other, and its reproducibility.
 #include <gtest/gtest.h>
 
-#include <array>
 #include <cmath>
-#include <functional>
 
 #include "core/threads.h"
 #include "networks/network.h"
+#include "tests/refusal.h"
 
 namespace isoline::networks {
 
@@ -202,19 +201,13 @@ TEST(Unet, HasThePublishedParametersAndTheStartThatPyTorchDraws) {
   EXPECT_EQ(theta.segment(blocks[3].offset, 16), Vector::Zero(16));
 }
 
-// The sentence of the UsageError.
-std::string refusal(const std::string& spec, const NetworkShape& shape) {
-  try {
-    make_network(spec, shape);
-  } catch (const UsageError& error) {
-    return error.what();
-  }
-  return "";
+std::string refusal_of(const std::string& spec, const NetworkShape& shape) {
+  return refusal([&] { make_network(spec, shape); });
 }
 
 TEST(Unet, AShapeThatDoesNotFitIsOneSentence) {
-  EXPECT_EQ(refusal("unet", grids(60)), "unet: with levels=4 N must be a multiple of 8, got 60");
-  EXPECT_EQ(refusal("unet", {.inputs = 3, .outputs = 2}),
+  EXPECT_EQ(refusal_of("unet", grids(60)), "unet: with levels=4 N must be a multiple of 8, got 60");
+  EXPECT_EQ(refusal_of("unet", {.inputs = 3, .outputs = 2}),
             "unet: the samples must be grids, got columns of 3 numbers");
 }
 

@@ -23,13 +23,6 @@ __attribute__((visibility("default"))) void* malloc(std::size_t size) noexcept {
 #endif
 
 namespace isoline::optimizers {
-
-using problems::Draw;
-using problems::Point;
-using problems::Problem;
-using problems::problem_entry;
-using problems::ProblemRegistry;
-using problems::register_problems;
 namespace {
 
 // FFTW allocates inside of a transform what we cannot give it.
@@ -54,13 +47,9 @@ std::int64_t allocations_of_steps(const Problem& problem, const std::string& spe
 }
 
 TEST(Allocation, FirstOrderStepsAllocateNothingOnceWarm) {
-  ProblemRegistry problems("problem");
-  register_problems(problems);
-  for (const auto& [problem_name, problem_entry] : problems.ready()) {
+  for (const std::string& problem_name : problems::all_problems().ready().names()) {
     if (transforms(problem_name)) continue;
-    const OptionValues options =
-        complete_options(problem_entry.options, problem_name, OptionValues());
-    const Problem problem = problem_entry.make(options, Draw(0, problem_name));
+    const Problem problem = make(problem_name);
     for (const auto& [name, entry] : optimizers()) {
       if (entry.family != Family::first_order) continue;
       EXPECT_EQ(allocations_of_steps(problem, name), 0) << problem_name << " × " << name;
@@ -91,10 +80,10 @@ TEST(Allocation, JacobiansAndHessiansAllocateNothingOnceWarm) {
                            "exponential[mode=learn]", "variably-dimensioned", "linear-chain",
                            "coupled-oscillators[mode=learn]", "quantum-dipole[mode=learn]",
                            "quantum-dipole[loss=residual]", "poisson-hig"})
-    EXPECT_EQ(of_jacobian(published(spec)), 0) << spec;
+    EXPECT_EQ(of_jacobian(make(spec)), 0) << spec;
   EXPECT_EQ(of_jacobian(learned_affine(6)), 0) << "a network without its own";
   for (const char* spec : {"rosenbrock", "brown-dennis", "wood"}) {
-    const Problem problem = published(spec);
+    const Problem problem = make(spec);
     const auto hessian = [&](Matrix& H, Point& at) { problem.hessian(H, at); };
     EXPECT_EQ(allocations_of(problem, hessian), 0) << spec;
   }

@@ -9,14 +9,14 @@
 
 #include "core/spec.h"
 #include "optimizers/optimizer.h"
+#include "tests/problems/make.h"
 
 namespace isoline::optimizers {
 
-using problems::Draw;
-using problems::Problem;
-using problems::ProblemEntry;
-using problems::ProblemRegistry;
-using problems::register_problems;
+using problems::gradient_at;
+using problems::loss_at;
+using problems::loss_at_start;
+using problems::make;
 
 // Those that are made by their name alone.
 inline const OptimizerRegistry& optimizers() {
@@ -26,19 +26,6 @@ inline const OptimizerRegistry& optimizers() {
     return registry.ready();
   }();
   return all;
-}
-
-// A problem of the registry from its spec; as published, that is with seed 0.
-inline Problem published(const std::string& text, std::uint64_t seed = 0) {
-  static const ProblemRegistry all = [] {
-    ProblemRegistry registry("problem");
-    register_problems(registry);
-    return registry;
-  }();
-  const Spec spec = parse_spec(text);
-  const ProblemEntry& entry = all.at(spec.name);
-  return entry.make(complete_options(entry.options, entry.name, options_of(spec)),
-                    Draw(seed, entry.name));
 }
 
 struct Outcome {

@@ -1,14 +1,12 @@
-// Each way to compute a spectral step against the thin SVD, and the laws of spectral steps.
+// Each factorization to compute a spectral step against the thin SVD, and the laws of spectral
+// steps.
 #include <gtest/gtest.h>
 
 #include "optimizers/spectral_step.h"
-#include "run.h"
-#include "trial_problems.h"
+#include "tests/optimizers/run.h"
+#include "tests/optimizers/trial_problems.h"
 
 namespace isoline::optimizers {
-
-using problems::Point;
-using problems::Problem;
 namespace {
 
 SpectralFilter clamped(Real kappa, Real cutoff) {
@@ -17,8 +15,8 @@ SpectralFilter clamped(Real kappa, Real cutoff) {
 
 // Three layers in double; `batch` samples of two outputs each make J wide up to 98.
 Problem network(const std::string& batch, const std::string& activation = "tanh") {
-  return published("sine[mode=learn,xi=2,network=mlp[layers=12-12,precision=double,activation=" +
-                   activation + "],batch=" + batch + ",data=" + batch + "]");
+  return make("sine[mode=learn,xi=2,network=mlp[layers=12-12,precision=double,activation=" +
+              activation + "],batch=" + batch + ",data=" + batch + "]");
 }
 
 constexpr OracleSet kAll{Oracle::forward, Oracle::jacobian, Oracle::pullback, Oracle::pushforward,
@@ -30,13 +28,14 @@ struct Computed {
   Real estimate = 0;  // of the error by a Gram matrix
 };
 
-Computed step_of(const Problem& problem, const Vector& theta, Way way, const SpectralFilter& filter,
-                 const KrylovLimits& krylov = {}, const OracleSet& granted = kAll) {
+Computed step_of(const Problem& problem, const Vector& theta, Factorization factorization,
+                 const SpectralFilter& filter, const KrylovLimits& krylov = {},
+                 const OracleSet& granted = kAll) {
   const auto trace = std::make_unique<Trace>();
   Meter meter(problem, iterations(10), granted, *trace);
   Vector start = theta;
   meter.begin(start);
-  SpectralStep spectral(way, krylov);
+  SpectralStep spectral(factorization, krylov);
   spectral.start(meter);
   Linearization at;
   meter.linearize(theta, at);
@@ -58,7 +57,7 @@ void for_some_points(const std::function<void(const Problem&, const Vector&)>& c
     for (const char* activation : {"tanh", "relu"})
       for (const char* batch : {"8", "97", "150"}) {
         Problem problem = network(batch, activation);
-        Vector theta = run(problem, "hig[rate=0.1,way=svd]", iterations(30)).theta;
+        Vector theta = run(problem, "hig[rate=0.1,factorization=svd]", iterations(30)).theta;
         made.push_back({std::move(problem), std::move(theta)});
       }
     return made;
@@ -81,54 +80,58 @@ std::string filter_text(const SpectralFilter& filter, const Problem& problem) {
          std::to_string(problem.residuals()) + " × " + std::to_string(problem.unknowns());
 }
 
-TEST(SpectralStep, EveryWayAgreesWithTheSvd) {
+TEST(SpectralStep, EveryFactorizationAgreesWithTheSvd) {
   for_some_points([](const Problem& problem, const Vector& theta) {
     const bool is_wide = problem.residuals() < problem.unknowns();
     for (const SpectralFilter& filter : kFilters) {
-      const Vector reference = step_of(problem, theta, Way::svd, filter).step;
+      const Vector reference = step_of(problem, theta, Factorization::svd, filter).step;
       const std::string what = filter_text(filter, problem);
-      expect_near(step_of(problem, theta, Way::qr, filter).step, reference, 1e-10, "qr, " + what);
-      expect_near(step_of(problem, theta, Way::gram, filter).step, reference, 1e-8,
+      expect_near(step_of(problem, theta, Factorization::qr, filter).step, reference, 1e-10,
+                  "qr, " + what);
+      expect_near(step_of(problem, theta, Factorization::gram, filter).step, reference, 1e-8,
                   "gram, " + what);
-      for (const Way way : {Way::layers, Way::split})
+      for (const Factorization factorization : {Factorization::layers, Factorization::split})
         if (is_wide)
-          expect_near(step_of(problem, theta, way, filter).step, reference, 1e-8,
-                      std::string(way_text(way)) + ", " + what);
+          expect_near(step_of(problem, theta, factorization, filter).step, reference, 1e-8,
+                      std::string(factorization_text(factorization)) + ", " + what);
     }
     const SpectralFilter damped = tikhonov_filter(1e-4);
-    const Vector reference = step_of(problem, theta, Way::svd, damped).step;
-    expect_near(step_of(problem, theta, Way::cholesky, damped).step, reference, 1e-8,
+    const Vector reference = step_of(problem, theta, Factorization::svd, damped).step;
+    expect_near(step_of(problem, theta, Factorization::cholesky, damped).step, reference, 1e-8,
                 "cholesky, " + filter_text(damped, problem));
   });
 }
 
 // All σ within a hundredth of the largest, so that a Gram matrix rounds none of them away; some lie
 // below the cut-off, and count as it.
-TEST(SpectralStep, EveryWayClampsAlike) {
+TEST(SpectralStep, EveryFactorizationClampsAlike) {
   const Problem problem = network("3");
   for (const Real kappa : {0.5, 1.0}) {
     const SpectralFilter filter = clamped(kappa, 0.3);
-    const Vector reference = step_of(problem, problem.start(), Way::svd, filter).step;
+    const Vector reference = step_of(problem, problem.start(), Factorization::svd, filter).step;
     const Vector discarded =
-        step_of(problem, problem.start(), Way::svd, power_filter(kappa, 0.3)).step;
+        step_of(problem, problem.start(), Factorization::svd, power_filter(kappa, 0.3)).step;
     EXPECT_GT((discarded - reference).norm(), 0.01 * reference.norm());
-    for (const Way way : {Way::qr, Way::gram, Way::layers, Way::split, Way::automatic})
-      expect_near(step_of(problem, problem.start(), way, filter).step, reference, 1e-10,
-                  std::string(way_text(way)));
-    expect_near(step_of(problem, problem.start(), Way::lanczos, filter, {.tolerance = 0}).step,
-                reference, 1e-10, "Lanczos");
+    for (const Factorization factorization :
+         {Factorization::qr, Factorization::gram, Factorization::layers, Factorization::split,
+          Factorization::automatic})
+      expect_near(step_of(problem, problem.start(), factorization, filter).step, reference, 1e-10,
+                  std::string(factorization_text(factorization)));
+    expect_near(
+        step_of(problem, problem.start(), Factorization::lanczos, filter, {.tolerance = 0}).step,
+        reference, 1e-10, "Lanczos");
   }
 }
 
 // With the published cut-offs, at which a Gram matrix alone would not do. The reference itself
 // knows a σ to rounding of the largest, so that a share of 1e-10 is left out here.
-TEST(SpectralStep, TheAutomaticWayAgreesWithTheSvd) {
+TEST(SpectralStep, TheAutomaticFactorizationAgreesWithTheSvd) {
   for_some_points([](const Problem& problem, const Vector& theta) {
     for (const Real cutoff : {1e-7, 1e-6, 1e-5, 1e-4})
       for (const Real kappa : {0.5, 1.0}) {
         const SpectralFilter filter = power_filter(kappa, cutoff);
-        expect_near(step_of(problem, theta, Way::automatic, filter).step,
-                    step_of(problem, theta, Way::svd, filter).step, 1e-8,
+        expect_near(step_of(problem, theta, Factorization::automatic, filter).step,
+                    step_of(problem, theta, Factorization::svd, filter).step, 1e-8,
                     std::to_string(cutoff) + ", " + filter_text(filter, problem));
       }
   });
@@ -143,25 +146,26 @@ TEST(SpectralStep, OfThePublishedProblemsAgreesWithTheSvd) {
                    std::string("steps by QR and the SVD of R")},
         {"coupled-oscillators[mode=learn,batch=32]", 1e-6, "hig[rate=2]", split},
         {"quantum-dipole[mode=learn,batch=2]", 1e-5, "hig[rate=0.5,cutoff=1e-5]", split}}) {
-    const Problem problem = published(spec);
+    const Problem problem = make(spec);
     for (const int steps : {0, 100}) {
       const Vector theta =
           steps > 0 ? run(problem, method, iterations(steps)).theta : problem.start();
       const SpectralFilter filter = power_filter(0.5, cutoff);
-      const Computed automatic = step_of(problem, theta, Way::automatic, filter);
-      expect_near(automatic.step, step_of(problem, theta, Way::svd, filter).step, 1e-8, spec);
+      const Computed automatic = step_of(problem, theta, Factorization::automatic, filter);
+      expect_near(automatic.step, step_of(problem, theta, Factorization::svd, filter).step, 1e-8,
+                  spec);
       EXPECT_EQ(automatic.said, said) << spec;
     }
   }
 }
 
-// To an order of magnitude, which is what the automatic way relies on.
+// To an order of magnitude, which is what the automatic factorization relies on.
 TEST(SpectralStep, TheErrorOfAGramMatrixIsEstimated) {
   for_some_points([](const Problem& problem, const Vector& theta) {
     for (const Real cutoff : {1e-4, 1e-3}) {
       const SpectralFilter filter = power_filter(1, cutoff);
-      const Vector reference = step_of(problem, theta, Way::svd, filter).step;
-      const Computed by_gram = step_of(problem, theta, Way::gram, filter);
+      const Vector reference = step_of(problem, theta, Factorization::svd, filter).step;
+      const Computed by_gram = step_of(problem, theta, Factorization::gram, filter);
       const Real error = (by_gram.step - reference).norm() / reference.norm();
       EXPECT_LE(error, 5 * by_gram.estimate) << filter_text(filter, problem);
       EXPECT_LE(by_gram.estimate, cutoff < 1e-3 ? 1e-6 : 1e-8) << filter_text(filter, problem);
@@ -170,11 +174,11 @@ TEST(SpectralStep, TheErrorOfAGramMatrixIsEstimated) {
 }
 
 // y = diag(1, share) x: the least singular value decides, and the run says what was done.
-TEST(SpectralStep, TheAutomaticWayIsChosenByTheLeastSingularValueKept) {
+TEST(SpectralStep, TheAutomaticFactorizationIsChosenByTheLeastSingularValueKept) {
   const auto said = [](Real share, const SpectralFilter& filter) {
     const Matrix M = Eigen::Vector2d(1, share).asDiagonal();
     const Problem problem = linear(M, Eigen::Vector2d(1, 1), Eigen::Vector2d(0, 0));
-    return step_of(problem, problem.start(), Way::automatic, filter, {},
+    return step_of(problem, problem.start(), Factorization::automatic, filter, {},
                    {Oracle::forward, Oracle::jacobian})
         .said;
   };
@@ -192,13 +196,13 @@ TEST(SpectralStep, TheAutomaticWayIsChosenByTheLeastSingularValueKept) {
 TEST(SpectralStep, ANetworkOfDenseLayersIsTreatedLayerByLayerWhereJIsWide) {
   const Problem wide = network("8"), tall = network("200");
   const auto needs = [](const Problem& problem) {
-    return needs_of(Way::automatic, power_filter(0.5, 1e-6), problem);
+    return needs_of(Factorization::automatic, power_filter(0.5, 1e-6), problem);
   };
   EXPECT_TRUE(needs(wide).contains(Oracle::layer_factors));
   EXPECT_FALSE(needs(tall).contains(Oracle::layer_factors));
-  EXPECT_EQ(step_of(wide, wide.start(), Way::automatic, power_filter(0.5, 1e-2)).said,
+  EXPECT_EQ(step_of(wide, wide.start(), Factorization::automatic, power_filter(0.5, 1e-2)).said,
             "steps by the Gram matrix layer by layer");
-  EXPECT_NE(objection_to(Way::layers, tall), "");
+  EXPECT_NE(objection_to(Factorization::layers, tall), "");
 }
 
 // Small σ carry a large part of the step, and the estimate must still be no less than the error.
@@ -207,19 +211,19 @@ TEST(SpectralStep, LanczosComesAsNearAsItSays) {
     for (const SpectralFilter& filter :
          {power_filter(-1, 0), power_filter(0, 1e-2), power_filter(0.5, 1e-2),
           decaying_filter(0.5, 1e-4), decaying_filter(1, 1e-4)}) {
-      const Vector reference = step_of(problem, theta, Way::svd, filter).step;
-      expect_near(step_of(problem, theta, Way::lanczos, filter, {.tolerance = 1e-3}).step,
+      const Vector reference = step_of(problem, theta, Factorization::svd, filter).step;
+      expect_near(step_of(problem, theta, Factorization::lanczos, filter, {.tolerance = 1e-3}).step,
                   reference, 1e-3, filter_text(filter, problem));
-      expect_near(step_of(problem, theta, Way::lanczos, filter, {.tolerance = 0}).step, reference,
-                  1e-8, "whole space, " + filter_text(filter, problem));
+      expect_near(step_of(problem, theta, Factorization::lanczos, filter, {.tolerance = 0}).step,
+                  reference, 1e-8, "whole space, " + filter_text(filter, problem));
     }
   });
 }
 
 TEST(SpectralStep, LanczosKeepsToItsVectorsAndSaysHowFarItCame) {
   const Problem problem = network("40");
-  const Outcome result =
-      run(problem, "hig[way=lanczos,cutoff=1e-2,krylov-vectors=7,rate=1e-2]", iterations(3));
+  const Outcome result = run(
+      problem, "hig[factorization=lanczos,cutoff=1e-2,krylov-vectors=7,rate=1e-2]", iterations(3));
   EXPECT_EQ(result.trace->last.series[0], 7);
   EXPECT_GT(result.trace->last.series[1], 1e-3);
   EXPECT_STREQ(result.trace->claimed, "steps by Lanczos");
@@ -238,7 +242,7 @@ TEST(Filters, AreTheirFormulas) {
   EXPECT_DOUBLE_EQ(decaying_filter(0.5, 0.25)(2, of), 2 / std::pow(4 + 4, 0.75));
 }
 
-// The laws of spectral steps, by every way to compute them.
+// The laws of spectral steps, by every factorization to compute them.
 
 constexpr Real kKappas[] = {-1, 0, 0.25, 0.5, 0.75, 1};
 
@@ -262,10 +266,12 @@ Problem scaled(Real loss, Real output) {
 
 TEST(SpectralStep, ScalesWithTheLossAndWithThePower1MinusKappaOfTheOutput) {
   constexpr Real kScale = 7;
-  for (const Way way : {Way::svd, Way::qr, Way::gram, Way::layers, Way::automatic})
+  for (const Factorization factorization :
+       {Factorization::svd, Factorization::qr, Factorization::gram, Factorization::layers,
+        Factorization::automatic})
     for (const Real kappa : kKappas) {
       const auto step = [&](const Problem& problem) {
-        return step_of(problem, problem.start(), way, power_filter(kappa, 1e-6)).step;
+        return step_of(problem, problem.start(), factorization, power_filter(kappa, 1e-6)).step;
       };
       const Vector one = step(scaled(1, 1));
       expect_near(step(scaled(kScale, 1)), kScale * one, 1e-10, "loss");
@@ -287,26 +293,25 @@ TEST(SpectralStep, ScalesWithMinusHalfOf1PlusKappaOfEqualSamples) {
                     .input = Eigen::Vector2d(0.4, -0.7).replicate(1, count),
                     .minimum = 0});
   };
-  for (const Way way : {Way::svd, Way::qr, Way::gram, Way::automatic})
+  for (const Factorization factorization :
+       {Factorization::svd, Factorization::qr, Factorization::gram, Factorization::automatic})
     for (const Real kappa : kKappas) {
       const SpectralFilter filter = power_filter(kappa, 1e-6);
-      const Vector one = step_of(copies(1), copies(1).start(), way, filter).step;
-      const Vector many = step_of(copies(kCopies), copies(kCopies).start(), way, filter).step;
+      const Vector one = step_of(copies(1), copies(1).start(), factorization, filter).step;
+      const Vector many =
+          step_of(copies(kCopies), copies(kCopies).start(), factorization, filter).step;
       expect_near(many, std::pow(kCopies, -(1 + kappa) / 2) * one, 1e-10, std::to_string(kappa));
     }
 }
 
 TEST(SpectralStep, KappaMinusOneIsTheGradient) {
   const Problem problem = network("8");
-  Point at;
-  Matrix g(problem.outputs(), problem.samples());
-  Vector gradient(problem.unknowns());
-  problem.forward(problem.start(), at);
-  problem.cotangent(at, g);
-  problem.pullback(g, gradient, at);
-  for (const Way way : {Way::svd, Way::qr, Way::gram, Way::layers, Way::lanczos})
-    expect_near(step_of(problem, problem.start(), way, power_filter(-1, 0)).step, -gradient, 1e-10,
-                "gradient");
+  const Vector gradient = gradient_at(problem, problem.start());
+  for (const Factorization factorization :
+       {Factorization::svd, Factorization::qr, Factorization::gram, Factorization::layers,
+        Factorization::lanczos})
+    expect_near(step_of(problem, problem.start(), factorization, power_filter(-1, 0)).step,
+                -gradient, 1e-10, "gradient");
 }
 
 }  // namespace

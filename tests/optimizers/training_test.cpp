@@ -1,32 +1,29 @@
-// What the formulas of the training methods promise of each other, also on the multilayer
-// perceptron, where short trainings end as the paper says.
+// Identities between training methods, also on the multilayer perceptron, where short trainings end
+// as the paper says; and variants of scale-invariant physics training.
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <sstream>
+
 #include "core/decompose.h"
-#include "run.h"
-#include "trial_problems.h"
+#include "tests/optimizers/run.h"
+#include "tests/optimizers/trial_problems.h"
 
 namespace isoline::optimizers {
-
-using networks::Block;
-using networks::Network;
-using problems::Point;
-using problems::Problem;
 namespace {
 
 // The same eigenvectors by other means: to rounding times the condition number of the Hessian.
 TEST(Sip, ByNewtonIsSaddleFreeNewtonForTheIdentityNetwork) {
   for (const char* problem : {"sine[xi=1]", "sine", "rosenbrock", "exponential", "box3d"})
     for (int steps : {1, 5})
-      expect_near(run(published(problem), "sip[inverse=newton]", iterations(steps)).theta,
-                  run(published(problem), "saddle-free-newton", iterations(steps)).theta, 1e-9,
-                  problem);
+      expect_near(run(make(problem), "sip[inverse=newton]", iterations(steps)).theta,
+                  run(make(problem), "saddle-free-newton", iterations(steps)).theta, 1e-9, problem);
 }
 
 TEST(Sip, ByNewtonIsNewtonWhereTheLossIsConvexAndUnlimited) {
   expect_near(
-      run(published("exponential"), "sip[inverse=newton,max-loss-change=1e9]", iterations(4)).theta,
-      run(published("exponential"), "newton", iterations(4)).theta, 1e-14, "k = 1");
+      run(make("exponential"), "sip[inverse=newton,max-loss-change=1e9]", iterations(4)).theta,
+      run(make("exponential"), "newton", iterations(4)).theta, 1e-14, "k = 1");
 }
 
 // S̄ is not below S where all are equal, and the published comparison is strict.
@@ -38,7 +35,7 @@ TEST(Sip, ByNewtonLimitsEqualCurvatures) {
 }
 
 TEST(Sip, InnerStepsInvertAgainFromWhereTheLastEnded) {
-  const Problem problem = published("sine");
+  const Problem problem = make("sine");
   expect_near(run(problem, "sip[inverse=newton,inner-steps=4]", iterations(1)).theta,
               run(problem, "sip[inverse=newton]", iterations(4)).theta, 1e-15, "sine");
 }
@@ -51,12 +48,12 @@ TEST(Sip, NetworkStepsGoTowardTheSameTarget) {
 }
 
 TEST(Sip, SaysWhichInverseAProblemLacks) {
-  EXPECT_EQ(why("sip[inverse=damped]", published("heat[N=4]")), "");
-  EXPECT_EQ(why("sip[inverse=damped]", published("sine")),
+  EXPECT_EQ(why("sip[inverse=damped]", make("heat[N=4]")), "");
+  EXPECT_EQ(why("sip[inverse=damped]", make("sine")),
             "inverse=damped, and the physics has an inverse, but not a damped one");
-  EXPECT_EQ(why("sip[inverse=damped]", published("box3d")), "the physics has no local inverse");
+  EXPECT_EQ(why("sip[inverse=damped]", make("box3d")), "the physics has no local inverse");
   EXPECT_EQ(why("sip[inverse=newton]", far_root()), "the problem offers no second derivatives");
-  EXPECT_EQ(why("sip[inverse=newton]", published("exponential[n=9]")),
+  EXPECT_EQ(why("sip[inverse=newton]", make("exponential[n=9]")),
             "inverse=newton is for up to 8 inputs of the physics, which has 9");
 }
 
@@ -154,7 +151,7 @@ TEST(Libraries, LearnFromFiniteData) {
 
 // 42 parameters in double; fresh samples, fewer residuals than parameters for batches up to 20.
 Problem smooth(const std::string& batch) {
-  return published(
+  return make(
       "sine[mode=learn,xi=2,network=mlp[layers=8,activation=tanh,precision=double],"
       "batch=" +
       batch + "]");
@@ -189,14 +186,14 @@ TEST(LevenbergMarquardt, LearnsFromFreshBatchesWideAndTall) {
 }
 
 TEST(Rescaled, DirectionsByGradientAndByTruthAgreeOnANetworkOfOneOutput) {
-  const Problem problem = published("exponential[mode=learn,batch=20]");
+  const Problem problem = make("exponential[mode=learn,batch=20]");
   EXPECT_EQ(run(problem, "rescaled", iterations(20)).theta,
             run(problem, "rescaled[by=truth]", iterations(20)).theta);
 }
 
-// The labels are drawn from all branches of the inverse sine, whose mean is none of them.
+// The labels are drawn from all branches of the inverse sine; their mean is not a solution.
 TEST(Supervised, FailsOnTheSineWhereSipDoesNot) {
-  const Problem problem = published("sine[mode=learn,xi=4]");
+  const Problem problem = make("sine[mode=learn,xi=4]");
   const Real supervised = run(problem, "supervised", iterations(1500)).trace->last.x_error;
   const Real sip =
       run(problem, "sip[inverse=newton,proxy=l1]", iterations(1500)).trace->last.x_error;
@@ -204,7 +201,7 @@ TEST(Supervised, FailsOnTheSineWhereSipDoesNot) {
 }
 
 TEST(TrainingMethods, LowerTheLossOfAPerceptron) {
-  const Problem problem = published("sine[mode=learn,xi=1,network=mlp[layers=16-16],batch=30]");
+  const Problem problem = make("sine[mode=learn,xi=1,network=mlp[layers=16-16],batch=30]");
   for (const auto& [spec, steps] : {std::pair{"adahessian", 200},
                                     {"hessian-free", 20},
                                     {"kfac[rate=0.1,damping=1]", 200},
@@ -220,6 +217,246 @@ TEST(TrainingMethods, LowerTheLossOfAPerceptron) {
     const Outcome result = run(problem, spec, iterations(steps));
     EXPECT_LT(result.trace->last.loss, 0.1 * result.trace->start_loss) << spec;
   }
+}
+
+// Variants of scale-invariant physics training: the stopping rule of theorem 3, labels of two-stage
+// training, Newton's step in x, and the series that methods record.
+
+std::vector<std::string> series_names(const Trace& trace) {
+  std::vector<std::string> names;
+  std::istringstream lines(trace.series_names);
+  for (std::string line; std::getline(lines, line);) names.push_back(line);
+  return names;
+}
+
+// The last value of a series.
+Real shown(const Outcome& outcome, const std::string& name) {
+  const std::vector<std::string> names = series_names(*outcome.trace);
+  const auto found = std::ranges::find(names, name);
+  EXPECT_NE(found, names.end()) << name;
+  return outcome.trace->last.series[found - names.begin()];
+}
+
+const std::string kGentle = "network-optimizer=gd[rate=0.1]";
+
+// y* − P(x + U) = (1 − η)(y* − y): τ = 1 − (1 − η)², and ‖U‖ = η ‖M⁻¹(y* − y)‖.
+TEST(SipTheorem3, MeasuresTauAndKInClosedForm) {
+  const Problem problem = learned_affine(8, 8);
+  for (const Real step : {1.0, 0.5, 0.1}) {
+    const Outcome result =
+        run(problem, "sip-theorem-3[step=" + std::to_string(step) + "]", iterations(1));
+    EXPECT_NEAR(shown(result, "τ of U"), 1 - std::pow(1 - step, 2), 1e-12);  // rounding
+    Point at;
+    problem.forward(problem.start(), at);
+    Matrix solved(2, 8);
+    ASSERT_TRUE(problem.local_inverse(problem.target(), solved, at).all());
+    const Real length = step * (solved - at.x()).norm() / std::sqrt(8);
+    EXPECT_NEAR(shown(result, "length of U"), length, 1e-12 * length);
+    const Real K = length / at.loss;
+    EXPECT_NEAR(shown(result, "K of U"), K, 1e-12 * K);
+  }
+}
+
+// L ≤ (1 − τ/2) L after each inversion, and not before the last of its steps.
+TEST(SipTheorem3, StopsAsSoonAsHalfOfTheFallIsReached) {
+  const Problem problem = learned_affine(8, 8);
+  for (const char* step : {"1", "0.5"}) {
+    const Real tau = 1 - std::pow(1 - std::stod(step), 2);
+    Vector theta = problem.start();
+    const std::string options = "[step=" + std::string(step) + "," + kGentle;
+    const Outcome result = run(problem, "sip-theorem-3" + options + "]", iterations(1));
+    const auto steps = static_cast<int>(shown(result, "network steps of U"));
+    ASSERT_GE(steps, 2);
+    const Real goal = (1 - tau / 2) * loss_at_start(problem);
+    EXPECT_LE(loss_at(problem, result.theta), goal);
+    const std::string fewer = ",network-steps=" + std::to_string(steps - 1) + "]";
+    const Outcome before = run(problem, "sip" + options + fewer, iterations(1));
+    EXPECT_GT(loss_at(problem, before.theta), goal);
+    const std::string same = ",network-steps=" + std::to_string(steps) + "]";
+    EXPECT_EQ(run(problem, "sip" + options + same, iterations(1)).theta, result.theta);
+  }
+}
+
+// The theorem: (1 − τ/2)ⁿ after n inversions, and U = 0 at the minimum that is found.
+TEST(SipTheorem3, ConvergesAsTheTheoremSays) {
+  const Problem problem = learned_affine(8, 8);
+  constexpr int kInversions = 40;
+  const Outcome result =
+      run(problem, "sip-theorem-3[most-steps=100000," + kGentle + "]", iterations(kInversions));
+  Real loss = loss_at_start(problem);
+  for (const Vector& theta : result.path) {
+    const Real now = loss_at(problem, theta);
+    EXPECT_LE(now, 0.5 * loss * (1 + 1e-12));  // τ = 1; rounding
+    loss = now;
+  }
+  EXPECT_LE(shown(result, "length of U"), 1e-5);
+}
+
+TEST(SipTheorem3, TakesNoMoreStepsThanItMay) {
+  const Outcome result =
+      run(learned_affine(8, 8), "sip-theorem-3[most-steps=3,network-optimizer=gd[rate=1e-6]]",
+          iterations(2));
+  EXPECT_EQ(shown(result, "network steps of U"), 3);
+  EXPECT_EQ(shown(result, "U not followed, share"), 1) << "of all updates, kept or not";
+  EXPECT_EQ(shown(run(learned_affine(8, 8), "sip-theorem-3[most-steps=100000," + kGentle + "]",
+                      iterations(2)),
+                  "U not followed, share"),
+            0);
+}
+
+TEST(SipTheorem3, IsSipForTheIdentityNetwork) {
+  for (const char* problem : {"square", "sine[xi=1]", "exponential"}) {
+    const Outcome one = run(make(problem), "sip-theorem-3[step=0.3]", iterations(5)),
+                  other = run(make(problem), "sip[step=0.3]", iterations(5));
+    EXPECT_EQ(one.path, other.path) << problem;
+    EXPECT_EQ(shown(one, "network steps of U"), 1) << problem;
+  }
+}
+
+// Theorem 1: repeated updates U run into P⁻¹(y*), of whichever branch.
+TEST(Sip, UpdatesRunToConvergenceInvertThePhysics) {
+  for (const char* problem : {"sine[xi=1]", "sine[xi=32]", "exponential"}) {
+    const Problem inverted = make(problem);
+    const Real start = loss_at_start(inverted);
+    const auto left = [&](const std::string& steps) {
+      const std::string spec = "sip[inverse=newton,inner-steps=" + steps + "]";
+      return loss_at(inverted, run(inverted, spec, iterations(1)).theta) / start;
+    };
+    EXPECT_GT(left("1"), 1e-12) << problem;
+    EXPECT_LT(left("200"), 1e-20) << problem;
+  }
+}
+
+// Theorem 2: with U = −λ ∂L/∂x the network is taught by backpropagation.
+TEST(Sip, ByTheGradientIsBackpropagation) {
+  const Problem problem = make(
+      "sine[mode=learn,xi=2,network=mlp[layers=8-6,activation=tanh,precision=double],batch=7]");
+  for (const auto& [inside, alone] :
+       {std::pair{"step=1,network-optimizer=gd[rate=0.1]", "gd[rate=0.1]"},
+        {"step=0.25,network-optimizer=gd[rate=0.4]", "gd[rate=0.1]"},
+        {"step=1,network-optimizer=adam[rate=1e-2]", "adam[rate=1e-2]"}}) {
+    const std::string spec = std::string("sip[inverse=gradient,") + inside + "]";
+    const Vector one = run(problem, spec, iterations(20)).theta,
+                 other = run(problem, alone, iterations(20)).theta;
+    expect_near(one, other, 1e-12, inside);
+  }
+}
+
+// The last of four samples lies out of the physics' reach, L = ½(x² + 1)²: it moves by −2x(x² + 1),
+// and the others by their inverses.
+TEST(Sip, FallsBackToTheGradientWhereTheInverseFails) {
+  const Problem problem = learned_line(true);
+  const std::string rest = "network-optimizer=gd[rate=0.1]]";
+  const Outcome moved = run(problem, "sip[fallback=gradient," + rest, iterations(1)),
+                stayed = run(problem, "sip[" + rest, iterations(1));
+  EXPECT_EQ(shown(moved, "samples moved along the gradient"), 1);
+  const Real pull = 0.1 * 2 * 1 * (1 + 1) / 4;  // at x = 1, of the mean over four, at that rate
+  EXPECT_LE((moved.theta - stayed.theta + pull * Eigen::Vector2d(1, 1)).norm(), 1e-14);
+  EXPECT_EQ(shown(run(problem, "sip[fallback=gradient," + rest, iterations(3)),
+                  "samples moved along the gradient"),
+            3);
+}
+
+TEST(Newton, FallsBackToTheGradientWhereTheHessianIsSingular) {
+  const Matrix M = Eigen::Vector2d(1, 0).asDiagonal();
+  const Problem problem = linear(M, Eigen::Vector2d(1, 2), Eigen::Vector2d(0, 1));
+  for (const std::string name : {"newton", "inverse-gradient"}) {
+    EXPECT_EQ(run(problem, name, iterations(3)).theta, problem.start()) << name;
+    const Outcome result = run(problem, name + "[fallback=gradient,rate=0.5]", iterations(3));
+    EXPECT_EQ(result.theta, run(problem, "gd[rate=0.5]", iterations(3)).theta) << name;
+    EXPECT_EQ(shown(result, "steps along the gradient"), 3) << name;
+  }
+  const Outcome regular = run(easy(), "newton[fallback=gradient]", iterations(1));
+  EXPECT_EQ(shown(regular, "steps along the gradient"), 0);
+}
+
+// What a method shows stands behind what the problem shows, and changes nothing.
+TEST(Series, OfProblemAndMethodStandSideBySide) {
+  const std::string learned = "hig-toy[network=mlp[layers=3,activation=tanh,precision=double]";
+  const Outcome plain = run(make(learned + "]"), "sip-theorem-3", iterations(3)),
+                watched = run(make(learned + ",watch=noise]"), "sip-theorem-3", iterations(3));
+  EXPECT_EQ(plain.path, watched.path);
+  EXPECT_EQ(shown(plain, "τ of U"), shown(watched, "τ of U"));
+  EXPECT_EQ(shown(plain, "y1 at t = π/9"), shown(watched, "y1 at t = π/9"));
+  EXPECT_TRUE(std::isfinite(shown(watched, "noise of U: direction")));
+  EXPECT_EQ(series_names(*watched.trace).size(), series_names(*plain.trace).size() + 4);
+  EXPECT_TRUE(std::isnan(plain.trace->point[0].series[series_names(*plain.trace).size() - 1]));
+}
+
+TEST(TwoStage, LabelsOfAnInvertibleProblemAreTheGenerators) {
+  const Problem problem = learned_affine(5);
+  const Outcome labelled = run(problem, "two-stage", iterations(20)),
+                told = run(problem, "supervised", iterations(20));
+  expect_near(labelled.theta, told.theta, 1e-10, "rounding, by Adam");
+}
+
+// x² = (2 + in)² from an untrained network that says −1: its own branch, or that of x₀ = 0, by
+// which the inverse takes the positive root.
+TEST(TwoStage, LearnsTheBranchWhereTheSolverStarts) {
+  Matrix input(1, 4);
+  input << -1, -0.5, 0.5, 1;
+  const auto problem = [&] {
+    return Problem({.physics = std::make_unique<Squares>(),
+                    .start = Eigen::Vector2d(-1, 0),
+                    .target = (2 + input.array()).square().matrix(),
+                    .network = std::make_unique<Line>(),
+                    .input = input,
+                    .minimum = 0});
+  };
+  const Budget budget{.iterations = 400, .target = 0};
+  const std::string rule = "network-optimizer=gd[rate=0.5]]";
+  const Vector zero = run(problem(), "two-stage[from=zero," + rule, budget).theta,
+               network = run(problem(), "two-stage[from=network," + rule, budget).theta;
+  EXPECT_LE((zero - Eigen::Vector2d(2, 1)).norm(), 1e-6);
+  EXPECT_LE((network - Eigen::Vector2d(-2, -1)).norm(), 1e-6);
+}
+
+TEST(TwoStage, LabelsFixedSamplesOnceAndFreshOnesEachTime) {
+  const auto inversions = [](const Problem& problem) {
+    const Outcome result = run(problem, "two-stage", iterations(7));
+    return result.trace->last.counts[static_cast<std::size_t>(Oracle::inverse)];
+  };
+  EXPECT_EQ(inversions(learned_affine(4, 4)), 1);
+  EXPECT_EQ(inversions(learned_affine(4)), 7);
+}
+
+// P(x) = eˣ from x with the target y*: ½(eˣ − y*)² has g = (eˣ − y*) eˣ and h = 2e²ˣ − y* eˣ.
+class Exponential final : public DensePhysics {
+ public:
+  Exponential() : DensePhysics(1, 1) {}
+  void value(VectorRef x, VectorOut y) const override { y[0] = std::exp(x[0]); }
+  void derivative(VectorRef x, BatchOut J) const override { J(0, 0) = std::exp(x[0]); }
+  bool has_curvature() const override { return true; }
+  void second(VectorRef x, VectorRef u, BatchOut H) const override {
+    H(0, 0) = u[0] * std::exp(x[0]);
+  }
+};
+
+Real newton_step(Real x, Real target, const std::string& options) {
+  const Problem problem({.physics = std::make_unique<Exponential>(),
+                         .start = Vector::Constant(1, x),
+                         .target = Matrix::Constant(1, 1, target)});
+  return run(problem, "sip-newton" + options, iterations(1)).theta[0] - x;
+}
+
+TEST(SipNewton, StepsAsThePublishedScript) {
+  for (const auto& [x, target] : {std::pair{0.0, 1e-3}, {-1.0, 0.9}, {-4.0, 0.5}, {0.3, 0.2}}) {
+    const Real e = std::exp(x), g = (e - target) * e, h = 2 * e * e - target * e;
+    const Real sign = g > 0 ? 1 : -1;
+    EXPECT_NEAR(newton_step(x, target, ""), -sign * std::abs(g / h), 1e-12 * std::abs(g / h));
+    EXPECT_NEAR(newton_step(x, target, "[clip=0.1]"), -sign * std::min(0.1, std::abs(g / h)),
+                1e-13);
+    const Real damped = std::abs(g / (h + 0.01));
+    EXPECT_NEAR(newton_step(x, target, "[damping=0.01]"), -sign * damped, 1e-12 * damped);
+  }
+  EXPECT_EQ(newton_step(0, 2, ""), 0);  // h = 0: no step
+}
+
+// Along eigenvectors: where the Hessian is definite it is Newton's method.
+TEST(SipNewton, OfSeveralInputsIsNewtonsMethodWhereTheLossIsConvex) {
+  const Vector one = run(easy(), "sip-newton", iterations(1)).theta,
+               other = run(easy(), "newton", iterations(1)).theta;
+  expect_near(one, other, 1e-13, "rounding by the condition, 7");
 }
 
 }  // namespace

@@ -11,11 +11,8 @@ namespace isoline::optimizers {
 using networks::Block;
 using networks::LayerFactor;
 using networks::Network;
-using problems::Batch;
 using problems::DensePhysics;
 using problems::HalfSquared;
-using problems::Inverse;
-using problems::Problem;
 
 // y = M x, M (m, k); x by least squares, unique where M has full column rank.
 class Linear final : public DensePhysics {

@@ -258,7 +258,7 @@ class Page(InBrowser):
                                 check=True, capture_output=True, text=True).stdout
         self.assertIn("3 cells: 3 cached", answer)
 
-    # --- drawings that flatter nobody
+    # --- drawings without bias
 
     def test_labels_at_the_ends_of_lines_are_placed_once_whatever_their_heights(self):
         for heights in ([100] * 40, [100 + 0.1 * i for i in range(40)], [1e9, 1e9, float(2**53)],
@@ -469,7 +469,7 @@ class Page(InBrowser):
 
 
 class Learned(unittest.TestCase):
-    """A report of learned problems alone is told by the error in x."""
+    """A report of learned problems alone uses the error in x."""
 
     def test_it_opens_with_who_is_nearest_in_x(self):
         with tempfile.TemporaryDirectory() as folder:

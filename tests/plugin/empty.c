@@ -1,3 +1,3 @@
-// A library that is none for Isoline: it exports something else.
+// A library without components for Isoline: it exports another symbol.
 int nothing(void);
 int nothing(void) { return 0; }

@@ -18,7 +18,7 @@ static int dimension(void* self, isoline_sizes* sizes) {
   sizes->inputs = is_wrong("no inputs") ? 0 : is_wrong("2^40 inputs") ? 1ULL << 40 : 2;
   sizes->outputs = is_wrong("no outputs") ? 0 : is_wrong("2^40 outputs") ? 1ULL << 40 : 3;
   sizes->kept = is_wrong("2^40 kept") ? 1ULL << 40 : 2;
-  sizes->inverse = is_wrong("inverse of no kind") ? 9 : ISOLINE_EXACT;
+  sizes->inverse = is_wrong("inverse of unknown kind") ? 9 : ISOLINE_EXACT;
   sizes->minimum = 0;
   return is_wrong("no dimension");
 }
@@ -133,9 +133,9 @@ static void spoil(isoline_component* c) {
   if (is_wrong("null pushforward")) c->pushforward = NULL;
   if (is_wrong("null pullback")) c->pullback = NULL;
   if (is_wrong("null jacobian")) c->capabilities |= ISOLINE_JACOBIAN;
-  if (is_wrong("null inverse") || is_wrong("inverse of no kind"))
+  if (is_wrong("null inverse") || is_wrong("inverse of unknown kind"))
     c->capabilities |= ISOLINE_INVERSE;
-  if (is_wrong("inverse of no kind")) c->inverse = no_inverse;
+  if (is_wrong("inverse of unknown kind")) c->inverse = no_inverse;
   if (is_wrong("alien capability")) c->capabilities |= 1ULL << 40;
   if (is_wrong("no capability")) c->capabilities = 0;
   if (is_wrong("null step")) c->capabilities = ISOLINE_STEP;

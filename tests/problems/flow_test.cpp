@@ -6,9 +6,9 @@
 #include <functional>
 #include <numbers>
 
-#include "core/errors.h"
 #include "core/random.h"
 #include "problems/physics/flow_step.h"
+#include "tests/refusal.h"
 
 namespace isoline::problems {
 namespace {
@@ -256,14 +256,7 @@ TEST(Flow, IsRecoveredByItsReversalTheBetterTheShorterTheSteps) {
 }
 
 TEST(Flow, RefusesWhatCannotBeSimulated) {
-  const auto law_of = [](const FlowOptions& o) -> std::string {
-    try {
-      check(o);
-    } catch (const UsageError& error) {
-      return error.what();
-    }
-    return "";
-  };
+  const auto law_of = [](const FlowOptions& o) { return refusal([&] { check(o); }); };
   EXPECT_EQ(law_of({}), "");
   EXPECT_EQ(law_of({.N = 63}), "the flow needs an even number of cells a side, at least 4, got 63");
   EXPECT_EQ(law_of({.dt = -1}), "the time step must be above 0, got -1");

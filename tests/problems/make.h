@@ -22,10 +22,22 @@ inline Problem make(const std::string& text, std::uint64_t seed = 0) {
                     Draw(seed, entry.name));
 }
 
-inline Real loss_at_start(const Problem& problem) {
+inline Real loss_at(const Problem& problem, const Vector& theta) {
   Point at;
-  problem.forward(problem.start(), at);
+  problem.forward(theta, at);
   return at.loss;
+}
+
+inline Real loss_at_start(const Problem& problem) { return loss_at(problem, problem.start()); }
+
+inline Vector gradient_at(const Problem& problem, const Vector& theta) {
+  Point at;
+  Matrix g(problem.outputs(), problem.samples());
+  Vector gradient(problem.unknowns());
+  problem.forward(theta, at);
+  problem.cotangent(at, g);
+  problem.pullback(g, gradient, at);
+  return gradient;
 }
 
 }  // namespace isoline::problems

@@ -9,6 +9,7 @@
 #include "core/threads.h"
 #include "make.h"
 #include "problems/physics/flow_physics.h"
+#include "tests/refusal.h"
 
 namespace isoline::problems {
 namespace {
@@ -176,24 +177,20 @@ TEST(NavierStokes, HasNoLossWhereTheFlowBlowsUp) {
   EXPECT_TRUE(std::isfinite(at.loss));
 }
 
-std::string refusal(const std::string& spec) {
-  try {
-    make(spec);
-  } catch (const UsageError& error) {
-    return error.what();
-  }
-  return "";
+std::string refusal_of(const std::string& spec) {
+  return refusal([&] { make(spec); });
 }
 
 TEST(NavierStokes, RefusesBadInputInOneSentence) {
-  EXPECT_EQ(refusal("navier-stokes[N=63]"),
+  EXPECT_EQ(refusal_of("navier-stokes[N=63]"),
             "the flow needs an even number of cells a side, at least 4, got 63");
-  EXPECT_NE(refusal("navier-stokes[dt=-1]").find("dt must be in"), std::string::npos);
-  EXPECT_NE(refusal("navier-stokes[viscosity=-1]").find("viscosity must be in"), std::string::npos);
-  EXPECT_NE(refusal("navier-stokes[viscosity=5]").find("too large for its explicit step"),
+  EXPECT_NE(refusal_of("navier-stokes[dt=-1]").find("dt must be in"), std::string::npos);
+  EXPECT_NE(refusal_of("navier-stokes[viscosity=-1]").find("viscosity must be in"),
             std::string::npos);
-  EXPECT_NE(refusal("navier-stokes[dt=3]").find("more than half the domain"), std::string::npos);
-  EXPECT_NE(refusal("navier-stokes[mode=learn,watch=spectrum]").find("a velocity has two"),
+  EXPECT_NE(refusal_of("navier-stokes[viscosity=5]").find("too large for its explicit step"),
+            std::string::npos);
+  EXPECT_NE(refusal_of("navier-stokes[dt=3]").find("more than half the domain"), std::string::npos);
+  EXPECT_NE(refusal_of("navier-stokes[mode=learn,watch=spectrum]").find("a velocity has two"),
             std::string::npos);
 }
 

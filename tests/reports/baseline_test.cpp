@@ -1,4 +1,4 @@
-// What a repository keeps of results holds later results to the same standard as the records do;
+// The baseline of a repository finds the same differences in later results as the records do;
 // rounding alone is not called worse, and a fault in a cell that hangs on rounding is still found.
 #include <gtest/gtest.h>
 

@@ -1,5 +1,4 @@
-// What is shown of a claim is what its verdict was made of, in every format, and moves with the
-// data.
+// The evidence shown for a claim is the data of its verdict, in every format.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// Verdicts on claims against figures worked out by hand, and what false claims come to.
+// Verdicts on claims against numbers computed by hand, and on false claims.
 #include "reports/sections/claims.h"
 
 #include <gtest/gtest.h>
@@ -168,7 +168,7 @@ TEST(Claims, OfOnePublishedRunAreComparedWithWhereOneFurtherRunOfOursWouldLie) {
   EXPECT_EQ(verdict_on(six, asked), Verdict::consistent) << "more than three times as great";
   asked.published["value"] = 7;
   EXPECT_EQ(verdict_on(six, asked), Verdict::not_reproduced);
-  // Of a ratio it must be settled who is ahead.
+  // A ratio is reproduced only if the order is statistically significant.
   asked.kind = "ratio";
   asked.published["value"] = 2;
   EXPECT_EQ(verdict_on(six, asked), Verdict::consistent);
@@ -452,6 +452,19 @@ TEST(Claims, OfAReportAreToldInEveryFormatByTheSameFigures) {
   }
   EXPECT_EQ(claims_json(judgements)[0].at("measured").at("value"), 10);
   EXPECT_TRUE(claims_section({}).is_empty());
+}
+
+TEST(Claims, OfEachVerdictStandInTheSummaryFromTheRefutedToTheUndecided) {
+  std::vector<Judgement> judgements(kVerdictNames.size(), judgement_of({}, adam_and_sip()));
+  for (std::size_t i = 0; i < judgements.size(); ++i) {
+    judgements[i].verdict = static_cast<Verdict>(i);
+    judgements[i].id = kVerdictNames[i];
+  }
+  const Section section = claims_summary(judgements);
+  const auto& rows = section.tables.at(0).rows;
+  ASSERT_EQ(rows.size(), judgements.size());
+  EXPECT_EQ(rows.front().at(0).text, name_of(Verdict::not_reproduced));
+  EXPECT_EQ(rows.back().at(0).text, name_of(Verdict::not_comparable));
 }
 
 // Two steps from (3, 4): to (3, 1), then to (1.5, −0.5). y is x, but for its last point.

@@ -1,13 +1,18 @@
-// The formats: foreign text is harmless in each, and all print the same figure.
+// Formats and their sentences: foreign text is harmless in each, and all print the same number.
 #include "reports/formats/formats.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <limits>
 #include <nlohmann/json.hpp>
+#include <regex>
 #include <sstream>
+#include <stdexcept>
 
+#include "core/files.h"
 #include "core/json.h"
 #include "core/records/json_view.h"
 #include "reports/report.h"
@@ -19,10 +24,6 @@ namespace isoline::reports {
 namespace {
 
 constexpr const char* kHostile = "<b>&|\"x\"</script><!--@all `$\\evil_{1}%#~^\n=cmd,*[";
-
-bool has(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
 
 Study hostile_study() {
   Study study;
@@ -246,6 +247,140 @@ TEST(Rerun, TheCommandAsksForTheCell) {
             "--rates none");
   request.budget.work = 500;
   EXPECT_TRUE(has(rerun_command(request), " --work 500"));
+}
+
+// CSV that reads back, and COCO. tests/exchange/coco_test.py reads the data folders of COCO.
+
+// Rows of fields by RFC 4180, read the plain way.
+std::vector<std::vector<std::string>> rows_of(const std::string& csv) {
+  std::vector<std::vector<std::string>> rows(1, {""});
+  bool is_quoted = false;
+  for (std::size_t i = 0; i < csv.size(); ++i) {
+    std::string& field = rows.back().back();
+    if (is_quoted && csv.compare(i, 2, "\"\"") == 0) {
+      field += csv[i++];
+    } else if (csv[i] == '"') {
+      is_quoted = !is_quoted;
+    } else if (is_quoted || (csv[i] != ',' && csv[i] != '\r' && csv[i] != '\n')) {
+      field += csv[i];
+    } else if (csv[i] == ',') {
+      rows.back().emplace_back();
+    } else if (csv.compare(i, 2, "\r\n") == 0) {
+      rows.push_back({""});
+      ++i;
+    } else {
+      ADD_FAILURE() << "a line ends by itself at " << i;
+    }
+  }
+  EXPECT_EQ(rows.back(), std::vector<std::string>{""}) << "the last line ends, too";
+  rows.pop_back();
+  return rows;
+}
+
+std::string at(const std::vector<std::vector<std::string>>& rows, std::size_t row,
+               const std::string& column) {
+  const auto place = std::ranges::find(rows[0], column) - rows[0].begin();
+  return rows.at(row).at(static_cast<std::size_t>(place));
+}
+
+TEST(CurvesCsv, HasARowAPointOfEachRunAndEveryRowAllColumns) {
+  const Study study = study_of({{"square", "gd", 2}, {"sine", "adam", 3}});
+  const auto rows = rows_of(curves_csv(compare_optimizers(study)));
+  EXPECT_EQ(rows.size(), 1U + 2 * 51);
+  for (const auto& row : rows) EXPECT_EQ(row.size(), rows[0].size());
+}
+
+TEST(CurvesCsv, ReadsBackToTheSameNumbersAndTexts) {
+  Record record = record_of({.problem = "p[note=\"a, \"\"b\"\"\"]", .hits = 4});
+  record.curve.loss = {0.1, 1.0 / 3, std::numeric_limits<Real>::infinity(), std::nan("")};
+  record.verified["1e-6"] = true;
+  Study study;
+  study.runs = {record};
+  const auto rows = rows_of(curves_csv(compare_optimizers(study)));
+  EXPECT_EQ(at(rows, 1, "problem"), record.request.problem.spec);
+  EXPECT_EQ(std::stod(at(rows, 1, "loss")), 0.1);
+  EXPECT_EQ(std::stod(at(rows, 2, "loss")), 1.0 / 3);
+  EXPECT_EQ(at(rows, 3, "loss"), "inf");
+  EXPECT_EQ(at(rows, 4, "loss"), "nan");
+  EXPECT_EQ(at(rows, 2, "work"), "2");
+  EXPECT_EQ(at(rows, 2, "verified_1e-6"), "true");
+  EXPECT_EQ(at(rows, 2, "verified_1e-3"), "") << "it is not known";
+  EXPECT_EQ(at(rows, 2, "imported"), "false");
+}
+
+TEST(CurvesCsv, ARunWithoutACurveHasOneRow) {
+  Study study;
+  study.runs = {record_of({.hits = 0, .status = Status::failed})};
+  const auto rows = rows_of(curves_csv(compare_optimizers(study)));
+  ASSERT_EQ(rows.size(), 2U);
+  EXPECT_EQ(rows[1].size(), rows[0].size());
+  EXPECT_EQ(at(rows, 1, "status"), "failed");
+  EXPECT_EQ(at(rows, 1, "loss"), "");
+}
+
+TEST(Coco, LeavesOutAndNamesWhatItCannotSay) {
+  const Study study = study_of({{"square", "gd", 2}});
+  const Export coco = coco_export(compare_optimizers(study));
+  ASSERT_EQ(coco.left_out.size(), 1U);
+  EXPECT_NE(coco.left_out[0].find("square"), std::string::npos);
+  EXPECT_EQ(coco.files.size(), 1U) << "the list of functions alone";
+}
+
+TEST(Coco, FoldersOfMethodsAreToldApart) {
+  Study study = study_of({{"square", "gd[rate=1]", 2}, {"square", "gd(rate=1)", 2}});
+  study.sheets.push_back(
+      {.kind = "problem", .name = "square", .spec = "square", .options_text = "[]", .unknowns = 1});
+  const Export coco = coco_export(compare_optimizers(study));
+  EXPECT_TRUE(coco.files.contains("gd-rate-1/isoline_f1.info"));
+  EXPECT_TRUE(coco.files.contains("gd-rate-1-2/isoline_f1.info"));
+}
+
+// The sentences of reports/words/: each is well formed, and sources use all of them and no others.
+
+TEST(Words, FillTheNamesThatTheirKeysDeclare) {
+  for (const auto& [key, sentence] : all_sentences()) {
+    const bool has_format = sentence.text.find(':', sentence.text.find('{')) != std::string::npos;
+    const Value one = has_format ? Value(Real{1}) : Value(std::int64_t{1});
+    EXPECT_NO_THROW(filled(key, std::vector<Value>(sentence.names.size(), one))) << key;
+    EXPECT_EQ(sentence.text.find("  "), std::string::npos) << key;
+  }
+}
+
+TEST(Words, FollowCountsAndFormats) {
+  EXPECT_EQ(words("remarks.unreadable", 1), "Unreadable: 1 file, listed under failures.");
+  EXPECT_EQ(words("remarks.unreadable", 2), "Unreadable: 2 files, listed under failures.");
+  EXPECT_NE(words("limits.detectable", 0.0123).find(" 0.012 "), std::string::npos);
+  EXPECT_EQ(worded_table("calls", "1e-6", "").columns,
+            (std::vector<std::string>{"optimizer", "runs to 1e-6"}));
+}
+
+TEST(Words, WithoutSuchAKeyOrForOtherValuesAreErrors) {
+  EXPECT_THROW(words("no.such.key"), std::logic_error);
+  EXPECT_THROW(words("limits.detectable"), std::logic_error);
+  EXPECT_THROW(words("limits.detectable", 1, 2), std::logic_error);
+}
+
+// A key is written whole in a source, or its beginning is ("column." + name), or it is a part that
+// a table, a plot or a section takes by its name.
+TEST(Words, AreThoseThatSourcesName) {
+  std::string sources;
+  for (const char* folder : {"reports/sections", "reports/page"})
+    for (const auto& entry :
+         std::filesystem::directory_iterator(std::filesystem::path(ISOLINE_SOURCE_DIR) / folder))
+      sources += read_text(entry.path());
+  const auto has = [&](const std::string& text) { return sources.find(text) != std::string::npos; };
+  static const std::regex part(
+      R"((.+)\.(title|caption|columns|meanings|align|x|y|lead|otherwise|reading))"),
+      beginning(R"(([a-z]+\.).+)");
+  std::smatch match;
+  for (const auto& [key, sentence] : all_sentences()) {
+    const bool is_part = std::regex_match(key, match, part) && has('"' + match[1].str() + '"');
+    const bool is_named = std::regex_match(key, match, beginning) && has('"' + match[1].str());
+    EXPECT_TRUE(has('"' + key + '"') || is_part || is_named) << key << " is not used";
+  }
+  static const std::regex use(R"(words\(\s*"([a-z0-9.-]+[a-z0-9])\")");
+  for (std::sregex_iterator it(sources.begin(), sources.end(), use), end; it != end; ++it)
+    EXPECT_TRUE(all_sentences().contains((*it)[1].str())) << (*it)[1] << " is not there";
 }
 
 }  // namespace

@@ -1,25 +1,29 @@
-// What the page is made of: medians to targets as the tables have them, filters' attributes, size.
+// The page: medians to targets equal those of the tables, attributes of filters, fields, size.
 #include "reports/page/page.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <sstream>
 
 #include "core/files.h"
 #include "core/json.h"
 #include "core/oracle.h"
+#include "core/results/ranking.h"
 #include "core/results/study.h"
+#include "core/results/table.h"
 #include "reports/report.h"
+#include "reports/sections/figures.h"
+#include "reports/sections/sections.h"
 #include "reports/sections/words.h"
 #include "tests/reports/fixture.h"
 
 namespace isoline::reports {
 namespace {
-
-bool has(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
 
 // Three seeds, one of which stops at target 20: τ = 1e-4.
 Study uneven_study(bool has_hits) {
@@ -73,8 +77,8 @@ TEST(Page, RowsSectionsAndCellsNameWhatTheyAreAbout) {
     EXPECT_TRUE(has(page, part)) << part;
 }
 
-// Two labels of one method have one colour, and one row of the audit: the page is told, it cuts no
-// label.
+// Two labels of one method have one colour and one row of the audit. The page contains the method
+// and does not parse the label.
 TEST(Page, IsToldTheMethodOfEachOptimizer) {
   Record tuned = record_of({.optimizer = "gd[rate=0.5]"});
   tuned.request.rates = "learn-tuned.json";
@@ -169,6 +173,356 @@ TEST(Page, TenThousandRecordsStayBelowEightMegabytes) {
                                       .work_per_hit = static_cast<std::int64_t>(5 + p + 11 * s)}));
   EXPECT_EQ(study.runs.size(), 10'000U);
   EXPECT_LT(html_report(document_of(compare_optimizers(study))).size(), kMost);
+}
+
+// Rankings for each target and measure, brief labels, learned problems at equal work, kinds as
+// colours.
+
+const std::vector<Result> kThree = {
+    {"a", "gd", 4},   {"a", "adam", 2}, {"a", "sip", 1},  {"b", "gd", 1},    {"b", "adam", 3},
+    {"b", "sip", 0},  {"c", "gd", 5},   {"c", "adam", 5}, {"c", "sip", 2},   {"d", "gd", 2},
+    {"d", "adam", 0}, {"d", "sip", 1},  {"e", "gd", 64},  {"e", "adam", 30}, {"e", "sip", 1}};
+
+TEST(Ladders, AreTheStandingsOfTheReportAtItsTolerances) {
+  const Study study = study_of(kThree);
+  const Comparison c = compare_optimizers(study);
+  for (std::size_t t = 0; t < kTolerances.size(); ++t)
+    for (const Ranked& ranked : standings_to(c, Measure::work, kTolerances[t].rung)) {
+      const Standing& own = c.optimizers[ranked.optimizer].standings[t];
+      EXPECT_EQ(ranked.standing.score, own.score);
+      EXPECT_EQ(ranked.standing.solved, own.solved);
+      EXPECT_EQ(ranked.standing.wins, own.wins);
+      EXPECT_EQ(ranked.standing.typical, own.typical);
+      EXPECT_EQ(ranked.standing.reached, own.reached);
+    }
+}
+
+TEST(Ladders, ByAnotherMeasureAreTheStandingsOfAReportByIt) {
+  const Study study = study_of(kThree);
+  const Comparison by_work = compare_optimizers(study);
+  const Comparison by_time = compare_optimizers(study, yardstick_at(Measure::time, 1e-6));
+  for (const Ranked& ranked : standings_to(by_work, Measure::time, kTolerances[kTightest].rung)) {
+    const std::string& label = by_work.optimizers[ranked.optimizer].label;
+    const auto same = std::ranges::find(by_time.optimizers, label, &OptimizerAxis::label);
+    EXPECT_DOUBLE_EQ(ranked.standing.score, same->tightest().score) << label;
+  }
+}
+
+TEST(Scores, StandWithinTheirIntervals) {
+  const Study study = study_of(kThree);
+  const Comparison c = compare_optimizers(study);
+  const std::vector<Interval> intervals = score_intervals(c);
+  for (std::size_t s = 0; s < c.optimizers.size(); ++s) {
+    EXPECT_LE(intervals[s].low, c.optimizers[s].tightest().score);
+    EXPECT_GE(intervals[s].high, c.optimizers[s].tightest().score);
+  }
+}
+
+TEST(MethodPairs, TurnWhenTheirMethodsDo) {
+  const Study study = study_of(kThree);
+  const Comparison c = compare_optimizers(study);
+  for (const MethodPair& pair : all_pairs(c)) {
+    const Costs costs = median_costs(c, kTightest);
+    Families families;
+    for (const auto& [name, problems] : problems_by_name(c)) families.push_back(problems);
+    const Pairing turned = pairing_of(costs, families, pair.b, pair.a);
+    EXPECT_EQ(turned.wins, pair.pairing.losses);
+    EXPECT_EQ(turned.ties, pair.pairing.ties);
+    EXPECT_NEAR(turned.typical() * pair.pairing.typical(), 1, 1e-12);
+    EXPECT_NEAR(turned.interval()[0] * pair.pairing.interval()[1], 1, 1e-12);
+  }
+}
+
+TEST(BriefLabels, ShowWhatDiffersAndNoTwoBecomeTheSame) {
+  const std::vector<std::string> labels = {
+      "adam",
+      "gd[rate=0.1]",
+      "sip[inverse=newton,network-optimizer=adam[rate=1e-3],proxy=l1]",
+      "sip[inverse=analytic,network-optimizer=adam[rate=1e-3],proxy=l1]",
+      "rescaled[by=truth,network-optimizer=adam[rate=1e-3]], tuned",
+      "no[specification"};
+  EXPECT_EQ(
+      brief_labels(labels),
+      (std::vector<std::string>{"adam", "gd[rate=0.1]", "sip[inverse=newton]",
+                                "sip[inverse=analytic]", "rescaled, tuned", "no[specification"}));
+  const std::vector<std::string> alike = {"rescaled[by=truth,network-optimizer=adam[rate=1e-3]]",
+                                          "rescaled"};
+  EXPECT_NE(brief_labels(alike)[0], brief_labels(alike)[1]);
+}
+
+Record learned(const char* optimizer, std::vector<std::int64_t> work, std::vector<Real> x_error) {
+  Record record = record_of({.problem = "sine[mode=learn]", .optimizer = optimizer});
+  record.request.problem.is_learned = true;
+  record.curve = {};
+  record.hits.reset();
+  for (std::size_t i = 0; i < work.size(); ++i) {
+    record.curve.iteration.push_back(static_cast<std::int64_t>(i));
+    record.curve.work.push_back(work[i]);
+    record.curve.wall_seconds.push_back(static_cast<Real>(i));
+    record.curve.loss.push_back(x_error[i] / 2);
+    record.curve.x_error.push_back(x_error[i]);
+  }
+  record.curve.processor_seconds = record.curve.gradient_norm = record.curve.step_norm =
+      record.curve.wall_seconds;
+  record.summary.work = work.back();
+  record.summary.iterations = record.request.budget.iterations = record.curve.iteration.back();
+  record.summary.x_error = x_error.back();
+  return record;
+}
+
+// The errors in x of adam and sip at the least work that any method was allowed: at 200 adam has 2,
+// at the end it would have 0.1. A run that failed before is infinite. One that diverged after two
+// of six steps counts with its last finite value, is marked, and does not lower the common work.
+TEST(EqualWork, IsTheLeastThatAnyMethodWasAllowed) {
+  const struct {
+    Record adam, sip;
+    Status adam_ends, sip_ends;
+    std::int64_t adam_steps, sip_steps;
+    Real work, adam_error, sip_error;
+  } cases[] = {{learned("adam", {0, 100, 200, 300}, {4, 3, 2, 0.1}),
+                learned("sip", {0, 80, 160, 240}, {4, 2, 1, 0.5}), Status::budget, Status::budget,
+                3, 3, 240, 2, 0.5},
+               {learned("adam", {0, 100}, {4, 3}), learned("sip", {0, 50, 200}, {4, 2, 1}),
+                Status::crashed, Status::budget, 3, 2, 0, kNever, 1},
+               {learned("adam", {0, 100, 200, 300, 400, 500, 600}, {4, 3, 2, 1, 0.5, 0.3, 0.2}),
+                learned("sip", {0, 90, 180}, {4, 2, NAN}), Status::budget, Status::diverged, 6, 6,
+                540, 0.3, 2}};
+  for (const auto& each : cases) {
+    Study study;
+    study.runs = {each.adam, each.sip};
+    study.runs[0].status = each.adam_ends;
+    study.runs[1].status = each.sip_ends;
+    study.runs[0].request.budget.iterations = each.adam_steps;
+    study.runs[1].request.budget.iterations = each.sip_steps;
+    const Comparison c = compare_optimizers(study);
+    const EqualWork equal = equal_work(c, 0);
+    if (each.work > 0) {
+      EXPECT_EQ(equal.work, each.work);
+    }
+    for (std::size_t s = 0; s < c.optimizers.size(); ++s) {
+      const bool is_sip = c.optimizers[s].label == "sip";
+      EXPECT_EQ(equal.methods[s]->x_error.median, is_sip ? each.sip_error : each.adam_error);
+      EXPECT_EQ(equal.methods[s]->diverged, is_sip && each.sip_ends == Status::diverged ? 1U : 0U);
+    }
+    const bool is_sip_nearest = each.sip_error < each.adam_error;
+    EXPECT_EQ(c.optimizers[equal.nearest_first()[0]].label, is_sip_nearest ? "sip" : "adam");
+  }
+}
+
+// A tolerance of the loss says little of a network.
+TEST(Order, IsOfProblemsThatAreNotLearned) {
+  Study study = study_of(kThree);
+  study.runs.push_back(learned("adam", {0, 100}, {4, 3}));
+  study.runs.push_back(learned("sip", {0, 50}, {4, 2}));
+  const Comparison c = compare_optimizers(study);
+  for (const std::size_t p : c.order.settings) EXPECT_FALSE(c.problems[p].is_learned);
+  EXPECT_EQ(c.order.settings.size(), 5U);
+}
+
+// A colour is of a kind in every report; within it no two look alike.
+TEST(Kinds, HaveOneColourAndTellTheirMethodsApart) {
+  Comparison c;
+  const Sheet adaptive{.kind = "optimizer", .name = "adam", .mathematics = "adaptive"};
+  for (const char* label : {"adam", "adam, tuned", "adagrad", "lion", "shampoo", "adan"})
+    c.optimizers.push_back({.label = label, .sheet = &adaptive});
+  c.optimizers.push_back({.label = "mine", .method = "mine"});
+  std::set<std::string> looks;
+  std::istringstream rules(kind_rules(c));
+  std::string rule;
+  for (std::size_t s = 0; std::getline(rules, rule); ++s) {
+    EXPECT_NE(rule.find(s + 1 < c.optimizers.size() ? "var(--adaptive)" : "var(--other)"),
+              std::string::npos);
+    looks.insert(rule.substr(rule.find('{')));
+  }
+  EXPECT_EQ(looks.size(), c.optimizers.size());
+}
+
+// Fields: the best of each kind, their captions, histories and bytes.
+
+Sheet sheet_of(const char* kind, const std::string& name, const std::string& mathematics = "") {
+  Sheet sheet{.kind = kind, .name = name, .spec = name, .options_text = "[]"};
+  sheet.mathematics = mathematics;
+  sheet.inverse = "none";
+  return sheet;
+}
+
+class ShownFields : public testing::Test {
+ protected:
+  // x* is (1, 2), y* (4, 4), and a run goes from x = 0 to `end` times x*.
+  void add(const char* optimizer, const char* kind, std::int64_t per_hit, float end,
+           std::uint64_t seed = 0) {
+    add_frames(
+        optimizer, kind, per_hit,
+        {.iterations = {0, 50}, .shape = {4, 1, 2}, .numbers = {4, 4, 1, 2, 0, 0, end, 2 * end}},
+        seed);
+  }
+  void add_frames(const char* optimizer, const char* kind, std::int64_t per_hit, FieldFrames fields,
+                  std::uint64_t seed = 0) {
+    Record record = record_of(
+        {.problem = "grid", .optimizer = optimizer, .seed = seed, .work_per_hit = per_hit});
+    fields.digest = digest(field_file(fields));
+    record.fields = fields;
+    folder.add(record);
+    write_text(field_path(folder.path() / "runs" / record.file_name()), field_file(fields));
+    folder.add(sheet_of("optimizer", optimizer, kind));
+    records.push_back(record);
+  }
+  std::optional<FoundFields> found(
+      const Field& field = {.rows = 1, .columns = 2, .x = {"source", "1/m²"}, .y = {"potential"}}) {
+    Sheet sheet = sheet_of("problem", "grid");
+    sheet.field = field;
+    folder.add(sheet);
+    folder.add(plan_of(records));
+    study = read_study({folder.path()});
+    c = compare_optimizers(study);
+    return found_fields(c, 0);
+  }
+  std::string name(const FoundField& one) const { return c.optimizers[one.optimizer].label; }
+
+  ResultFolder folder;
+  std::vector<Record> records;
+  Study study;
+  Comparison c;
+};
+
+TEST_F(ShownFields, AreOfTheBestOfEachKind) {
+  add("slow", "gradient", 9, 0.5F);
+  add("fast", "gradient", 2, 0.9F);
+  add("newton", "second-order", 1, 1.0F);
+  const auto all = found();
+  ASSERT_TRUE(all);
+  ASSERT_EQ(all->found.size(), 2U);
+  EXPECT_EQ(name(all->found[0]), "newton");
+  EXPECT_EQ(name(all->found[1]), "fast");
+  EXPECT_EQ(all->x_scale, 2);
+  EXPECT_EQ(all->y_scale, 4);
+  EXPECT_EQ(all->x.unit, "1/m²");
+  EXPECT_NEAR(all->found[1].apart[0], 1, 1e-7);  // ‖0 − x*‖ / ‖x*‖
+  EXPECT_NEAR(all->found[1].apart[1], 0.1, 1e-6);
+}
+
+TEST_F(ShownFields, OfRunsThatKeptFewerStepsStandBesideTheOthers) {
+  add("newton", "second-order", 1, 1.0F);
+  add_frames("fast", "gradient", 2,
+             {.iterations = {0}, .shape = {3, 1, 2}, .numbers = {4, 4, 1, 2, 0, 0}});
+  const auto all = found();
+  ASSERT_TRUE(all);
+  EXPECT_EQ(all->found.size(), 2U);
+  EXPECT_NE(fields_html(c, *all).find("&lt; 1e-7"), std::string::npos) << "of newton";
+}
+
+TEST_F(ShownFields, AreAllOfOneSeed) {
+  add("newton", "second-order", 1, 1.0F, 3);
+  add("fast", "gradient", 2, 0.9F, 0);
+  const auto all = found();
+  ASSERT_TRUE(all);
+  EXPECT_EQ(all->seed, 3U);
+  EXPECT_EQ(all->found.size(), 1U) << "that of seed 0 has another x*";
+}
+
+TEST_F(ShownFields, ThatAreDamagedGiveWayToTheNextOfTheirKind) {
+  add("slow", "gradient", 9, 0.5F);
+  add("fast", "gradient", 2, 0.9F);
+  write_text(field_path(folder.path() / "runs" / records[1].file_name()), "damaged");
+  const auto all = found();
+  ASSERT_TRUE(all);
+  EXPECT_EQ(name(all->found[0]), "slow");
+}
+
+TEST_F(ShownFields, WithoutAnyAreNothing) {
+  records.push_back(record_of({.problem = "grid", .optimizer = "gd"}));
+  folder.add(records[0]);
+  EXPECT_FALSE(found());
+}
+
+TEST_F(ShownFields, StandInTheArticleWithTheirUnitsScaleAndWhatIsMissing) {
+  add("fast", "gradient", 2, 0.9F);
+  const auto all = found();
+  ASSERT_TRUE(all);
+  const std::string html = fields_html(c, *all);
+  for (const char* words : {"<h4>Fields</h4>", "source, 1/m²", "±4", "potential", "x − x*",
+                            "<output class=at>50</output>", "<output class=apart>= 0.1</output>",
+                            "aria-label=\"x of fast: source, 1/m², from 0.9 to 1.8\""})
+    EXPECT_NE(html.find(words), std::string::npos) << words << " in " << html;
+  std::size_t pictures = 0;
+  for (std::size_t at = 0; (at = html.find("<canvas ", at)) != std::string::npos; ++at) ++pictures;
+  EXPECT_EQ(pictures, 5U) << "y*, x*, x, x − x* and the colours";
+}
+
+TEST_F(ShownFields, AreTheSameBytesInTheDataAndInThePictures) {
+  add("fast", "gradient", 2, 0.9F);
+  const auto all = found();
+  ASSERT_TRUE(all);
+  const Json json = parse_json(fields_json(*all), "fields");
+  const auto& one = json.at("found").at(0);
+  EXPECT_EQ(one.at("iterations"), Json({0, 50}));
+  EXPECT_EQ(one.at("apart"), Json({"= 1", "= 0.1"}));
+  const std::string last = one.at("x").at(1);
+  EXPECT_NE(fields_html(c, *all).find("data-cells=\"" + last + "\""), std::string::npos);
+}
+
+// --- histories
+
+const Field kHistory{
+    .rows = 2, .columns = 1, .x = {"speed before"}, .y = {"speed after"}, .time = 0.5};
+
+class ShownHistory : public ShownFields {
+ protected:
+  // x* = 1 becomes y* = 4, and x = ½ of it 3; of y* the last row alone is known.
+  void SetUp() override {
+    add_frames("fast", "gradient", 2,
+               {.iterations = {7}, .shape = {3, 2, 1}, .numbers = {0, 4, 1, 4, 0.5F, 3}});
+  }
+};
+
+TEST_F(ShownHistory, IsJudgedByItsFirstRowAndHasOneScale) {
+  const auto all = found(kHistory);
+  ASSERT_TRUE(all);
+  EXPECT_TRUE(all->is_history());
+  EXPECT_EQ(all->found[0].apart, std::vector<Real>{0.5});
+  EXPECT_EQ(all->x_scale, 4);
+  EXPECT_EQ(all->y_scale, 4);
+}
+
+TEST_F(ShownHistory, IsDrawnFromTheBottomAndSaysSo) {
+  const auto all = found(kHistory);
+  ASSERT_TRUE(all);
+  const std::string html = fields_html(c, *all);
+  const std::string truth = radix64("\xC0\x90");  // y* = 4, above x* = 1
+  for (const std::string& words :
+       {truth, std::string("x* → y*"), std::string("x − x* → y − y*"),
+        std::string("the lowest row is x, at 0, the highest y, at 0.5"),
+        std::string("speed before → speed after"), std::string("the highest row alone")})
+    EXPECT_NE(html.find(words), std::string::npos) << words << " in " << html;
+  const Json json = parse_json(fields_json(*all), "fields");
+  EXPECT_EQ(json.at("truth"), truth);
+  EXPECT_EQ(json.at("labels"), Json({"x → y", "x − x* → y − y*"}));
+}
+
+TEST_F(ShownHistory, OfOlderRunsThatKeptXAloneIsNone) {
+  Field other = kHistory;
+  other.rows = 14;
+  const auto all = found(other);
+  ASSERT_TRUE(all);
+  EXPECT_FALSE(all->is_history());
+}
+
+// --- bytes
+
+TEST(Radix64, IsThatOfTheStandard) {  // the test vectors of RFC 4648, section 10
+  for (const auto& [bytes, text] :
+       {std::pair("", ""), {"fo", "Zm8="}, {"foob", "Zm9vYg=="}, {"foobar", "Zm9vYmFy"}})
+    EXPECT_EQ(radix64(bytes), text);
+}
+
+TEST(Cells, AreBytesAroundZeroUpToTwiceTheScale) {
+  const std::vector<float> values = {0, 1, -1, 2, -2, 9, -9, 0.5F};
+  const std::string bytes = field_bytes(values, 1);
+  std::vector<int> found;
+  for (const char byte : bytes) found.push_back(static_cast<unsigned char>(byte));
+  EXPECT_EQ(found, (std::vector<int>{128, 192, 64, 255, 1, 255, 1, 160}));
+  EXPECT_EQ(field_bytes({}, 1), "");
+  EXPECT_EQ(static_cast<unsigned char>(field_bytes(values, 0)[1]), 128) << "all is zero";
 }
 
 }  // namespace

@@ -16,7 +16,7 @@ def listed(array):
 
 
 # 12 problems, 5 solvers: log-uniform costs rounded to whole numbers, a sixth of them unsolved; the
-# third problem by nobody, the fourth a tie.
+# third problem by all, the fourth a tie.
 costs = np.round(10 ** random.uniform(0, 3, (12, 5)))
 costs[random.random((12, 5)) < 1 / 6] = INF
 costs[2] = INF

@@ -1,0 +1,382 @@
+// Results of runs: plans in shards, exports, the gate.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <nlohmann/json.hpp>
+
+#include "core/files.h"
+#include "core/json.h"
+#include "core/records/record.h"
+#include "core/status.h"
+#include "tests/cli/shell.h"
+#include "tests/reports/true_record.h"
+
+namespace isoline::benchmarks {
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::string kMatrix =
+    "--problem square,rosenbrock,beale --optimizer gd,adam,newton,ceres-lm --seeds 2 "
+    "--iterations 40 ";
+
+// A plan in parts, in the folder `out`.
+class Shards : public testing::Test {
+ protected:
+  Json plan(const std::string& arguments) const {
+    return parse_json(shell.expect("./isoline plan " + kMatrix + arguments + " --json").out, "it");
+  }
+  Finished run(const std::string& arguments, const Expected& expected = {}) const {
+    return shell.expect("./isoline run " + kMatrix + arguments, expected);
+  }
+  Shell shell;
+};
+
+TEST_F(Shards, APlanSaysWhatADryRunSays) {
+  const std::string dry = run("--out out --dry-run").out;
+  const std::string planned = shell("./isoline plan " + kMatrix + "--out out").out;
+  const std::string counts = "24 cells: 0 cached, 0 inapplicable, 24 to run, ";
+  EXPECT_TRUE(planned.starts_with(counts)) << planned;
+  EXPECT_TRUE(dry.starts_with(counts)) << dry;
+  EXPECT_FALSE(fs::exists(shell.folder() / "out")) << "it only looks";
+}
+
+TEST_F(Shards, AreToldByAPlanAsAMatrixForAWorkflow) {
+  const Json told = plan("--shards 3 --out out");
+  EXPECT_EQ(told.at("cells"), 24);
+  EXPECT_EQ(told.at("missing"), 24);
+  EXPECT_TRUE(told.at("seconds").is_null()) << "no earlier run tells";
+  ASSERT_EQ(told.at("shards").size(), 3U);
+  int cells = 0;
+  for (const Json& shard : told.at("shards")) cells += shard.at("cells").get<int>();
+  EXPECT_EQ(cells, 24);
+  EXPECT_EQ(told.at("shards")[1].at("shard"), "2/3");
+  shell.expect("./isoline validate out");
+  shell.expect("./isoline plan " + kMatrix + "--shards 3 --out out",
+               {.out = {"shard       2/3", "out/predicted.json, written earlier"}});
+}
+
+TEST_F(Shards, ArePredictedByWhatEarlierRunsTook) {
+  run("--out before --no-report --quiet");
+  shell.expect("./isoline plan " + kMatrix + "--shards 2 --out out --from before",
+               {.out = {"24 from earlier runs and 0 from nominal costs"}});
+  shell.expect("./isoline plan " + kMatrix + "--from nowhere",
+               {.exit_code = 1, .err = {"nowhere: no such result folder"}});
+}
+
+// The promise of it all. Measured prices stand in the sheets, which no comparison reads.
+TEST_F(Shards, TogetherAreTheWholeBitForBit) {
+  plan("--shards 3 --out out");
+  run("--out whole --no-report --quiet");
+  for (const char* shard : {"--shard 1/3", "--shard 2/3"})
+    run(std::string("--out out --quiet ") + shard);
+  shell.expect(
+      "SLURM_ARRAY_TASK_ID=6 SLURM_ARRAY_TASK_MIN=4 SLURM_ARRAY_TASK_COUNT=3 ./isoline run " +
+      kMatrix + "--out out --quiet --shard auto");
+  std::size_t records = 0;
+  for (int i = 1; i <= 3; ++i)
+    records += count_records(shell.folder() / fmt::format("out/shards/{}-of-3", i));
+  EXPECT_EQ(records, 24U) << "every cell is run once";
+  shell.expect("./isoline merge out/shards/* --out out/merged");
+  shell.expect("./isoline compare whole out/merged", {.out = {"24 equal"}});
+  const auto sorted_plan = [&](const char* file) {
+    Json cells = read_json(shell.folder() / file).at("cells");
+    std::sort(cells.begin(), cells.end());
+    return cells;
+  };
+  EXPECT_EQ(sorted_plan("whole/plan.json"), sorted_plan("out/merged/plan.json"));
+  run("--out out/merged --quiet");
+  EXPECT_EQ(count_records(shell.folder() / "out/merged"), 24U) << "the union is a result folder";
+}
+
+TEST_F(Shards, ThatAreMissingAreMissedByTheUnion) {
+  run("--out out --shard 1/3 --quiet");
+  EXPECT_FALSE(fs::exists(shell.folder() / "out/shards/1-of-3/report"));
+  shell.expect("./isoline merge out/shards/* --out merged");
+  EXPECT_EQ(read_json(shell.folder() / "merged/plan.json").at("cells").size(), 24U)
+      << "a part never passes for the whole";
+  run("--out out --shard 1/3", {.out = {" 0 run, "}});
+}
+
+// A new division of the plan reuses completed cells.
+TEST_F(Shards, TakeOverWhatOtherDivisionsHaveDone) {
+  for (const char* shard : {"1/3", "2/3", "3/3"})
+    run(std::string("--out out --quiet --shard ") + shard);
+  EXPECT_EQ(plan("--shards 2 --out out").at("cached"), 24);
+  for (const char* shard : {"1/2", "2/2"})
+    run(std::string("--out out --shard ") + shard, {.out = {" 0 run, 12 reused"}});
+  shell.expect("./isoline merge out/shards/* --out merged");
+  EXPECT_EQ(count_records(shell.folder() / "merged"), 24U);
+  run("--out out --shard 1/2 --force", {.out = {" 12 run, 0 reused"}});
+}
+
+TEST_F(Shards, OfAPlanThatIsNotThePredictedOneAreRefused) {
+  plan("--shards 3 --out out");
+  shell.expect("./isoline run --problem sine --optimizer gd --out out --shard 1/3",
+               {.exit_code = 1, .err = {"predicts another plan"}});
+}
+
+// --- status
+
+class Status : public Shards {};
+
+TEST_F(Status, CountsPlannedDoneFailedAndLeft) {
+  plan("--shards 3 --out out");
+  const Finished told = shell.expect("./isoline status out", {.out = {"cannot be predicted"}});
+  EXPECT_TRUE(told.out.starts_with("24 cells: 0 done, 0 of them failed, 0 running, 24 left\n"))
+      << told.out;
+  run("--out out --shard 2/3 --quiet");
+  const std::size_t done = count_records(shell.folder() / "out/shards/2-of-3");
+  const Json json = parse_json(shell("./isoline status out --json").out, "the status");
+  EXPECT_EQ(json.at("done"), done);
+  EXPECT_EQ(json.at("left"), 24 - done);
+  EXPECT_TRUE(json.at("left_seconds").is_null()) << "no earlier run predicts it";
+  EXPECT_GT(json.at("remaining_seconds").get<double>(), 0);
+  EXPECT_EQ(json.at("end").get<std::string>().size(), std::string("2026-01-31T12:00:00Z").size());
+  for (const auto& entry : fs::directory_iterator(shell.folder() / "out/shards/2-of-3/runs")) {
+    Json record = read_json(entry.path());
+    record["status"] = "crashed";
+    write_text(entry.path(), record.dump() + "\n");
+    break;
+  }
+  shell.expect("./isoline status out", {.exit_code = 2, .out = {"1 of them failed"}});
+}
+
+TEST_F(Status, OfARunWithoutShardsGoesByItsPlan) {
+  run("--out out --no-report --quiet");
+  EXPECT_EQ(shell("./isoline status out").out,
+            "24 cells: 24 done, 0 of them failed, 0 running, 0 left\n");
+  shell.expect("mkdir empty; ./isoline status empty", {.exit_code = 1});
+}
+
+// Two cells that would take minutes, looked at while they run, then stopped.
+TEST_F(Status, SeesWhatIsRunning) {
+  const std::string matrix =
+      "--problem 'poisson[N=32]' --optimizer 'gd[rate=1e-9]' --seeds 2 --iterations 100000000 --target 0 ";
+  shell.expect("./isoline run " + matrix +
+                   "--out out --jobs 2 --quiet --no-report & run=$!; told=; tries=0\n"
+                   "while [ $tries -lt 600 ]; do tries=$((tries + 1)); sleep 0.1\n"
+                   "  told=$(./isoline status out 2>/dev/null)\n"
+                   "  case $told in *' 2 running'*) break ;; esac\n"
+                   "done\n"
+                   "kill -TERM $run; wait $run; echo \"$? $told\"; ./isoline status out",
+               {.out = {"130 2 cells: 0 done, 0 of them failed, 2 running, 0 left",
+                        "2 cells: 0 done, 0 of them failed, 0 running, 2 left"}});
+}
+
+// Exports, imported curves, packed folders, reports by other measures, best losses.
+
+// The two commands of docs/exchanging-results.md.
+const std::string kPack =
+    "(cd results && find . -type f ! -name SHA256SUMS ! -path './checkpoints/*' | sort | xargs sha256sum "
+    "> SHA256SUMS) && tar --exclude=checkpoints -czf results.tar.gz results";
+
+class Exchange : public testing::Test {
+ protected:
+  void SetUp() override {
+    shell.expect(
+        "./isoline run --problem square,rosenbrock --optimizer gd,gauss-newton --seeds 2 "
+        "--iterations 50 --quiet --no-report --out results");
+  }
+  Shell shell;
+};
+
+TEST_F(Exchange, APackedFolderIsTheSameFolderElsewhere) {
+  shell.expect(kPack);
+  shell("mkdir there && tar -xzf results.tar.gz -C there");
+  shell.expect("cd there/results && sha256sum --quiet -c SHA256SUMS");
+  shell.expect("./isoline validate there/results");
+  shell.expect("./isoline compare results there/results");
+}
+
+TEST_F(Exchange, AFileThatTheManifestLacksOrThatIsMissingIsNamed) {
+  shell.expect(kPack);
+  shell("cd results/runs && mv \"$(ls | head -n 1)\" 0123456789abcdef-0123456789abcdef.json");
+  shell.expect("./isoline validate results",
+               {.exit_code = 2,
+                .out = {"0123456789abcdef-0123456789abcdef.json is not in SHA256SUMS",
+                        "is missing, and SHA256SUMS lists it"}});
+}
+
+TEST_F(Exchange, AnArchiveIsNoResultFolder) {
+  shell("tar -czf results.tar.gz results");
+  shell.expect("./isoline report results.tar.gz", {.exit_code = 1, .err = {"tar -xf"}});
+}
+
+TEST_F(Exchange, AnImportedCurveStandsInTheTablesAndIsNeverVerified) {
+  shell("printf 'f,nfev\\n24.2,1\\n1,2\\n1e-12,3\\n' > c.csv");
+  shell(
+      "echo '{\"schema\": \"isoline.import/1\", \"problem\": \"rosenbrock\", \"optimizer\": \"theirs\", "
+      "\"seed\": 0, \"source\": \"a paper\", \"date\": \"2026-01-31\", \"columns\": {\"loss\": \"f\", "
+      "\"forward\": \"nfev\"}}' > c.json");
+  shell.expect("python3 " ISOLINE_SOURCE_DIR "/clients/python/import_curve.py c.csv --out results",
+               {.out = {"imported, not verified"}});
+  shell.expect("./isoline report results", {.out = {"theirs §", "§: imported"}});
+  for (const std::string file : {"report.md", "index.html"})
+    EXPECT_TRUE(contains(read_text(shell.folder() / "results/report" / file), "§")) << file;
+  shell.expect("./isoline validate results");
+  shell("./isoline export results --out curves.csv");
+  EXPECT_TRUE(contains(read_text(shell.folder() / "curves.csv"), ",true,,,,"));
+  shell.expect("./isoline baseline results --out base.json");
+  EXPECT_FALSE(contains(read_text(shell.folder() / "base.json"), "theirs"));
+  shell.expect("./isoline merge results --out merged");
+}
+
+TEST_F(Exchange, TwoExportsOfOneFolderAreTheSameText) {
+  const std::string command = "./isoline export results --out ";
+  shell.expect(command + "deep/a && " + command + "b && cmp deep/a b");
+}
+
+// --- `isoline report` at other tolerances and by other measures
+
+class Report : public Exchange {
+ protected:
+  Json yardstick() const {
+    return read_json(shell.folder() / "results" / "report" / "report.json")["yardstick"];
+  }
+};
+
+TEST_F(Report, ByAnyMeasureAtAnyToleranceTellsWhichInItsJson) {
+  for (const std::string by : {"work", "cost", "iterations", "time"}) {
+    shell.expect("./isoline report results --tolerance 1e-4 --by " + by);
+    EXPECT_EQ(yardstick()["by"], by);
+    EXPECT_EQ(yardstick()["tolerances"][2]["name"], "1e-4");
+  }
+  shell.expect("./isoline validate results/report/report.json");
+}
+
+TEST_F(Report, AToleranceBetweenTwoIsTheNextStricterOneAndSaysSo) {
+  shell.expect("./isoline report results --tolerance 5e-5",
+               {.err = {"4e-5, the next stricter one"}});
+  EXPECT_EQ(yardstick()["tolerances"][2]["name"], "4e-5");
+  const Finished exact = shell.expect("./isoline report results --tolerance 1e-5");
+  EXPECT_FALSE(contains(exact.err, "stricter")) << exact.err;
+}
+
+// --- the table of best losses, renewed from runs
+
+TEST(BestVerb, KeepsTheLeastLossOfRunsThatDeclareNoneAndNoOther) {
+  const Shell shell;
+  shell.expect(
+      "./isoline run --problem 'brown-dennis[m=10],rosenbrock' --optimizer gd,levenberg-marquardt "
+      "--rates none --work 500 --seeds 2 --quiet --no-report --out out");
+  shell.expect("./isoline best out --out best.json");
+  const Json table = read_json(shell.folder() / "best.json");
+  ASSERT_EQ(table.at("rows").size(), 1U);
+  const Json& row = table["rows"][0];
+  EXPECT_EQ(row.at("problem"), "brown-dennis");
+  EXPECT_EQ(row.at("options").at("m"), 10);
+  ASSERT_EQ(row.at("losses").size(), 2U);
+  EXPECT_EQ(row["losses"][0].at("optimizer"), "levenberg-marquardt");
+  shell.expect("./isoline validate best.json");
+  shell.expect("./isoline best out --out best.json", {.out = {"improved: 0\n"}});
+  EXPECT_EQ(read_json(shell.folder() / "best.json"), table);
+}
+
+// The gate of this repository on runs of the built program: it fails on each planted fault, with
+// one line that names the cause.
+
+const std::string kRun = "./isoline run --problem square,brown-dennis --iterations 20 --no-report ";
+
+// A baseline of adam, gd and newton on two problems, and the same results beside it.
+class PlantedFault : public testing::Test {
+ protected:
+  void SetUp() override {
+    shell.expect(kRun + "--optimizer adam,gd,newton --out new");
+    shell.expect("./isoline baseline new --perturbations 1 --out base.json");
+    shell.expect("./isoline validate base.json");
+  }
+
+  Finished gate(const Expected& expected) const {
+    return shell.expect("ISOLINE=./isoline BASELINE=base.json bash " ISOLINE_SOURCE_DIR
+                        "/.ci/compare new",
+                        expected);
+  }
+
+  // Every record of an optimizer as a changed program would have written it.
+  void change_records(const std::string& optimizer, const std::function<void(Record&)>& edit) {
+    std::vector<Record> records;
+    for (const auto& entry : fs::directory_iterator(runs)) {
+      Record record = read_record(entry.path());
+      if (record.request.optimizer.name != optimizer) continue;
+      fs::remove(entry.path());
+      records.push_back(std::move(record));
+    }
+    ASSERT_EQ(records.size(), 2U);
+    for (Record& record : records) {
+      edit(record);
+      record.cell = cell_digest(record.request);
+      write_text(runs / record.file_name(), to_json(record).dump());
+    }
+  }
+
+  // It fails, and the last line on standard error is the cause.
+  void expect_fault(int exit_code, const std::string& cause) {
+    const Finished result = gate({.exit_code = exit_code});
+    const std::size_t last = result.err.rfind('\n', result.err.size() - 2);
+    const std::string line = result.err.substr(last == std::string::npos ? 0 : last + 1);
+    EXPECT_TRUE(contains(line, cause)) << result.err;
+    EXPECT_EQ(read_text(shell.folder() / "new/comparison.md"), result.out);
+  }
+
+  Shell shell;
+  fs::path runs = shell.folder() / "new" / "runs";
+};
+
+TEST_F(PlantedFault, NoneLetsTheSameResultsPass) { gate({.out = {"Comparison: equal"}}); }
+
+TEST_F(PlantedFault, InADefaultFailsTheGate) {
+  change_records("adam", [](Record& record) {
+    record.request.optimizer.options.set("epsilon", 1e-2);  // from 1e-8
+    end_at(record, 1.5 * record.summary.loss);
+    record.build_parts["optimizer"] = "0123456789abcdef";
+    record.build = "fedcba9876543210";
+  });
+  expect_fault(kWorse,
+               "worse: adam: default of epsilon 1e-8 → 0.01 (2 cells); 2 cells of adam on ");
+  gate({.exit_code = kWorse, .out = {"another source of the optimizer (2 cells of adam on "}});
+}
+
+TEST_F(PlantedFault, InAFormulaFailsTheGate) {
+  change_records("gd", [](Record& record) { end_at(record, record.summary.loss * (1 + 1e-5)); });
+  expect_fault(kWorse, "worse: 2 cells of gd on ");
+}
+
+TEST_F(PlantedFault, AMissingOptimizerFailsTheGate) {
+  fs::remove_all(shell.folder() / "new");
+  ASSERT_EQ(shell(kRun + "--optimizer adam,gd --out new").exit_code, 0);
+  expect_fault(kWorse, "worse: NEW lacks 2 cells of newton on ");
+  write_text(shell.folder() / "allowed.json",
+             R"({"schema": "isoline.allowed/1",
+                 "cells": [{"optimizer": "newton", "reason": "it moved out"}]})");
+  shell.expect("./isoline compare base.json new --tolerance 1e-6 --allow allowed.json");
+}
+
+TEST_F(PlantedFault, ACellThatAClockCutFailsTheGate) {
+  change_records("newton", [](Record& record) { record.is_nondeterministic = true; });
+  expect_fault(kNotComparable, "a clock or a kill ended it in NEW");
+}
+
+TEST_F(PlantedFault, BetterResultsPass) {
+  change_records("gd", [](Record& record) { end_at(record, record.summary.loss * 0.5); });
+  gate({.out = {"Comparison: better, nothing worse"}});
+}
+
+TEST_F(PlantedFault, InARecordIsFoundByValidate) {
+  const fs::path file = fs::directory_iterator(runs)->path();
+  Record record = read_record(file);
+  end_at(record, 2 * record.summary.loss);
+  write_text(runs / "copy.json", to_json(record).dump());
+  shell.expect(
+      "./isoline validate new",
+      {.exit_code = 2, .out = {"is of the same cell and build and differs at /curve/loss/"}});
+  fs::remove(runs / "copy.json");
+  shell.expect("./isoline validate new");
+  record.request.seed = 77;
+  write_text(file, to_json(record).dump());
+  shell.expect("./isoline validate new", {.exit_code = 2, .out = {"its cell is "}});
+}
+
+}  // namespace
+}  // namespace isoline::benchmarks

@@ -1,0 +1,133 @@
+// Which settings rank, which stand in tables of their own, and what prices change.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "core/oracle.h"
+#include "core/results/ranking.h"
+#include "reports/sections/sections.h"
+#include "reports/sections/words.h"
+#include "tests/reports/fixture.h"
+
+namespace isoline::reports {
+namespace {
+
+Sheet sheet_of(const std::string& problem, const std::string& group) {
+  return {.kind = "problem", .name = problem, .spec = problem, .group = group};
+}
+
+// On physics a is ahead of b and b of c; elsewhere c is ahead, and a does not solve one.
+Study physics_and_others() {
+  Study study;
+  for (const char* name : {"p", "q", "r", "s", "t", "valley", "bowl"}) {
+    const std::string problem(name);
+    const bool is_physics = problem.size() == 1;
+    study.sheets.push_back(sheet_of(problem, is_physics ? "physics" : "classical"));
+    for (const auto& [optimizer, work] : {std::pair{"a", 1}, {"b", 3}, {"c", 9}})
+      study.runs.push_back(record_of({.problem = problem,
+                                      .optimizer = optimizer,
+                                      .hits = problem == "bowl" && work == 1 ? 10U : 51U,
+                                      .work_per_hit = is_physics ? work : 10 - work}));
+  }
+  return study;
+}
+
+const Table& table_of(const Section& section, const std::string& id) {
+  return *std::ranges::find(section.tables, id, &Table::id);
+}
+
+TEST(RankedSettings, AreThoseOfPhysicsAloneWhereThereAreAny) {
+  const Compared c(physics_and_others());
+  EXPECT_EQ(c.order.settings.size(), 5U);
+  EXPECT_EQ(c.sanity.settings.size(), 2U);
+  for (const auto& [s, score] : {std::pair{0, 1.0}, {1, 1 - std::log2(3) / 6}})
+    EXPECT_NEAR(c.optimizers[static_cast<std::size_t>(s)].tightest().score, score, 1e-12);
+  const Section section = standings_section(c);
+  const Table& sanity = table_of(section, "sanity");
+  EXPECT_EQ(at(sanity, "c", "solved"), "2/2");
+  EXPECT_EQ(at(sanity, "c", "median work"), "30");
+  EXPECT_EQ(at(sanity, "a", "solved"), "1/2");
+  EXPECT_EQ(at(sanity, "a", "median work"), "✗");
+  EXPECT_TRUE(has(joined(verdict(c)), words("ranking.sanity", 2)));
+  Study study = physics_and_others();
+  for (Sheet& sheet : study.sheets) sheet.group = "classical";
+  const Compared others(std::move(study));
+  EXPECT_EQ(others.order.settings.size(), 7U) << "of a study without physics all rank";
+  EXPECT_EQ(left_out_text(others), "");
+}
+
+// Errors in x from 1 down to 1e-5, with floors by seed. The goal is 1.1 times the median floor.
+Study with_floors(const std::vector<Real>& floors) {
+  Study study = physics_and_others();
+  for (std::size_t seed = 0; seed < floors.size(); ++seed)
+    for (const char* optimizer : {"a", "b", "c"}) {
+      Record& record = study.runs.emplace_back(
+          record_of({.problem = "u", .optimizer = optimizer, .seed = seed}));
+      record.aim = Aim::x;
+      record.x_scale = 1;
+      record.x_floor = floors[seed];
+      record.request.budget.work = 100;
+    }
+  study.sheets.push_back(sheet_of("u", "physics"));
+  return study;
+}
+
+TEST(RankedSettings, LeaveOutAnIllPosedOneAndShowItsErrorsAgainstWork) {
+  EXPECT_EQ(Compared(with_floors({0.09, 0.09, 0.9})).order.settings.size(), 6U);
+  const Compared c(with_floors({0.01, 0.092, 0.9}));
+  EXPECT_EQ(c.order.settings.size(), 5U);
+  EXPECT_EQ(left_out_text(c),
+            words("ranking.sanity", 2) + " " + words("ranking.ill-posed", 1, "u"));
+  const Section section = standings_section(c);
+  const Table& table = table_of(section, "ill-posed");
+  ASSERT_EQ(table.rows.size(), 3U);
+  // 2 a target, so τ = 10^(−12/5), 10^(−25/5) and 10^(−50/5), of which x has the root
+  EXPECT_EQ(table.rows[0][1].text, "0.0631 · 0.00316 · 1e-05");
+  EXPECT_TRUE(has(table.columns[1], "9 %")) << table.columns[1];
+}
+
+// Ten forwards a target (a) against two forwards and a Jacobian of nominal price 10.
+TEST(RankedSettings, HalfAndTwiceThePriceOfEachOracleAreOtherChoices) {
+  Study study;
+  for (const char* problem : {"p", "q", "r", "s"})
+    for (const int each : {0, 1}) {
+      Record& record = study.runs.emplace_back(record_of({.problem = problem,
+                                                          .optimizer = each == 0 ? "a" : "b",
+                                                          .work_per_hit = each == 0 ? 10 : 12}));
+      record.prices.fill(1);
+      record.prices[static_cast<std::size_t>(Oracle::jacobian)] = 10;
+      for (int j = 0; j < 51; ++j) {
+        record.hits->counts["forward"].push_back(j * (10 - 8 * each));
+        record.hits->counts["jacobian"].push_back(j * each);
+      }
+    }
+  const Compared c(std::move(study));
+  std::map<std::string, bool> kept;
+  for (const Choice& choice : c.decision->choices)
+    if (choice.varied == Varied::prices) kept[choice_text(choice)] = choice.is_kept;
+  EXPECT_EQ(kept, (std::map<std::string, bool>{{"with jacobian at half price", false},  // 10 and 7
+                                               {"with jacobian at twice the price", true},
+                                               {"with forward at twice the price", false},
+                                               {"with forward at half price", true}}));
+}
+
+// A tenth of a second of forwards within 0.4; the run whose Jacobians have no price is left out.
+TEST(RankedSettings, OwnTimeIsWhatMeasuredCallsDoNotExplain) {
+  Study study;
+  study.sheets.push_back(sheet_of("p", "physics"));
+  study.sheets[0].prices = MeasuredPrices{.forward_seconds = 1e-3, .oracles = {}};
+  for (const std::uint64_t seed : {0, 1}) {
+    Record& record = study.runs.emplace_back(record_of({.problem = "p", .seed = seed}));
+    record.counts[static_cast<std::size_t>(Oracle::forward)] = record.summary.work = 100;
+    record.counts[static_cast<std::size_t>(Oracle::jacobian)] = static_cast<int>(seed);
+    record.summary.processor_seconds = 0.4;
+  }
+  const Spread own = own_time(Compared(std::move(study)), 0);
+  EXPECT_EQ(own.n, 1U);
+  EXPECT_NEAR(own.median, 0.75, 1e-12);
+}
+
+}  // namespace
+}  // namespace isoline::reports
