@@ -18,9 +18,9 @@ namespace {
 // known.
 const TunedRate* trials_of(const Comparison& c, const TunedRate& rate) {
   if (!rate.is_left_out()) return &rate;
-  const std::string file = rate.file.substr(0, rate.file.rfind(".json")) + "-tuned.json";
   for (const TunedRate& trials : c.study->rates)
-    if (trials.problem == rate.problem && trials.optimizer == rate.optimizer && trials.file == file)
+    if (trials.problem == rate.problem && trials.optimizer == rate.optimizer && trials.is_tuned() &&
+        !trials.is_left_out())
       return &trials;
   return nullptr;
 }

@@ -139,7 +139,8 @@ TEST(Rates, GiveWayToExplicitOptions) {
   EXPECT_EQ(cells[1].optimizer.options.at("rate"), OptionValue(0.5));
 }
 
-// --- The best losses known: who has them, who may lower them, and what follows for a run.
+// --- The best losses known: which problems have them, which runs may lower them, and what follows
+// for a run.
 
 Component problem(const std::string& text) { return complete_problem(catalog(), parse_spec(text)); }
 
