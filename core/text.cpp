@@ -155,9 +155,9 @@ std::string unknown_name(std::string_view what, std::string_view wrong,
   const std::string nearest = nearest_name(wrong, known);
   if (!nearest.empty())
     return fmt::format("unknown {} '{}'; did you mean '{}'?", what, wrong, nearest);
-  constexpr std::size_t kMostListed = 20;
+  constexpr std::size_t kMostListed = 30;
   if (known.size() > kMostListed)
-    return fmt::format("unknown {} '{}'; none of the {} known names is similar", what, wrong,
+    return fmt::format("unknown {} '{}'; `isoline list` prints the {} known names", what, wrong,
                        known.size());
   return fmt::format("unknown {} '{}'; known: {}", what, wrong, fmt::join(known, ", "));
 }

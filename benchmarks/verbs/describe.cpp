@@ -63,7 +63,7 @@ Described described(const Catalog& catalog, const Spec& spec) {
     known.insert(known.end(), names.begin(), names.end());
   const std::string nearest = nearest_name(spec.name, known);
   throw UsageError(fmt::format("no problem, optimizer or network '{}'; {}", spec.name,
-                               nearest.empty() ? "`isoline list` names them all"
+                               nearest.empty() ? "`isoline list` prints all names"
                                                : fmt::format("did you mean '{}'?", nearest)));
 }
 

@@ -158,7 +158,7 @@ void register_new(VerbRegistry& registry) {
   registry.add(verb_of(
       {.name = "new",
        .help_position = 180,
-       .summary = "Write a file to start your own problem or optimizer from",
+       .summary = "Write a template of your own problem or optimizer",
        .examples =
            "  isoline new problem my-chain                 problems/my_chain.cpp, for a program "
            "of your own\n"

@@ -43,8 +43,9 @@ void declare(VerbArguments& verb, TuneArguments& given) {
   verb.text("--grid", given.grid,
             "Option and its values, low..high x count (default: the method's tunable option "
             "at seven values around its default, and more at an edge)");
-  verb.text("--unit", given.unit,
-            "Unit of the grid: 1, the problem's Cauchy step, or the published rate")
+  verb.text(
+          "--unit", given.unit,
+          "Unit of the grid: one, cauchy (the problem's Cauchy step) or published (the published rate)")
       .one_of({"one", "cauchy", "published"})
       .shown();
   verb.flag("--leave-one-out", given.leaves_out,
@@ -279,11 +280,10 @@ void register_tune(VerbRegistry& registry) {
                    "  isoline tune square --optimizer gd --grid rate=1e-3..1x7 --unit cauchy\n"
                    "  isoline tune --suite quick --optimizer adam --json\n"
                    "  isoline tune --leave-one-out sine,heat,burgers --table physics.json",
-       .notes = "The best value has the least median work to the target; among equals, the least "
-                "remainder, "
-                "then\nthe distance from the default. The output names ties and best values at the "
-                "edge of "
-                "the grid."},
+       .notes =
+           "The best value has the least median work to the target. If several are equal, it is the "
+           "one with the least remaining loss or error in x, and then the one nearest to the "
+           "default. The output lists ties and best values at an edge of the grid."},
       declare, run));
 }
 

@@ -229,7 +229,7 @@ std::string details_html(const Comparison& c) {
   for (const std::string_view what : {name_of(by), std::string_view("time, ms,")})
     for (const Tolerance& tolerance : c.yardstick.tolerances)
       table.columns.push_back(fmt::format("{} to {}", what, tolerance.name));
-  for (const char* last : {"final loss", "error in x", "how the runs ended", "again"})
+  for (const char* last : {"final loss", "error in x", "how the runs ended", "command"})
     table.columns.emplace_back(last);
   for (std::size_t p = 0; p < c.problems.size(); ++p)
     for (std::size_t s = 0; s < c.optimizers.size(); ++s) {
@@ -276,8 +276,8 @@ constexpr Property kProperties[] = {
     {"linear map of y", "the path in x is the same under any linear map of y"},
     {"one step", "reaches a regular solution in one step"},
     {"superlinear", "order 1.5 or more near a regular solution"},
-    {"singular too", "order 1.5 or more where J is singular at the solution"},
-    {"as declared", "asked for no oracle that its entry does not name"}};
+    {"order if singular", "order 1.5 or more where J is singular at the solution"},
+    {"as declared", "called only the oracles that its entry lists"}};
 
 // Of each property whether it holds; none where it was not measured.
 std::array<std::optional<bool>, std::size(kProperties)> answers_of(
@@ -322,17 +322,18 @@ std::string row_html(const Comparison& c, std::size_t s) {
 
 std::string methods_html(const Comparison& c) {
   std::string html =
-      "<table class=\"grid sortable\" id=methods-table><caption>Methods by rank; press a name for "
-      "its card</caption><thead><tr><th scope=col>method<th scope=col>kind";
+      "<table class=\"grid sortable\" id=methods-table><caption>Methods by rank; select a name for "
+      "details</caption><thead><tr><th scope=col>method<th scope=col>kind";
   std::string legend;
   for (const auto& [name, meaning] : kProperties) {
     html += fmt::format("<th scope=col>{}", name);
     add_meaning(legend, name, meaning);
   }
-  html += "<th scope=col>asks for<th scope=col id=privileges>† privileged information<tbody>\n";
+  html +=
+      "<th scope=col>required derivatives<th scope=col id=privileges>extra information (†)<tbody>\n";
   for (std::size_t s = 0; s < c.optimizers.size(); ++s) html += row_html(c, s);
   return "<div class=\"scroll pane\" tabindex=0 role=region aria-label=Methods>" + html +
-         "</table></div><p class=legend>Measured on small problems whose answers are known, at "
+         "</table></div><p class=legend>Measured on small problems with known solutions, with "
          "default options. " +
          legend + ". Empty: not measured.</p>";
 }

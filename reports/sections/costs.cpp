@@ -47,7 +47,7 @@ TableCell price_cell(const MeasuredPrices& prices, std::string_view oracle) {
                   {"measured", price->price},
                   {"low", price->low},
                   {"high", price->high}}};
-  if (!is_told(prices, *price)) cell.remark = "nominal is used";
+  if (!is_told(prices, *price)) cell.remark = "nominal cost used";
   return cell;
 }
 
