@@ -121,7 +121,7 @@ std::string printable(std::string_view text) {
 void say(std::FILE* out, std::string_view text) {
   const std::string shown = printable(text);
   if (std::fwrite(shown.data(), 1, shown.size(), out) < shown.size())
-    throw std::system_error(errno, std::generic_category(), "cannot write what is to be read");
+    throw std::system_error(errno, std::generic_category(), "cannot write the output");
 }
 
 // Counts as they are read: in groups of three digits.

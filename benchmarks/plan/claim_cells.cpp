@@ -34,7 +34,7 @@ std::vector<Request> expanded(const Expansion& from, Json block) {
 std::string problem_of(const Expansion& from, const Json& term, const Json& block) {
   if (term.contains("problem")) return term["problem"];
   require(block.at("problems").size() == 1, [&] {
-    return fmt::format("the claim {} must name the problem of each term", from.claim);
+    return fmt::format("the claim {} must state the problem of each term", from.claim);
   });
   return block["problems"][0];
 }

@@ -47,7 +47,7 @@ Budget budget_from(const Json& json) {
 std::vector<std::uint64_t> seeds_from(const Json& json) {
   if (!json.contains("instances") && !json.contains("starts"))
     return parse_seeds(json.value("seeds", "=0"));
-  require(!json.contains("seeds"), "a block has either seeds, or instances and starts");
+  require(!json.contains("seeds"), "a block must have either seeds, or instances and starts");
   return crossed_seeds(json.value("instances", ""), json.value("starts", ""));
 }
 
@@ -93,7 +93,7 @@ std::vector<std::string> optimizer_specs(const Catalog& catalog, const MatrixBlo
   for (const std::string& text : block.optimizers)
     require(!is_selector(text) ||
                 !named_specs(catalog.optimizers, {text}, block.except_optimizers).empty(),
-            [&] { return fmt::format("'{}' selects no optimizer", text); });
+            [&] { return fmt::format("'{}' does not select any optimizer", text); });
   return named_specs(catalog.optimizers, block.optimizers, block.except_optimizers);
 }
 

@@ -232,9 +232,9 @@ bool Checkpoint::restore(Optimizer& method, Meter& meter, Vector& theta) {
     method.start(meter, theta);
     archive(theta);
     require(theta.size() == meter.unknowns(), "it has another number of unknowns");
-    require(method.persist(archive), "the method stores no state");
+    require(method.persist(archive), "the method does not store its state");
     meter.persist(archive);
-    require(archive.bytes_left() == 0, "it holds more than the state of this run");
+    require(archive.bytes_left() == 0, "it contains more than the state of this run");
   } catch (const std::exception& cause) {
     std::error_code error;
     std::filesystem::rename(path_, path_.string() + ".damaged", error);
@@ -316,11 +316,11 @@ void execute(const Catalog& catalog, const Request& request, Trace& trace, Check
       run(catalog, request, trace, checkpoint, returned, perturbation);
     }
     if (trace.status == Status::running)
-      conclude(Status::interrupted, "it was stopped, and saved its state");
+      conclude(Status::interrupted, "the run was stopped, and saved its state");
   } catch (const NotApplicable& reason) {
     conclude(Status::inapplicable, reason.what());
   } catch (const std::bad_alloc&) {
-    conclude(Status::memory, "out of its memory limit");
+    conclude(Status::memory, "the cell exceeded its memory limit");
   } catch (const KilledProgram& error) {
     conclude(Status::interrupted, error.what());
   } catch (const std::exception& error) {
@@ -333,7 +333,7 @@ void execute(const Catalog& catalog, const Request& request, Trace& trace, Check
 Record record_of(const Request& request, const Trace& trace) {
   Record record;
   record.request = request;
-  require(!request.cell.empty(), "a request is run without the name of its cell");
+  require(!request.cell.empty(), "the request does not state the ID of its cell");
   record.cell = request.cell;
   record.build = build_digest(request);
   record.build_parts = build_parts(request);

@@ -241,7 +241,7 @@ class Runner {
       Worker& worker = workers_[verdict.slot];
       if (!verdict.judged)
         worker.conclude(verdict.is_interrupted ? Status::interrupted : Status::failed,
-                        "its point could not be verified: " + verdict.failure);
+                        "the returned point could not be verified: " + verdict.failure);
       else if (const auto found = contradiction(told_by(worker.trace()), *verdict.judged);
                !found.empty())
         worker.conclude(Status::failed, found);

@@ -27,7 +27,7 @@ void declare(VerbArguments& verb, BaselineArguments& given) {
   verb.text("--out", given.out, "The file (default: standard output)");
   verb.whole("--perturbations", given.perturbations,
              "Runs of each cell from a start that differs in the last bit", {0, 100});
-  verb.whole("--jobs", given.jobs, "Cells at a time (default: one per core)", kJobs);
+  verb.whole("--jobs", given.jobs, "Number of cells at a time (default: one per core)", kJobs);
   verb.plugins();
 }
 

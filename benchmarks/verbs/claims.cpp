@@ -29,7 +29,7 @@ struct ClaimArguments {
 void declare(VerbArguments& verb, ClaimArguments& given) {
   verb.texts("ID", given.names, "Claims, or groups of them (default: all)");
   verb.text("--out", given.out, "Result folder of the runs").shown();
-  verb.whole("--jobs", given.jobs, "Cells at a time (default: one per core)", kJobs);
+  verb.whole("--jobs", given.jobs, "Number of cells at a time (default: one per core)", kJobs);
   verb.flag("--list", given.is_list, "List the claims, and run nothing");
   verb.flag("--all", given.lists_all, "List every claim, not the first 20");
   verb.flag("--json", given.as_json, "Print JSON");
@@ -92,10 +92,10 @@ std::string terminal_text_of(const std::vector<reports::Judgement>& judgements, 
 }
 
 std::string papers_page(const std::vector<reports::Judgement>& judgements) {
-  return "# What do the papers say, and what comes of it here?\n\n"
-         "`./isoline claims --no-run --papers --out results/papers` makes this page of the claims in "
-         "`benchmarks/claims` and of the runs in a folder of results: a row a claim, with the "
-         "command that decides it. [Claims](claims.md) says what the verdicts mean.\n" +
+  return "# What do the papers claim, and what do the runs show?\n\n"
+         "`./isoline claims --no-run --papers --out results/papers` writes this page, with one row "
+         "per claim in `benchmarks/claims` and the command that decides it. The runs are those of a "
+         "result folder. [Claims](claims.md) explains the verdicts.\n" +
          reports::markdown_section(reports::papers_section(judgements), reports::kAllRows);
 }
 

@@ -26,7 +26,7 @@ struct PlanArguments {
 
 void declare(VerbArguments& verb, PlanArguments& given) {
   declare_cells(verb, given.run);
-  verb.whole("--jobs", given.run.jobs, "Cells at a time (default: one per core)", kJobs);
+  verb.whole("--jobs", given.run.jobs, "Number of cells at a time (default: one per core)", kJobs);
   declare_what_is_done(verb, given.run);
   verb.whole("--shards", given.shards,
              "Divide the plan into this many shards of about equal time, and write the predictions "
@@ -81,7 +81,7 @@ std::string weights_text(Weights weights, const PlannedRun& all, std::size_t tim
     case Weights::declared:
       break;
   }
-  return "predictions: none, since shards ran here without; the shards are divided by nominal cost";
+  return "predictions: none, because earlier shards ran without them; nominal costs divide the shards";
 }
 
 void print_shards(const PlannedRun& all, const Preview& shown, const ShardPlan& plan,

@@ -39,7 +39,7 @@ AllowedList allowed_from_json(const Json& json) {
     AllowedList list;
     for (const Json& cells : json.at("cells")) {
       require(cells.contains("problem") || cells.contains("optimizer"),
-              "an entry of the allowed cells must name a problem or an optimizer");
+              "an entry of the allowed cells must contain a problem or an optimizer");
       list.push_back({.problem = cells.value("problem", std::string("*")),
                       .optimizer = cells.value("optimizer", std::string("*")),
                       .reason = cells.at("reason").get<std::string>(),
@@ -291,7 +291,7 @@ Differences coarse_differences(const ComparedCell& a, const ComparedCell& b) {
                                 is_reached ? "missed" : "reached",
                                 is_reached ? "reached" : "missed"));
   }
-  for (Difference& one : all) one.note = "chaotic: compared by status and coarse targets";
+  for (Difference& one : all) one.note = "chaotic: compared by status and targets 1e-1, 1e-3, 1e-6";
   return all;
 }
 
@@ -344,16 +344,16 @@ std::vector<std::string> changed_parts(const ComparedCell& before, const Compare
   if (before.build == after.build) return {};
   std::vector<std::string> changes;
   for (const auto& [part, text] :
-       {std::pair("platform", "another platform (compiler, flags, libraries or kernel)"),
-        {"harness", "another harness (core, meter or run loop)"},
-        {"problem", "another source of the problem"},
-        {"network", "another source of the network"},
-        {"optimizer", "another source of the optimizer"}}) {
+       {std::pair("platform", "a change of the platform (compiler, flags, libraries or kernel)"),
+        {"harness", "a change of the harness (core, meter or run loop)"},
+        {"problem", "a change of the problem's source"},
+        {"network", "a change of the network's source"},
+        {"optimizer", "a change of the optimizer's source"}}) {
     const auto old = before.parts->find(part), now = after.parts->find(part);
     if (old != before.parts->end() && now != after.parts->end() && old->second != now->second)
       changes.emplace_back(text);
   }
-  if (changes.empty()) changes.emplace_back("another build");
+  if (changes.empty()) changes.emplace_back("a change of the build");
   return changes;
 }
 

@@ -335,7 +335,7 @@ TEST_F(PlantedFault, InADefaultFailsTheGate) {
   });
   expect_fault(kWorse,
                "worse: adam: default of epsilon 1e-8 → 0.01 (2 cells); 2 cells of adam on ");
-  gate({.exit_code = kWorse, .out = {"another source of the optimizer (2 cells of adam on "}});
+  gate({.exit_code = kWorse, .out = {"the optimizer's source (2 cells of adam on "}});
 }
 
 TEST_F(PlantedFault, InAFormulaFailsTheGate) {
@@ -355,12 +355,12 @@ TEST_F(PlantedFault, AMissingOptimizerFailsTheGate) {
 
 TEST_F(PlantedFault, ACellThatAClockCutFailsTheGate) {
   change_records("newton", [](Record& record) { record.is_nondeterministic = true; });
-  expect_fault(kNotComparable, "a clock or a kill ended it in NEW");
+  expect_fault(kNotComparable, "ended it in NEW");
 }
 
 TEST_F(PlantedFault, BetterResultsPass) {
   change_records("gd", [](Record& record) { end_at(record, record.summary.loss * 0.5); });
-  gate({.out = {"Comparison: better, nothing worse"}});
+  gate({.out = {"Comparison: better, "}});
 }
 
 TEST_F(PlantedFault, InARecordIsFoundByValidate) {

@@ -219,9 +219,9 @@ std::vector<Fault> criterion_faults() {
       {"cost of a Jacobian 4 → 1, work following", in_all(honest(jacobian_for_one)), kApart,
        kApart},
       {"cost alone", in_one([](Record& r) { r.prices[kJacobian] = 1; }), kApart, kApart, true},
-      {"cost, by another source of the problem",
+      {"cost, by a change of the problem's source",
        in_all(rebuilt("problem", honest(jacobian_for_one))), kApart, kApart},
-      {"aim x → loss, by another source of the problem",
+      {"aim x → loss, by a change of the problem's source",
        in_one_of_x(rebuilt("problem", loss_sought)), kApart, kApart},
   };
 }
