@@ -1,4 +1,4 @@
-// JSON with numbers that survive.
+// JSON that preserves infinite numbers and NaN.
 #include "core/json.h"
 
 #include <fmt/format.h>

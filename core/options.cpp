@@ -1,4 +1,4 @@
-// Options: checked, completed, described and written in short.
+// Checks, completes, describes and abbreviates options.
 #include "core/options.h"
 
 #include <fmt/format.h>

@@ -1,5 +1,5 @@
-// Decodes UTF-8 by table 3-7 of the Unicode standard, which knows no overlong form, no surrogate
-// and nothing above U+10FFFF.
+// Decodes UTF-8 by table 3-7 of the Unicode standard, which excludes overlong forms, surrogates and
+// code points above U+10FFFF.
 #include "core/text.h"
 
 #include <fmt/format.h>

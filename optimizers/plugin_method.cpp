@@ -1,5 +1,5 @@
-// A method by the functions of a shared library, which asks the meter through functions of its own.
-// No exception crosses the library: it is kept, and thrown again when the library has returned.
+// A method of a shared library, which calls the meter through a table of functions. An exception
+// does not cross the library: it is stored, and thrown again when the library has returned.
 #include <fmt/format.h>
 
 #include <cmath>

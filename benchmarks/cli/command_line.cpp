@@ -1,4 +1,4 @@
-// The one place where CLI11 parses: the program, its verbs and what is wrong with a command.
+// Parses the command line with CLI11, which no other file uses, and states what is wrong with it.
 #include <fmt/format.h>
 #include <sys/ioctl.h>
 #include <unistd.h>

@@ -1,4 +1,4 @@
-// The words of a command line as cells, and the cells as shards.
+// Turns the arguments of a command line into cells, and the cells into shards.
 #include "benchmarks/cli/planned_run.h"
 
 #include <fmt/format.h>

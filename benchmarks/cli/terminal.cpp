@@ -1,4 +1,4 @@
-// Progress, outcomes and reports as the terminal shows them.
+// Prints progress, outcomes and reports on a terminal.
 #include "benchmarks/cli/terminal.h"
 
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-// Unites records and result folders: what comes out does not depend on their order or number.
+// Merges records and result folders. The result does not depend on their order or number.
 #pragma once
 
 #include <filesystem>

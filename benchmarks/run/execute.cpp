@@ -1,5 +1,5 @@
-// The run loop, its checkpoints, which are written whole and read only by the cell and build that
-// wrote them, and the record of what it left in its trace.
+// The run loop; its checkpoints, which are written whole and read only by the same cell and build;
+// and the record of the data in its trace.
 #include "benchmarks/run/execute.h"
 
 #include <fmt/format.h>

@@ -1,4 +1,5 @@
-// Child processes: what they share with their parent, their output, their limits, their end.
+// Child processes: the memory that they share with their parent, their output, their limits and
+// their end.
 #include "benchmarks/run/isolate.h"
 
 #include <fcntl.h>

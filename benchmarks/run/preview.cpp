@@ -1,5 +1,5 @@
-// A preview of a plan: looked up in the store, and probed. Records are read through a view, which
-// extracts the requested values only.
+// Looks up the cells of a plan in the store, and probes the others. A view of a record extracts
+// only the requested values.
 #include "benchmarks/run/preview.h"
 
 #include <fmt/format.h>

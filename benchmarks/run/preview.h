@@ -1,5 +1,5 @@
-// A preview of a plan: which cells are cached, which cannot exist and why, and how long the rest
-// may take by what earlier runs took.
+// A preview of a plan: the cells that are cached, the cells that cannot exist and the reasons, and
+// the predicted time of the others from earlier runs.
 #pragma once
 
 #include <filesystem>

@@ -1,4 +1,4 @@
-// The run of a whole plan: workers filled, watched, collected and stored.
+// Runs a whole plan: starts workers, watches them, and collects and stores their results.
 #include "benchmarks/run/runner.h"
 
 #include <fmt/format.h>

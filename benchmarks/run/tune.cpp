@@ -1,4 +1,4 @@
-// The option of a method that is tuned, its values and their unit, their scores, and the choice.
+// The tuned option of a method: its values and their unit, their scores, and the choice.
 #include "benchmarks/run/tune.h"
 
 #include <fmt/format.h>

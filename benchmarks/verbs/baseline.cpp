@@ -1,4 +1,4 @@
-// isoline baseline RESULTS: what later results are compared with, as one small file.
+// isoline baseline RESULTS: writes one small file with which later results are compared.
 #include <fmt/format.h>
 #include <unistd.h>
 

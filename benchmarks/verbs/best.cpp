@@ -1,4 +1,5 @@
-// isoline best DIR... --out FILE: the best losses of runs, where no least loss is declared.
+// isoline best DIR... --out FILE: writes the lowest losses for problems that do not declare a least
+// loss.
 #include <fmt/format.h>
 
 #include <filesystem>

@@ -1,4 +1,4 @@
-// isoline check [SPEC]: are a problem's derivatives, adjoint, inverse and solution what they claim?
+// isoline check [SPEC]: checks a problem's derivatives, adjoint, inverse and solution.
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>

@@ -1,4 +1,4 @@
-// isoline claims [ID...]: runs what published claims need, and judges them.
+// isoline claims [ID...]: runs the cells of published claims, and judges the claims.
 #include <fmt/format.h>
 #include <unistd.h>
 

@@ -1,4 +1,4 @@
-// isoline compare BASE NEW: what is worse than before, and what is better.
+// isoline compare BASE NEW: lists what has become worse and better.
 #include <fmt/format.h>
 
 #include "benchmarks/cli/terminal.h"

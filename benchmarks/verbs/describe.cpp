@@ -1,4 +1,4 @@
-// isoline describe NAME: what a component is, in words.
+// isoline describe NAME: describes a component in words.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 

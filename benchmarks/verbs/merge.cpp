@@ -1,4 +1,4 @@
-// isoline merge DIR... --out OUT: the union of result folders.
+// isoline merge DIR... --out OUT: merges result folders.
 #include "benchmarks/merge/merge.h"
 
 #include <fmt/format.h>

@@ -1,5 +1,5 @@
-// isoline new problem|optimizer NAME: the file that a component of one's own starts from. It builds
-// and passes its checks as it is written.
+// isoline new problem|optimizer NAME: writes a template of a user's own component, which builds and
+// passes its checks.
 #include <fmt/format.h>
 
 #include <algorithm>

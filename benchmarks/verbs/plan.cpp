@@ -1,4 +1,4 @@
-// isoline plan: what a run would do, how long it may take, and how it divides into shards.
+// isoline plan: prints what a run would do, its predicted time, and its division into shards.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// isoline replay RECORD...: runs the cells of records again and compares each two bit for bit.
+// isoline replay RECORD...: runs the cells of records again, and compares the results bit for bit.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// isoline report DIR...: tables, plots and statistics from records.
+// isoline report DIR...: writes tables, plots and statistics of records.
 #include "reports/report.h"
 
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-// isoline run: the whole matrix, then its report.
+// isoline run: runs a suite or a study, and writes its report.
 #include <fmt/format.h>
 #include <unistd.h>
 

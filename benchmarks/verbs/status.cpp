@@ -1,4 +1,4 @@
-// isoline status DIR: how far a run is, in shards or not, while it goes on.
+// isoline status DIR: prints the progress of a run, with or without shards.
 #include <fmt/format.h>
 
 #include <algorithm>

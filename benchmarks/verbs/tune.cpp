@@ -1,4 +1,4 @@
-// isoline tune: a table of rates from a recorded grid.
+// isoline tune: writes a table of rates from a recorded grid.
 #include "benchmarks/run/tune.h"
 
 #include <fmt/format.h>

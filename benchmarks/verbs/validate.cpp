@@ -1,5 +1,5 @@
-// isoline validate PATH...: do records, plans, component metadata, suites and rates satisfy their
-// schemas?
+// isoline validate PATH...: checks records, plans, component metadata, suites and rates against
+// their schemas.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,5 +1,4 @@
-// JSON as it stands in files: views of a text, and schemas. The headers of the libraries, which are
-// large, stay in json_view.cpp.
+// JSON as text: views of it, and schemas. The large headers of the libraries stay in json_view.cpp.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// Members of component metadata and of audits, as they stand in their files.
+// The members of the files of component metadata and of audits.
 #include "core/records/sheet.h"
 
 #include <fmt/format.h>

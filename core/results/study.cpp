@@ -1,4 +1,4 @@
-// Reads result folders, and what targets took.
+// Reads result folders, and computes the work to each target.
 #include "core/results/study.h"
 
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-// Finds the problems and optimizers of a study and what to call them, reads records into rows, and
+// Finds the problems and optimizers of a study and their labels, reads records into rows, and
 // pivots rows into cells of a problem and an optimizer.
 #include "core/results/table.h"
 

@@ -1,5 +1,5 @@
-// Turns records into cells of a comparison, each as it is read, and writes and reads baselines,
-// whose cells name rows of tables of what many cells share.
+// Turns records into cells of a comparison while they are read, and writes and reads baselines,
+// whose cells refer to rows of shared tables.
 #include <fmt/format.h>
 
 #include <algorithm>

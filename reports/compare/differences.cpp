@@ -1,5 +1,5 @@
-// Which cell of NEW answers which of BASE, and in which status, figures, options and build parts
-// the two differ.
+// Pairs cells of BASE and NEW, and finds the differences of their statuses, values, options and
+// builds.
 #include <fmt/format.h>
 #include <fnmatch.h>
 

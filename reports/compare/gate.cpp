@@ -1,5 +1,5 @@
-// Pairs two sets of cells, compares their figures, judges their times, and concludes; and the
-// conclusion as sentences and tables, which the formats of reports lay out, and as JSON.
+// Pairs two sets of cells, compares their values and times, and draws a conclusion, as sentences
+// and tables for the formats of reports, and as JSON.
 #include "reports/compare/gate.h"
 
 #include <fmt/format.h>

@@ -1,5 +1,5 @@
-// Plain text within a hundred columns: the standings and the best of each problem, of a small study
-// every cell; and any section.
+// Plain text with at most 100 columns: the ranking and the best method of each problem, every cell
+// of a small study, and any section.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,4 +1,5 @@
-// One section an optimizer: formula, requirements, options, wins and failures, read in a sentence.
+// One article per optimizer and problem: formula, requirements, options, wins and failures, with a
+// summary.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,5 +1,5 @@
-// Fields of a problem on a grid: y*, x*, and for one method of each kind x and what is missing, a
-// byte a cell, which the scripts paint and from which a reader chooses the step.
+// Fields of a problem on a grid: y*, x*, and x and x − x* of one method of each kind, with one byte
+// per cell. The scripts paint them, and the reader selects the step.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,5 +1,5 @@
-// Plots of claims: curves over iterations, or figures over an abscissa, and the band of what was
-// published at the place where the quantity is read.
+// Plots of claims: curves over iterations, or values over an abscissa, with the published band at
+// the place where the quantity is read.
 #include <fmt/format.h>
 
 #include <algorithm>

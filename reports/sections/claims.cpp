@@ -1,5 +1,5 @@
-// One claim whole: what is said and by whom, the verdict, what was published and measured, the
-// figures that decide it, and how to get them again.
+// One claim with its source, its verdict, the published and the measured value, the values that
+// decide it, and the command that repeats it.
 #include "reports/sections/claims.h"
 
 #include <fmt/format.h>

@@ -1,5 +1,5 @@
-// Tables of costs: raw counts of oracle calls with what they come to, the prices themselves,
-// expected running times by restarts, and the work of every optimizer on each problem.
+// Tables of costs: counts of oracle calls with their total cost, measured costs, expected running
+// times with restarts, and the work of every optimizer on each problem.
 #include <fmt/format.h>
 
 #include <algorithm>

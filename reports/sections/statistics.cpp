@@ -1,4 +1,5 @@
-// The section of statistics, what its tables share, and its profiles: performance, data, runtime.
+// The section on statistics: functions that its tables share, and the performance, data and runtime
+// profiles.
 #include <fmt/format.h>
 
 #include <algorithm>
