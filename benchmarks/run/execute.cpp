@@ -180,14 +180,14 @@ Summary summary_of(const Trace& trace) {
           .peak_memory_bytes = trace.peak_memory_bytes};
 }
 
-// The criterion of the run, and its result: f ≤ f_L + τ s, and the error in x, at the returned
-// point. A run that broke off returned none.
+// The success criterion of the run, and its result at the returned point: f ≤ f_L + τ s, or the
+// error in x. A run that broke off did not return a point.
 void add_verdicts(const Trace& trace, Record& record) {
   const auto known = [](Real value) {
     return std::isnan(value) ? std::nullopt : std::optional(value);
   };
   const bool has_returned = !is_failure(trace.status) && trace.points > 0;
-  const auto meets = [&](Real value, Real goal) {  // infinity at most infinity says nothing
+  const auto meets = [&](Real value, Real goal) {  // infinity ≤ infinity is not a success
     return has_returned && std::isfinite(value) && std::isfinite(goal) && value <= goal;
   };
   record.aim = trace.aim;
@@ -256,7 +256,7 @@ bool Checkpoint::save_if_due(Optimizer& method, Meter& meter, Vector& theta) {
   meter.persist(archive);
   try {
     write_text(path_, identity_ + digest(archive.bytes()) + archive.bytes());
-  } catch (const std::exception&) {  // a full disk costs the checkpoint, not the run
+  } catch (const std::exception&) {  // if the disk is full, the run continues without a checkpoint
   }
   return stop_requested != 0;
 }
@@ -311,7 +311,7 @@ void execute(const Catalog& catalog, const Request& request, Trace& trace, Check
   try {
     try {
       run(catalog, request, trace, checkpoint, returned, perturbation);
-    } catch (const DamagedCheckpoint&) {  // which is set aside: from the beginning, then
+    } catch (const DamagedCheckpoint&) {  // the checkpoint is set aside, and the run starts again
       new (&trace) Trace;
       run(catalog, request, trace, checkpoint, returned, perturbation);
     }

@@ -82,7 +82,7 @@ Outcome run_missing(const ClaimArguments& given, const std::vector<Claim>& claim
   return outcome;
 }
 
-// One claim with all that decides it; of several the verdicts.
+// The evidence of a single claim, or the verdicts of several.
 std::string terminal_text_of(const std::vector<reports::Judgement>& judgements, bool lists_all) {
   if (judgements.size() == 1) return reports::terminal_claim(reports::claim_section(judgements[0]));
   const std::string text =

@@ -89,7 +89,7 @@ Pairs paired(const std::vector<ComparedCell>& before, const std::vector<Compared
   return pairs;
 }
 
-// Two that are equally bad may still differ: that is a change, and no verdict.
+// Two equally bad values may still differ: this is a change without a verdict.
 int badness_of(Status status) {
   if (status == Status::target || status == Status::converged) return 0;
   if (status == Status::budget || status == Status::stalled) return 1;
@@ -115,7 +115,7 @@ namespace {
 
 constexpr Real kRounding = 1e-16;  // of double precision, as a share of the problem's scale
 
-// As a share of |before|, or of the smallest value that counts, above what rounding explains.
+// Relative to |before|, or to the smallest value that counts, after subtraction of the rounding.
 Real least_tolerance(Real before, Real after, Real scale) {
   if (before == after) return 0;
   if (!std::isfinite(before) || !std::isfinite(after)) return kNever;
@@ -155,7 +155,7 @@ bool has_both(const ComparedCell& a, const ComparedCell& b, std::size_t figure) 
   return a.has(figure) && b.has(figure);
 }
 
-// Those that no size has. A status that broke off explains what is lacking.
+// Differences without a size. If a status broke off, it explains the missing values.
 Differences differences_of_kind(const ComparedCell& a, const ComparedCell& b) {
   Differences found;
   for (const auto& [figure, what] :
@@ -213,7 +213,8 @@ Real movement(const ComparedCell& a, const ComparedCell& b) {
 Differences figure_differences(const ComparedCell& a, const ComparedCell& b,
                                const std::optional<Real>& tolerance) {
   Differences out = differences_of_kind(a, b);
-  std::map<std::pair<const char*, Change>, std::pair<std::size_t, int>> largest;  // and how many
+  std::map<std::pair<const char*, Change>, std::pair<std::size_t, int>>
+      largest;  // and their number
   for (const FigureKind& kind : kFigureKinds)
     for (std::size_t i = kind.first; i < kind.first + kind.count; ++i) {
       if (!has_both(a, b, i) || agree(a.figures[i], b.figures[i], scale_of(a, i), tolerance))
@@ -236,11 +237,11 @@ Differences figure_differences(const ComparedCell& a, const ComparedCell& b,
 
 namespace {
 
-// Another processor rounds in every operation, a perturbed start once: cells that moved by nearly
-// the tolerance when perturbed move beyond it elsewhere.
+// Another processor rounds in every operation, but a perturbed start differs only once. Cells that
+// changed by almost the tolerance after a perturbation change by more on another processor.
 constexpr Real kMargin = 0.1;
 
-// In the sense of the aim that BASE knows of.
+// By the success criterion of BASE.
 bool has_reached(const ComparedCell& cell, Aim aim, std::size_t tolerance) {
   const std::size_t figure = work_at(aim, tolerance);
   return cell.has(figure) && cell.figures[figure] < kNever;

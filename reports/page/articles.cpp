@@ -19,12 +19,12 @@
 namespace isoline::reports {
 namespace {
 
-// A row of the list of facts, where there is any.
+// A row of the list of facts, if it has a value.
 std::string row(const char* term, const std::string& content) {
   return content.empty() ? "" : fmt::format("<dt>{}</dt><dd>{}</dd>", term, content);
 }
 
-// Its problems by what became of them, each list in order of the problems.
+// The problems of a method by their results, each list in the order of the problems.
 std::string deeds_html(const Comparison& c, std::size_t s) {
   std::string won, unsolved, failed, inapplicable;
   for (std::size_t p = 0; p < c.problems.size(); ++p) {
@@ -164,7 +164,7 @@ std::string optimizer_html(const Comparison& c, std::size_t s) {
 }  // namespace
 
 std::string counted_oracles(const Comparison& c, std::size_t s) {
-  std::array<std::size_t, kOracles> asked{};  // problems on which some run asked it
+  std::array<std::size_t, kOracles> asked{};  // problems on which a run called the oracle
   std::size_t all = 0;
   for (const auto& problem : c.cells) {
     if (!problem[s].is_measured()) continue;
@@ -187,7 +187,7 @@ std::string optimizers_html(const Comparison& c) {
   return html;
 }
 
-// One section a problem: formula, what it takes to solve it, places for curves and paths.
+// One section per problem: its formula, the work to solve it, and places for curves and paths.
 
 namespace {
 
@@ -220,7 +220,7 @@ std::string problem_html(const Comparison& c, std::size_t p,
 
 }  // namespace
 
-// By group, each a row of links.
+// Rows of links, one per group.
 std::string problems_html(const Comparison& c, const AllFields& fields) {
   std::vector<std::string> articles(c.problems.size());
   share(articles.size(), [&](std::size_t p) { articles[p] = problem_html(c, p, fields[p]); });

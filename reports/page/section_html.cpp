@@ -18,7 +18,7 @@
 namespace isoline::reports {
 namespace {
 
-// Copies it, by a script.
+// A button that copies the text by a script.
 std::string command_button(const std::string& command) {
   return fmt::format("<button class=copy data-command=\"{}\">copy</button>", html_text(command));
 }
@@ -66,7 +66,7 @@ std::string rows_html(const Table& table) {
   return html;
 }
 
-// " · <b>name</b>: what it means", but for the first dot.
+// " · <b>name</b>: meaning"; the first entry does not have the dot.
 void add_meaning(std::string& html, const std::string& name, const std::string& meaning) {
   if (!meaning.empty())
     html += fmt::format("{}<b>{}</b>: {}", html.empty() ? "" : " · ", html_text(name),
@@ -132,7 +132,7 @@ std::string address(const std::string& path) {
   return out;
 }
 
-// From the page to a record; empty where it is not known where either lies.
+// The path from the page to a record; empty if either place is unknown.
 std::string record_link(const Document& document, const std::string& name) {
   if (document.out.empty()) return "";
   for (const std::filesystem::path folder : document.comparison.study->folders) {
@@ -260,7 +260,7 @@ std::string details_html(const Comparison& c) {
   return "<table class=sortable id=detail-table>" + rows_html(table) + "</table>";
 }
 
-// The grid of measured properties, a row a method, from which its card opens.
+// The table of measured properties, with one row per method, which opens its details.
 
 namespace {
 
@@ -279,7 +279,7 @@ constexpr Property kProperties[] = {
     {"order if singular", "order 1.5 or more where J is singular at the solution"},
     {"as declared", "called only the oracles that its entry lists"}};
 
-// Of each property whether it holds; none where it was not measured.
+// Whether each property holds; no value if it was not measured.
 std::array<std::optional<bool>, std::size(kProperties)> answers_of(
     const AuditedOptimizer& audited) {
   constexpr Real kLeastOrder = 1.5;
