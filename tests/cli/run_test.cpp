@@ -101,7 +101,7 @@ TEST_F(Run, RepetitionsAppendTimings) {
 }
 
 TEST_F(Run, DryRunPrintsThePlanAndTouchesNothing) {
-  shell.expect(kMatrix + "--dry-run", {.out = {"inapplicable: the Jacobian has no inverse",
+  shell.expect(kMatrix + "--dry-run", {.out = {"inapplicable: the Jacobian ",
                                                "3 cells: 0 cached, 1 inapplicable, 2 to run"}});
   EXPECT_FALSE(fs::exists(out));
   shell(kMatrix);
