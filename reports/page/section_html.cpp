@@ -181,7 +181,7 @@ std::string runs_address(const Document& document) {
 std::string claims_html(const Document& document) {
   std::string html = section_html(document.section("claims"));
   if (document.claims.empty()) return html;
-  html += "<h3>Each claim, and what decides it</h3>\n<div class=each-claim>";
+  html += "<h3>Evidence for each claim</h3>\n<div class=each-claim>";
   for (const Judgement& judgement : document.claims) html += claim_html(document, judgement);
   return html + "</div>";
 }
