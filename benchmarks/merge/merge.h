@@ -46,7 +46,7 @@ std::string conflicts_text(const std::vector<Conflict>& conflicts);
 // 2)", and changes nothing.
 std::string unite_records(Json& record, const Json& other);
 
-// The error in the file of fields of a record; empty if there is none.
+// The error in the file of fields of a record; empty if the file is valid.
 std::string fields_violation(const Json& record, const std::filesystem::path& file);
 
 }  // namespace isoline::benchmarks
