@@ -135,7 +135,7 @@ const std::vector<std::pair<std::string, std::string>> kMistakes = {
     {"run notebook --problem brown-dennis", "brown-dennis"},
     {"run notebook --optimizer adma", "did you mean 'adam'"},
     {"run quick --all", "--dry-run"},
-    {"tune", "name problems, as SPEC or with --problem"},
+    {"tune", "pass SPEC, --problem or --suite"},
     {"tune square --problem square", "--problem"},
     {"report .", "no records in .: `isoline run"},
     {"run --rates nowhere.json", "nowhere.json"},
@@ -382,7 +382,8 @@ TEST(Terminal, ACrashSaysHowToDebugItAndTheCommandCrashesAgain) {
   ASSERT_TRUE(std::regex_search(result.err, found, std::regex(R"(record +(out/runs/\S+\.json):)")))
       << result.err;
   EXPECT_TRUE(std::filesystem::exists(shell.folder() / found[1].str())) << found[1];
-  ASSERT_TRUE(std::regex_search(result.err, found, std::regex(R"(alone +(.*--in-process)\n)")))
+  ASSERT_TRUE(
+      std::regex_search(result.err, found, std::regex(R"(in one process +(.*--in-process)\n)")))
       << result.err;
   const Finished again = shell("ulimit -c 0; " + found[1].str());
   EXPECT_NE(again.exit_code, 0);
