@@ -171,14 +171,6 @@ bool is_a(const CLI::ParseError& error) {
   return dynamic_cast<const Kind*>(&error) != nullptr;
 }
 
-// As wide as the terminal, and 80 columns elsewhere.
-std::size_t help_columns() {
-  constexpr std::size_t kUsual = 80, kLeast = 50;
-  winsize size{};
-  return ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col >= kLeast ? size.ws_col
-                                                                               : kUsual;
-}
-
 // The line, broken at spaces behind the column `indent`.
 std::string broken(std::string line, std::size_t indent, std::size_t most) {
   std::string text;
@@ -194,16 +186,20 @@ std::string broken(std::string line, std::size_t indent, std::size_t most) {
   }
 }
 
-// Help text whose descriptions and notes fit the width; examples stay as they are, to be copied.
+// Help text that fits the terminal, and 80 columns elsewhere. Examples stay whole, to be copied.
 struct WrappedHelp : CLI::Formatter {
   std::string make_help(const CLI::App* app, std::string name,
                         CLI::AppFormatMode mode) const override {
+    constexpr std::size_t kUsual = 80, kLeast = 50;
+    winsize size{};
+    const bool is_wide = ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col >= kLeast;
     std::istringstream lines(CLI::Formatter::make_help(app, std::move(name), mode));
     std::string text;
     for (std::string line; std::getline(lines, line);)
       text += line.starts_with("  isoline ")
                   ? line + '\n'
-                  : broken(line, line.starts_with(' ') ? get_column_width() : 0, help_columns());
+                  : broken(line, line.starts_with(' ') ? get_column_width() : 0,
+                           is_wide ? size.ws_col : kUsual);
     return text;
   }
 };

@@ -213,8 +213,7 @@ Real movement(const ComparedCell& a, const ComparedCell& b) {
 Differences figure_differences(const ComparedCell& a, const ComparedCell& b,
                                const std::optional<Real>& tolerance) {
   Differences out = differences_of_kind(a, b);
-  std::map<std::pair<const char*, Change>, std::pair<std::size_t, int>>
-      largest;  // and their number
+  std::map<std::pair<const char*, Change>, std::pair<std::size_t, int>> largest;  // and count
   for (const FigureKind& kind : kFigureKinds)
     for (std::size_t i = kind.first; i < kind.first + kind.count; ++i) {
       if (!has_both(a, b, i) || agree(a.figures[i], b.figures[i], scale_of(a, i), tolerance))

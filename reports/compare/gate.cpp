@@ -199,8 +199,7 @@ std::string why_incomparable(const ComparedCell& a, const ComparedCell& b,
                              const GateOptions& options) {
   for (const ComparedCell* side : {&a, &b})
     if (!side->doubt.empty())
-      return fmt::format("the record of {} contradicts itself: {}", side == &a ? "BASE" : "NEW",
-                         side->doubt);
+      return fmt::format("{} contradicts itself: {}", side == &a ? "BASE" : "NEW", side->doubt);
   if (a.is_cut || b.is_cut)
     return fmt::format("a clock or a kill ended it in {} ({})", b.is_cut ? "NEW" : "BASE",
                        name_of(b.is_cut ? b.status : a.status));
@@ -382,10 +381,8 @@ class Gate {
          "compared by status and the targets 1e-1, 1e-3 and 1e-6: a change of the start in the last "
          "bit changes the values by more than a tenth of the tolerance"},
         {too_few_, "cell",
-         fmt::format(
-             "with too few repetitions to compare times: run --repeat {} --exclusive on both "
-             "sides",
-             kLeastRepetitions)},
+         fmt::format("with too few repetitions to compare times: use --repeat {} --exclusive",
+                     kLeastRepetitions)},
         {senseless_, "time", "omitted: not positive and finite"},
         {other_processors_, "cell", "timed on different processors, so times are not comparable"},
         {skipped_, "cell",
@@ -492,8 +489,7 @@ GateResult compare_results(const std::filesystem::path& before, const std::files
   const FolderCells now = read_cells(after, options.listener);
   GateResult result = Gate(options).run(old.cells, now.cells);
   conclude(result, options);
-  if (baseline)
-    result.remarks.push_back("a baseline does not contain times, so times are not compared");
+  if (baseline) result.remarks.push_back("a baseline has no times, so times are not compared");
   for (const auto& [found, path] : {std::pair(&std::as_const(old), before), {&now, after}}) {
     if (found->unreadable > 0)
       result.remarks.push_back(fmt::format("{} of {} could not be read",
