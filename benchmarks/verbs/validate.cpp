@@ -102,7 +102,7 @@ Examined examined_document(const Json& document, const std::string& path) {
 Examined examined(const std::string& path) {
   try {
     const std::string text = read_text(path);
-    const Json outline = outline_of(text, path);
+    const Json outline = outline_of(text, "it");
     if (claim_of(outline) == kRunSchema) {
       Examined found = examined_document(outline, path);
       if (found.identity) {
@@ -111,7 +111,7 @@ Examined examined(const std::string& path) {
         return found;
       }
     }
-    return examined_document(parse_json(text, path), path);
+    return examined_document(parse_json(text, "it"), path);
   } catch (const std::exception& error) {
     return {{error.what()}, {}};
   }
