@@ -263,7 +263,7 @@ TEST(Doubt, ATimeThatIsNotANumberIsLeftOut) {
   EXPECT_EQ(result.exit_code, kGood);
   ASSERT_EQ(result.times.size(), 1U);
   EXPECT_EQ(result.times[0].n_before, 9U);
-  EXPECT_TRUE(has(gate_terminal(result), "2 timings left out")) << gate_terminal(result);
+  EXPECT_TRUE(has(gate_terminal(result), "2 times omitted")) << gate_terminal(result);
 }
 
 // What NEW lacks is worse, unless a list that gives reasons allows it.
