@@ -1,4 +1,4 @@
-// The words of a command line as cells, and the cells as shards.
+// Turns the arguments of a command line into cells, and the cells into shards.
 #include "benchmarks/cli/planned_run.h"
 
 #include <fmt/format.h>
@@ -35,9 +35,9 @@ void override_blocks(const RunArguments& given, Suite& suite) {
 }  // namespace
 
 void declare_cells(VerbArguments& verb, RunArguments& given) {
-  verb.text("SUITE", given.suite,
-            "Name of a suite, or path of one (default: quick); --problem and --optimizer keep the "
-            "cells with these");
+  verb.text(
+      "SUITE", given.suite,
+      "Name or path of a suite (default: quick); --problem and --optimizer select cells of it");
   verb.text("--problem", given.problem, "Problems: 'sine[xi=1|32,phi=45],square'").joined();
   verb.text("--optimizer", given.optimizer, "Optimizers: 'adam[rate=1e-3],ceres-lm'").joined();
   const Argument seeds =
@@ -48,13 +48,13 @@ void declare_cells(VerbArguments& verb, RunArguments& given) {
   verb.text("--starts", given.starts,
             "Starts, each with every instance of --instances: 3, 0..2 or =1 (default: =0)")
       .excludes(seeds);
-  verb.whole("--iterations", given.iterations, "Largest number of iterations of a cell");
-  verb.whole("--work", given.work, "Largest work of a cell, in forward solves");
+  verb.whole("--iterations", given.iterations, "Limit of the iterations of a cell");
+  verb.whole("--work", given.work, "Limit of the work of a cell, in forward solves");
   verb.time("--time", given.seconds,
-            "Time limit of a cell: 10s, 2m; at twice this processor time, it is killed");
+            "Time limit of a cell: 10s, 2m; it is killed after twice this processor time");
   verb.real("--target", given.target, between(0, 1),
-            "Stop at f_L + TARGET s, with s the scale of the loss; if the criterion is x, at "
-            "TARGET of its error (default: 1e-10)");
+            "Tolerance at which a run stops, relative to the scale of the loss or, if the success "
+            "criterion is x, to the norm of x* (default: 1e-10)");
   verb.whole("--threads", given.threads, "Threads of the libraries within a cell", kThreads);
   verb.text("--rates", given.rates, "Table of tuned rates: builtin, none or a file").shown();
   verb.flag("--allow-large", given.allow_large, "Plan more than a million cells");
@@ -62,36 +62,39 @@ void declare_cells(VerbArguments& verb, RunArguments& given) {
 }
 
 void declare_what_is_done(VerbArguments& verb, RunArguments& given) {
-  verb.text("--out", given.out,
-            "Result folder (default: results/SUITE; for your own matrix or a part of a suite, "
-            "a name that follows from the plan)");
-  verb.flag("--force", given.force, "Repeat finished cells");
-  verb.flag("--reuse", given.reuse, "Keep cells of another build");
-  verb.texts("--retry", given.retry, "Repeat cells with this status: failed,crashed,timeout,memory")
+  verb.text(
+      "--out", given.out,
+      "Result folder (default: results/SUITE; for your own study or a part of a suite, a name "
+      "that follows from the plan)");
+  verb.flag("--force", given.force, "Run finished cells again");
+  verb.flag("--reuse", given.reuse, "Keep the records of another build");
+  verb.texts("--retry", given.retry,
+             "Run cells with these statuses again: failed,crashed,timeout,memory")
       .between_commas();
 }
 
 void declare_run(VerbArguments& verb, RunArguments& given) {
   declare_cells(verb, given);
-  verb.whole("--jobs", given.jobs, "Cells at a time (default: one per core)", kJobs);
+  verb.whole("--jobs", given.jobs, "Number of cells at a time (default: one per core)", kJobs);
   verb.flag("--exclusive", given.exclusive, "One cell at a time, for reliable times");
   verb.whole("--repeat", given.repeat, "Timings per cell", {1, 1000});
   verb.memory("--memory", given.memory_bytes,
               "Memory limit of a cell, 256MB or more (default: 4GB)");
   declare_what_is_done(verb, given);
-  verb.flag("--no-report", given.no_report, "Write no report");
+  verb.flag("--no-report", given.no_report, "Do not write a report");
   verb.flag("--keep-output", given.keeps_output,
             "Keep the output of each cell in its record, up to 64 KiB");
   verb.flag("--fields", given.keeps_fields,
             "Keep x of grid problems at six iterations for every seed (default: for seed 0 only)");
   verb.flag("--spectrum", given.keeps_spectra,
             "Keep the singular values of J = ∂y/∂θ at iterations 0, 1, 2, 4, 8, … and the last; "
-            "finished cells without them are repeated");
+            "finished cells without them run again");
   verb.text("--shard", given.shard,
             "Run one shard, such as 3/16, into shards/3-of-16 of the result folder; auto: "
             "the shard of this task of a SLURM array, or of ISOLINE_SHARD");
-  const Argument dry = verb.flag("--dry-run", given.is_dry,
-                                 "Print the plan: cells, cached, inapplicable, predicted time");
+  const Argument dry =
+      verb.flag("--dry-run", given.is_dry,
+                "Print the plan only: its cells, their states and the predicted time");
   verb.flag("--all", given.lists_all, "With --dry-run: list every cell, not the first 20")
       .needs(dry);
   verb.flag("--in-process", given.in_process,

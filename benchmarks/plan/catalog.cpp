@@ -1,5 +1,5 @@
-// The built-in catalog, components completed from their names and options, and the digests of what
-// computes them.
+// The built-in catalog, the completion of component names and options, and the digests of the
+// sources of components.
 #include "benchmarks/plan/catalog.h"
 
 #include <fmt/format.h>

@@ -23,7 +23,7 @@ struct Expansion {
 };
 
 std::vector<Request> expanded(const Expansion& from, Json block) {
-  constexpr std::uint64_t kMost = 10'000;  // cells that one claim is decided by
+  constexpr std::uint64_t kMost = 10'000;  // cells that decide one claim
   for (const char* own : {"long", "deviation"}) block.erase(own);
   const Json suite{{"schema", "isoline.suite/1"}, {"name", "claims"}, {"matrix", {block}}};
   const std::string origin = "the claim " + from.claim;
@@ -34,7 +34,7 @@ std::vector<Request> expanded(const Expansion& from, Json block) {
 std::string problem_of(const Expansion& from, const Json& term, const Json& block) {
   if (term.contains("problem")) return term["problem"];
   require(block.at("problems").size() == 1, [&] {
-    return fmt::format("the claim {} must name the problem of each term", from.claim);
+    return fmt::format("the claim {} must state the problem of each term", from.claim);
   });
   return block["problems"][0];
 }
@@ -119,7 +119,8 @@ std::vector<Claim> builtin_claims_of(const Catalog& catalog) {
 
 namespace {
 
-// There are too many to list: those that were most probably meant, by the words they share.
+// There are too many names to list. The suggestions are those that share the most words with the
+// given one.
 std::string unknown_claim(const std::string& wrong, const std::vector<std::string>& known) {
   constexpr std::size_t kMost = 5;
   std::vector<std::string> words;

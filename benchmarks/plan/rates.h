@@ -1,4 +1,5 @@
-// Tables that belong neither to a problem nor to an optimizer: rates and the best losses known.
+// Tables of rates and of the lowest known losses, which belong neither to a problem nor to an
+// optimizer.
 #pragma once
 
 #include <map>

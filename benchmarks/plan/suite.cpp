@@ -24,7 +24,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The schema knows that it is a whole number from 1 on, and not where its type ends.
+// The schema requires a whole number from 1 on, but does not know the largest number of the type.
 std::int64_t amount_in(const Json& json, const char* name, std::int64_t standard) {
   if (!json.contains(name)) return standard;
   const auto amount = json[name].get<std::uint64_t>();
@@ -47,7 +47,7 @@ Budget budget_from(const Json& json) {
 std::vector<std::uint64_t> seeds_from(const Json& json) {
   if (!json.contains("instances") && !json.contains("starts"))
     return parse_seeds(json.value("seeds", "=0"));
-  require(!json.contains("seeds"), "a block has either seeds, or instances and starts");
+  require(!json.contains("seeds"), "a block must have either seeds, or instances and starts");
   return crossed_seeds(json.value("instances", ""), json.value("starts", ""));
 }
 
@@ -93,7 +93,7 @@ std::vector<std::string> optimizer_specs(const Catalog& catalog, const MatrixBlo
   for (const std::string& text : block.optimizers)
     require(!is_selector(text) ||
                 !named_specs(catalog.optimizers, {text}, block.except_optimizers).empty(),
-            [&] { return fmt::format("'{}' selects no optimizer", text); });
+            [&] { return fmt::format("'{}' does not select any optimizer", text); });
   return named_specs(catalog.optimizers, block.optimizers, block.except_optimizers);
 }
 
@@ -143,7 +143,7 @@ std::vector<Request> expand(const Catalog& catalog, const Suite& suite, const Ra
   std::unordered_set<std::string> known;
   for (const MatrixBlock& block : suite.blocks) {
     const std::vector<Spec> specs = parsed_specs(optimizer_specs(catalog, block), most);
-    // One component serves all problems that share its row of rates.
+    // All problems that share a row of rates use one component.
     std::map<std::pair<const Spec*, const Rates::Row*>, Component> optimizers;
     for (const Spec& problem_spec : parsed_specs(problem_specs(catalog, block), most)) {
       const Component problem = complete_problem(catalog, problem_spec);
@@ -185,7 +185,7 @@ std::string_view cost_class(const OptimizerEntry& entry) {
   return is_limited ? "factorizing" : "matrix-free";
 }
 
-// A spec with its options as its component would have them.
+// A spec with the options of its component.
 struct Wanted {
   std::string name;
   OptionValues options;
@@ -249,7 +249,7 @@ std::vector<Request> filtered(const Catalog& catalog, std::vector<Request> reque
 
 namespace {
 
-// Components with the settings of each.
+// Components with their settings.
 class Settings {
  public:
   explicit Settings(const std::vector<std::string>& specs) {

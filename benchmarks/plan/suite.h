@@ -1,5 +1,5 @@
-// A suite or a matrix of one's own: which problems meet which optimizers, on which seeds, with what
-// budget. Its selectors, its expansion into requests, and its size.
+// A suite or a user's own study: problems, optimizers, seeds and budgets. Its selectors, its
+// expansion into requests, and its size.
 #pragma once
 
 #include <cstdint>

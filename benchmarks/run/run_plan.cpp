@@ -1,4 +1,4 @@
-// A plan checked, stored, described and run; and what its folder is called.
+// Checks, stores, describes and runs a plan, and chooses the name of its folder.
 #include "benchmarks/run/run_plan.h"
 
 #include <fmt/format.h>

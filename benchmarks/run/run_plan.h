@@ -1,5 +1,5 @@
-// A plan from its first file to its last record: what `run`, `claims` and `tune` have in common,
-// and the checks of its components before they run.
+// The execution of a plan, which `run`, `claims` and `tune` share, and the checks of its components
+// before they run.
 #pragma once
 
 #include <filesystem>

@@ -1,4 +1,4 @@
-// Trained networks: written, read, applied.
+// Writes, reads and applies trained networks.
 #include "benchmarks/run/trained.h"
 
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-// isoline baseline RESULTS: what later results are compared with, as one small file.
+// isoline baseline RESULTS: writes one small file with which later results are compared.
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -27,7 +27,7 @@ void declare(VerbArguments& verb, BaselineArguments& given) {
   verb.text("--out", given.out, "The file (default: standard output)");
   verb.whole("--perturbations", given.perturbations,
              "Runs of each cell from a start that differs in the last bit", {0, 100});
-  verb.whole("--jobs", given.jobs, "Cells at a time (default: one per core)", kJobs);
+  verb.whole("--jobs", given.jobs, "Number of cells at a time (default: one per core)", kJobs);
   verb.plugins();
 }
 
@@ -77,15 +77,13 @@ void register_baseline(VerbRegistry& registry) {
        .examples = "  isoline baseline results/quick --out baseline.json\n"
                    "  isoline compare baseline.json results/quick",
        .notes =
-           "The file has one line per cell: status, digest of the trace, final values, work to "
-           "1e-1, 1e-3 and\n1e-6.\n"
-           "Each cell runs again from starts that differ in the last bit. A cell is chaotic if "
-           "its values then\n"
-           "move by more than a tenth of a comparison's tolerance. `compare` compares such cells "
-           "by status and\n"
-           "by the targets 1e-1, 1e-3 and 1e-6 that they reach, so that rounding alone is not a "
-           "regression.\n"
-           "Runs of the portable preset (ISOLINE_PRESET=portable) give the same baseline on every\n"
+           "The file has one line per cell: status, digest of the trace, final values, work to 1e-1, "
+           "1e-3 and 1e-6.\n"
+           "Each cell runs again from starts that differ in the last bit. A cell is chaotic if its "
+           "values then change by more than a tenth of a comparison's tolerance. `compare` compares "
+           "such cells by status and by the targets 1e-1, 1e-3 and 1e-6 that they reach, so rounding "
+           "alone is not a regression.\n"
+           "Runs of the portable preset (ISOLINE_PRESET=portable) give the same baseline on every "
            "x86-64-v3 machine."},
       declare, run));
 }

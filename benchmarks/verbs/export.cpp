@@ -1,4 +1,5 @@
-// isoline export DIR... --format csv|coco --out PATH: results in the forms of others.
+// isoline export DIR... --format csv|coco --out PATH: writes results in the formats of other
+// programs.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// isoline report DIR...: tables, plots and statistics from records.
+// isoline report DIR...: writes tables, plots and statistics of records.
 #include "reports/report.h"
 
 #include <fmt/format.h>
@@ -33,7 +33,7 @@ struct ReportArguments {
 void declare(VerbArguments& verb, ReportArguments& given) {
   verb.texts("DIR", given.folders, kFolders).required();
   verb.text("--out", given.out, "Output folder (default: report/ in the first DIR)");
-  verb.text("--by", given.by, "Measure of rankings, tables and plots")
+  verb.text("--by", given.by, "Metric of rankings, tables and plots")
       .one_of({reports::kMeasureNames.begin(), reports::kMeasureNames.end()})
       .shown();
   verb.real("--tolerance", given.tolerance, between(1e-10, 1),
@@ -104,13 +104,10 @@ void register_report(VerbRegistry& registry) {
        .examples = "  isoline report results/quick\n"
                    "  isoline report results/a results/b --out report --by cost --tolerance 1e-3",
        .notes =
-           "Results contain 51 tolerances, five per decade from 1 to 1e-10; others are rounded to "
-           "the\n"
-           "next stricter one. Work is oracle calls at nominal cost, equal on every machine; cost "
-           "is\n"
-           "the same calls at measured cost. Times are comparable in runs with --exclusive: "
-           "others are\n"
-           "marked ≈."},
+           "Results contain 51 tolerances, five per decade from 1 to 1e-10; another tolerance is "
+           "replaced by the next stricter one. Work counts oracle calls at nominal cost, which is equal "
+           "on every machine; cost counts the same calls at measured cost. Times are comparable only in "
+           "runs with --exclusive; others are marked ≈."},
       declare, run));
 }
 

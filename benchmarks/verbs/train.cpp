@@ -1,4 +1,4 @@
-// isoline train PROBLEM --out FILE: trains one network and keeps it, for `isoline infer`.
+// isoline train PROBLEM --out FILE: trains one network and stores it for `isoline infer`.
 #include <fmt/format.h>
 #include <poll.h>
 #include <unistd.h>

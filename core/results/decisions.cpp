@@ -1,5 +1,5 @@
-// Scores, flips of signs, the confidence set of the best, and how far the first place hangs on
-// chance and choice.
+// Scores, sign-flip tests, the confidence set of the best, and the dependence of the first rank on
+// chance and on choices.
 #include "core/results/decisions.h"
 
 #include <algorithm>

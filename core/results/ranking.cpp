@@ -151,7 +151,7 @@ std::vector<OtherCosts> costs_at_other_prices(const Comparison& c, bool is_open)
   std::vector<OtherCosts> all;
   for (std::size_t kind = 0; kind < kOracles; ++kind)
     for (const auto& [name, factor] :
-         {std::pair{" at half price", 0.5}, std::pair{" at twice the price", 2.0}}) {
+         {std::pair{" at half its cost", 0.5}, std::pair{" at twice its cost", 2.0}}) {
       if (called[kind] == 0) continue;
       Costs costs(c.problems.size(), std::vector<std::optional<Real>>(c.optimizers.size()));
       for (const std::size_t p : c.order.settings)

@@ -1,4 +1,4 @@
-// Reads result folders, and what targets took.
+// Reads result folders, and computes the work to each target.
 #include "core/results/study.h"
 
 #include <fmt/format.h>
@@ -61,7 +61,7 @@ Real TunedRate::work_of(Real tried) const {
 }
 
 std::vector<TunedRate> rates_from_text(const std::string& text, const std::string& origin) {
-  return from_text<RatesFile>(text, origin, "no table of rates").rows;
+  return from_text<RatesFile>(text, origin, "not a table of rates").rows;
 }
 
 // Reads result folders. Records come by the ten thousand, and parsing them is nearly all the time a

@@ -1,5 +1,5 @@
 // The input of a report: the plan, the records and the component metadata of result folders; and
-// what each target took a run.
+// the work of each run to each target.
 #pragma once
 
 #include <array>

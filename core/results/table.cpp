@@ -1,4 +1,4 @@
-// Finds the problems and optimizers of a study and what to call them, reads records into rows, and
+// Finds the problems and optimizers of a study and their labels, reads records into rows, and
 // pivots rows into cells of a problem and an optimizer.
 #include "core/results/table.h"
 
@@ -434,7 +434,7 @@ void aggregate(const Table& table, const Yardstick& yardstick, Cell& cell) {
   }
   if (cell.statuses[Status::inapplicable] == cell.runs.size()) {
     const std::string& reason = table.runs[cell.runs[0]].record->message;
-    cell.inapplicable = reason.empty() ? "no reason given" : reason;
+    cell.inapplicable = reason.empty() ? "the reason is not stated" : reason;
     return;
   }
   std::erase_if(cell.statuses, [](const auto& status) { return status.second == 0; });

@@ -1,5 +1,5 @@
-// Plain text within a hundred columns: the standings and the best of each problem, of a small study
-// every cell; and any section.
+// Plain text with at most 100 columns: the ranking and the best method of each problem, every cell
+// of a small study, and any section.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -120,10 +120,10 @@ std::string every_cell(const Comparison& c) {
       if (c.cell(p, s).planned > 0 && !c.cell(p, s).is_measured()) text += line_of(c, p, s, width);
   }
   std::string marks = fmt::format(
-      "Median {} in {} to each tolerance; runs: those that reach {}; ms to {}; final loss. {} * "
-      "least on its problem, ✗ not reached by half of the runs, n/a: not applicable",
+      "Median {} to each tolerance, in {}; runs that reach {}; median ms to {}; median final loss. "
+      "{} *: the least of its problem; ✗: at most half of the runs reached it; n/a: not applicable",
       counted_name(c), unit_name(c), tau_name(c), tau_name(c), success_text(c));
-  if (c.is_any_timed_together) marks += ", ≈ timed while other runs used the machine";
+  if (c.is_any_timed_together) marks += "; ≈: timed while other runs used the machine";
   return text + "\n" + wrapped(marks + ".");
 }
 

@@ -1,5 +1,5 @@
-// The page: its template with style and scripts, filled with tables, drawings and data. One file
-// that asks nothing of the network.
+// The page: its template with style and scripts, filled with tables, charts and data, in one file
+// that does not need a network connection.
 #include "reports/page/page.h"
 
 #include <fmt/format.h>

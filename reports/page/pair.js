@@ -91,24 +91,19 @@ function priceTable() {
   const rows = priceRows();
   const head = element('tr', {}, element('th', {scope: 'col'}, ''), ...[pair.a, pair.b].map((s) => element('th', {scope: 'col'}, named(s))));
   const body = rows.map(({what, a, b}) => element('tr', {}, element('th', {scope: 'row'}, what), element('td', {className: 'text'}, a), element('td', {className: 'text'}, b)));
-  return element('table', {className: 'prices'}, element('caption', {}, `Medians over the ${rows[0].n} settings that both solve to τ = ${tauName(view.target)}`),
+  return element('table', {className: 'prices'}, element('caption', {}, worded('pair-prices', {n: rows[0].n, tau: tauName(view.target)})),
       element('thead', {}, head), element('tbody', {}, ...body));
-}
-
-function factorWords(ratio, first, second) {
-  const [who, factor] = ratio >= 1 ? [first, ratio] : [second, 1 / ratio];
-  return ratio === 1 ? 'no difference' : `${multiple(factor)} in favour of ${DATA.optimizers[who]}`;
 }
 
 // A sentence that says no more than the interval does.
 function pairSentence(told) {
-  const {a, b} = pair, n = told.names.length, counted = measureNow().counted;
-  if (n === 0) return `Neither solves a problem that both were run on to τ = ${tauName(view.target)}.`;
-  const range = n < 6 ? `range of ${n}` : '95 % interval', isOpen = told.low <= 1 && told.high >= 1;
-  return `${DATA.optimizers[a]} needs less ${counted} on ${told.wins} of ${n} problems and more on ${told.losses}` +
-      `${told.ties > 0 ? `, the same on ${told.ties}` : ''}${told.neither > 0 ? `; neither solves ${told.neither} more` : ''}. ` +
-      `Median factor: ${factorWords(told.typical, a, b)} (${range} ${multiple(told.low)} to ${multiple(told.high)}, ` +
-      `above 1 for ${DATA.optimizers[a]})${isOpen || n < 6 ? ': not significant.' : '.'}`;
+  const n = told.names.length, [first, second] = [DATA.optimizers[pair.a], DATA.optimizers[pair.b]];
+  const {counted} = measureNow(), isOpen = n < 6 || (told.low <= 1 && told.high >= 1);
+  if (n === 0) return worded('pair-none', {tau: tauName(view.target)});
+  const ties = told.ties > 0 ? worded('pair-ties', {ties: told.ties}) : '', neither = told.neither > 0 ? worded('pair-neither', {neither: told.neither}) : '';
+  const values = {first, second, counted, n, ties, neither, less: told.wins, more: told.losses, ratio: multiple(told.typical),
+    range: worded(n < 6 ? 'pair-range' : 'pair-interval', {n}), low: multiple(told.low), high: multiple(told.high)};
+  return `${worded('pair', values)} ${worded(isOpen ? 'pair-open' : 'pair-ratio', values)}`;
 }
 
 // One bar per setting, to the left if the first method needs less; it links to the problem with both lines.
@@ -143,7 +138,7 @@ function learnedBars() {
 
 function learnedSection() {
   const learned = learnedBars();
-  return learned.length === 0 ? [] : [element('h3', {}, 'Learned: error in x at equal work'), element('ol', {className: 'bars-of'}, ...learned)];
+  return learned.length === 0 ? [] : [element('h3', {}, worded('pair-learned')), element('ol', {className: 'bars-of'}, ...learned)];
 }
 
 function drawPair(place) {
@@ -152,7 +147,7 @@ function drawPair(place) {
       element('p', {className: 'chosen-two'}, pairSelect('a', redraw), ' against ', pairSelect('b', redraw)),
       element('p', {className: 'verdict'}, pairSentence(told)),
       element('div', {className: 'decided'}, element('div', {},
-          element('p', {className: 'legend'}, `To the left ${DATA.optimizers[pair.a]} needs less, to the right ${DATA.optimizers[pair.b]}; a full bar is a factor of 64 or unsolved. Select a bar for its curves.`),
+          element('p', {className: 'legend'}, worded('pair-legend', {first: DATA.optimizers[pair.a], second: DATA.optimizers[pair.b]})),
           pairBars(told), ...learnedSection()),
       priceTable()));
 }

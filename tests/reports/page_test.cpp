@@ -490,9 +490,8 @@ TEST_F(ShownHistory, IsDrawnFromTheBottomAndSaysSo) {
   const std::string html = fields_html(c, *all);
   const std::string truth = radix64("\xC0\x90");  // y* = 4, above x* = 1
   for (const std::string& words :
-       {truth, std::string("x* → y*"), std::string("x − x* → y − y*"),
-        std::string("the lowest row is x, at 0, the highest y, at 0.5"),
-        std::string("speed before → speed after"), std::string("the highest row alone")})
+       {truth, std::string("x* → y*"), std::string("x − x* → y − y*"), std::string("y at time 0.5"),
+        std::string("speed before → speed after"), std::string("in the top row")})
     EXPECT_NE(html.find(words), std::string::npos) << words << " in " << html;
   const Json json = parse_json(fields_json(*all), "fields");
   EXPECT_EQ(json.at("truth"), truth);
