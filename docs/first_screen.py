@@ -145,7 +145,7 @@ def findings(report):
     lead = (f"**Findings** of the default suite: {report['answered'] - inapplicable:,} runs; {inapplicable} more "
             f"cells are inapplicable. A score that rewards little work and many solved problems ranks "
             f"{len(leader['places'])} methods on {leader['settings']} settings of {leader['families']} problems from "
-            f"physics with {starts} starting points each.")
+            f"physics with {starts} instances each.")
     return lead, [
         f"{best} significantly best in work. {first['optimizer']} ranks first (solves {first['solved']} of "
         f"{leader['settings']} settings), {second['optimizer']} second (solves {second['solved']}; paired sign-flip "
