@@ -143,9 +143,9 @@ def findings(report):
     starts = max(cell["runs"] for cell in report["cells"] if cell["problem"] in report["ranked"])
     band = sum(place["in_group"] for place in leader["places"])
     lead = (f"**Findings** of the default suite: {report['answered'] - inapplicable:,} runs; {inapplicable} more "
-            f"combinations are not applicable. {len(leader['places'])} methods are ranked on {leader['settings']} "
-            f"settings of {leader['families']} problems from physics ({starts} starting points each); the score rewards "
-            "little work and many solved settings.")
+            f"cells are not applicable. {len(leader['places'])} methods are ranked on {leader['settings']} settings of "
+            f"{leader['families']} problems from physics ({starts} instances each); the score rewards little work and "
+            "many solved settings.")
     return lead, [
         f"{best} significantly best in work. {first['optimizer']} ranks first (solves {first['solved']} of "
         f"{leader['settings']} settings), {second['optimizer']} second (solves {second['solved']}; paired sign-flip "

@@ -114,25 +114,32 @@ Component with_rates(const Catalog& catalog, const Spec& spec, const Rates::Row*
   return optimizer;
 }
 
+static Suite builtin_suite(const std::string& name) {
+  const auto& builtin = builtin_suites();
+  if (const auto found = builtin.find(name); found != builtin.end())
+    return suite_from_json(parse_json(std::string(found->second), name), name);
+  std::vector<std::string> names;
+  for (const auto& [known, text] : builtin) names.push_back(known);
+  throw UsageError(unknown_name("suite", name, names));
+}
+
 Suite suite_from_json(const Json& json, const std::string& origin) {
   const Json schema = parse_json(std::string(builtin_schemas().at("suite")), "suite schema");
   const auto violations = schema_violations(json, schema);
   require(violations.empty(),
           [&] { return fmt::format("{} is not a suite: {}", origin, violations[0]); });
   Suite suite{.name = json.at("name"), .title = json.value("title", ""), .blocks = {}};
-  for (const Json& block : json.at("matrix")) suite.blocks.push_back(block_from(block));
+  if (json.contains("cells_of")) suite.blocks = builtin_suite(json["cells_of"]).blocks;
+  for (const Json& block : json.value("matrix", Json::array()))
+    suite.blocks.push_back(block_from(block));
+  for (MatrixBlock& block : suite.blocks) block.rates = json.value("rates", block.rates);
   return suite;
 }
 
 Suite read_suite(const std::string& name_or_path) {
-  const auto& builtin = builtin_suites();
-  const auto found = builtin.find(name_or_path);
-  if (found != builtin.end())
-    return suite_from_json(parse_json(std::string(found->second), name_or_path), name_or_path);
-  if (fs::exists(name_or_path)) return suite_from_json(read_json(name_or_path), name_or_path);
-  std::vector<std::string> names;
-  for (const auto& [name, text] : builtin) names.push_back(name);
-  throw UsageError(unknown_name("suite", name_or_path, names));
+  if (!builtin_suites().contains(name_or_path) && fs::exists(name_or_path))
+    return suite_from_json(read_json(name_or_path), name_or_path);
+  return builtin_suite(name_or_path);
 }
 
 std::vector<Request> expand(const Catalog& catalog, const Suite& suite, const Rates& rates,

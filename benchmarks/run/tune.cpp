@@ -13,6 +13,7 @@
 #include "benchmarks/run/isolate.h"
 #include "core/json.h"
 #include "core/options.h"
+#include "core/results/decisions.h"
 #include "core/status.h"
 #include "optimizers/optimizer.h"
 #include "problems/problem.h"
@@ -288,13 +289,11 @@ Json left_out_rows(const std::vector<Candidate>& candidates,
 
 // The score of each value of a grid on its setting; all 0 where none solves it.
 std::vector<Real> setting_scores(const TunedOption& tuned) {
-  constexpr Real kDoublings = 6;  // log2 64, where a score ends
-  const Real least = std::max(Real(1), std::ranges::min(tuned.scores, {}, &TuningScore::work).work);
+  std::vector<std::optional<Real>> work;
+  for (const TuningScore& score : tuned.scores) work.emplace_back(score.work);
   std::vector<Real> scores;
-  for (const TuningScore& score : tuned.scores) {
-    const Real slower = std::log2(std::max(Real(1), score.work) / least);
-    scores.push_back(std::isfinite(score.work) ? std::max(Real(0), 1 - slower / kDoublings) : 0);
-  }
+  for (const auto& ratio : results::cost_ratios(work))
+    scores.push_back(results::score_of(*ratio, results::kProfileEnd));
   return scores;
 }
 

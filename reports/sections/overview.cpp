@@ -95,8 +95,14 @@ std::string missing_text(const Comparison& comparison) {
 }
 
 std::string headline(const Comparison& c) {
+  std::map<std::size_t, std::set<std::uint64_t>> seeds;  // by problem
+  for (const Run& run : c.runs) seeds[run.problem].insert(run.seed);
+  const bool is_limit = std::ranges::any_of(
+      seeds, [&](const auto& own) { return own.second.size() < c.seeds.size(); });
   return words(c.problems.size() > c.names ? "overview.headline-settings" : "overview.headline",
-               methods_of(c), c.names, c.problems.size(), c.seeds.size(), c.study->runs.size());
+               methods_of(c), c.names, c.problems.size(),
+               is_limit ? words("overview.at-most") + " " : "", c.seeds.size(),
+               c.study->runs.size());
 }
 
 std::vector<std::string> remarks(const Comparison& c) {
@@ -143,9 +149,10 @@ std::string profile_reading(const Comparison& c, std::size_t tolerance) {
 }
 
 std::string curve_reading(const Comparison& c, std::size_t problem) {
-  const std::vector<std::size_t> order = ranking(c, problem);
+  std::vector<std::size_t> order = ranking(c, problem);
   if (order.empty()) return words("curve.nothing");
   const auto work = [&](std::size_t s) { return c.cell(problem, s).headline[kTightest]; };
+  std::ranges::stable_sort(order, {}, [&](std::size_t s) { return work(s).median; });
   const auto solved = static_cast<std::size_t>(
       std::ranges::count_if(order, [&](std::size_t s) { return work(s).is_solved(); }));
   if (solved == 0) return least_loss_reading(c, problem, order);

@@ -58,8 +58,10 @@ std::string settings_text(const Comparison& c) {
   const std::size_t instances = distinct(seeds, instance_of), starts = distinct(seeds, start_of);
   const bool is_crossed = seeds.size() > std::max(instances, starts);
   if (seeds.size() > 1)
-    about += (about.empty() ? "" : "; ") + (is_crossed ? words("ranking.crossed", instances, starts)
-                                                       : words("ranking.starts", starts));
+    about += (about.empty() ? "" : "; ") +
+             (is_crossed ? words("ranking.crossed", instances, starts)
+                         : words(instances > 1 ? "ranking.instances" : "ranking.starts",
+                                 std::max(instances, starts)));
   return words(names < settings ? "ranking.settings" : "ranking.problems", settings, names,
                about.empty() ? "" : " (" + about + ")");
 }
@@ -91,7 +93,8 @@ std::string decision_sentence(const Comparison& c, const Decision& decision) {
   for (const Choice& choice : decision.choices)
     if (choice.varied == Varied::measure && choice.value == name_of(Measure::time) &&
         !choice.is_kept && !choice.first.empty())
-      text += " " + words("ranking.by-time", names_text(c, choice.first, 2), choice.first.size());
+      text += " " + words(c.is_any_timed_together ? "ranking.by-shared-time" : "ranking.by-time",
+                          names_text(c, choice.first, 2), choice.first.size());
   return text;
 }
 
@@ -255,10 +258,20 @@ std::string left_out_text(const Comparison& c) {
 std::string unranked_sentence(const Comparison& c) {
   std::vector<std::string> names;
   for (std::size_t s = 0; s < c.optimizers.size(); ++s) {
-    const auto shared = static_cast<std::size_t>(std::ranges::count_if(
-        c.order.settings, [&](std::size_t p) { return c.cell(p, s).planned > 0; }));
-    if (c.optimizers[s].applicable > 0 && shared > 0 && shared < c.order.settings.size())
-      names.push_back(words("ranking.run-on", name_in_sentence(c.optimizers[s]), shared));
+    Order own{.settings = c.order.settings, .methods = c.order.methods};
+    std::erase_if(own.settings, [&](std::size_t p) { return c.cell(p, s).planned == 0; });
+    if (c.optimizers[s].applicable == 0 || own.settings.empty() ||
+        own.settings.size() == c.order.settings.size())
+      continue;
+    own.methods.push_back(s);
+    const std::vector<Ranked> beside =
+        standings_over(c, own, c.yardstick.by, c.yardstick.tightest().rung);
+    const Real score = std::ranges::find(beside, s, &Ranked::optimizer)->standing.score;
+    const auto ahead = std::ranges::count_if(beside, [&](const Ranked& other) {
+      return other.standing.score > score && !are_tied(other.standing.score, score);
+    });
+    names.push_back(words("ranking.run-on", name_in_sentence(c.optimizers[s]), own.settings.size(),
+                          ordinal(static_cast<std::size_t>(ahead) + 1), beside.size()));
   }
   return names.empty() ? "" : words("ranking.unranked", common_settings(c), joined(names));
 }

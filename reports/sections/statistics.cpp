@@ -30,7 +30,7 @@ Section statistics_section(const Comparison& c) {
       "statistics", counted_name(c),
       c.yardstick.by == Measure::work ? ", which is equal on every machine" : "", cost_unit(c));
   for (std::string& sentence : limits_of_evidence(c))
-    section.readings.push_back({"Limits", std::move(sentence)});
+    section.readings.push_back({words("statistics.limits"), std::move(sentence)});
   if (c.runs.empty()) {
     section.lead.clear();
     return section;

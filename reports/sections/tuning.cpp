@@ -65,10 +65,9 @@ std::vector<Real> best_of_curve(const Comparison& c, const Rates& rates) {
   for (const TunedRate* chosen : rates.tuned) {
     const TunedRate* rate = trials_of(c, *chosen);
     if (rate == nullptr || rate->work.empty()) continue;
-    const Real least = std::max(std::ranges::min(rate->work), 1.0);
     std::vector<Real> scores;
-    for (const Real work : rate->work)
-      scores.push_back(work < kNever ? score_of(std::max(work, 1.0) / least, kProfileEnd) : 0);
+    for (const auto& ratio : cost_ratios({rate->work.begin(), rate->work.end()}))
+      scores.push_back(score_of(*ratio, kProfileEnd));
     all.push_back(expected_best(scores));
     longest = std::max(longest, all.back().size());
   }

@@ -211,7 +211,10 @@ std::string shown_spec(std::string_view spec) {
   return out;
 }
 
-std::string multiple(Real ratio) { return fmt::format("{:.3g}×", ratio); }
+std::string multiple(Real ratio) {
+  constexpr Real kClose = 1.005;  // three digits would call two different numbers equal
+  return fmt::format("{:.{}g}×", ratio, ratio > 1 && ratio < kClose ? 5 : 3);
+}
 
 int shade_of(Real value, Real least) {
   const auto is_passed = [ratio = value / least](Real step) { return ratio > step; };

@@ -79,6 +79,13 @@ TEST(Suites, WithNumbersThatNoTypeHoldsUnknownKeysOrEmptySelectionsAreRefused) {
   EXPECT_EQ(suite_from_json(crossed, "it").blocks[0].seeds, crossed_seeds("2", "2"));
   crossed["matrix"][0]["seeds"] = "3";
   EXPECT_THROW(suite_from_json(crossed, "it"), UsageError);
+  const Json defaults{{"schema", "isoline.suite/1"}, {"name", "it"}, {"rates", "none"}};
+  for (const char* name : {"it", "no-such-suite"}) {
+    Json other = defaults;
+    other["cells_of"] = name;
+    EXPECT_THROW(suite_from_json(other, "it"), UsageError) << name;
+  }
+  EXPECT_THROW(suite_from_json(defaults, "it"), UsageError) << "neither a matrix nor cells";
   empty["matrix"][0]["optimizers"] = {"@no-such-family"};
   EXPECT_THROW(expand(catalog(), suite_from_json(empty, "here"), {}), UsageError);
 }

@@ -333,6 +333,12 @@ std::vector<Fault> changes_without_harm() {
        kFine, kFine},
       {"memory × 2", in_all([](Record& r) { r.summary.peak_memory_bytes = 1 << 20; }), kFine,
        kFine},
+      {"other processor", in_all([](Record& r) {
+         Build other = *r.provenance.build;
+         other.processor = "another";
+         r.provenance = Provenance(std::make_shared<const Build>(other), r.provenance.run);
+       }),
+       kFine, kFine},
       {"other harness with equal figures", in_all(rebuilt("harness", as_it_was)), kApart, kFine},
   };
 }

@@ -362,6 +362,12 @@ TEST(Words, WithoutSuchAKeyOrForOtherValuesAreErrors) {
 
 // A key is written whole in a source, or its beginning is ("column." + name), or it is a part that
 // a table, a plot or a section takes by its name.
+TEST(Words, OfTwoDifferentNumbersAreNotOne) {
+  EXPECT_EQ(multiple(1), "1×");
+  EXPECT_EQ(multiple(1.00428), "1.0043×");
+  EXPECT_EQ(multiple(2.006), "2.01×");
+}
+
 TEST(Words, AreThoseThatSourcesName) {
   std::string sources;
   for (const char* folder : {"reports/sections", "reports/page"})
