@@ -99,8 +99,10 @@ int exit_code_of(const Outcome& outcome) {
     return kInterrupted;
   }
   if (outcome.interrupted > 0) {
-    say(stderr, fmt::format("{} killed from outside; the same command runs what is missing\n",
-                            reports::counted(std::size_t(outcome.interrupted), "cell")));
+    say(stderr,
+        fmt::format(
+            "{} killed from outside, or edited while running; the same command runs what is missing\n",
+            reports::counted(std::size_t(outcome.interrupted), "cell")));
     return kInterrupted;
   }
   const bool is_whole = outcome.missing.empty();
