@@ -20,6 +20,7 @@
 #include <utility>
 
 #include "core/errors.h"
+#include "core/output.h"
 #include "core/text.h"
 
 namespace isoline {
@@ -74,7 +75,8 @@ void write_new(const fs::path& path, std::string_view text, bool is_flushed) {
 
 [[noreturn]] void refuse_as_the_system(const fs::path& path) {
   if (errno == ENOENT) throw UsageError(path.string() + ": no such file");
-  refuse(path, strerror(errno));
+  if (errno == ELOOP) refuse(path, strerror(errno));
+  throw AccessError(fmt::format("cannot read {}: {}", path.string(), strerror(errno)));
 }
 
 // The kind of a path that is not a regular file.
@@ -224,6 +226,34 @@ void write_text(const fs::path& path, std::string_view text) {
     ::unlink(temporary.c_str());
     throw;
   }
+}
+
+void require_ours(const fs::path& path, std::string_view mark) {
+  std::error_code unknown;
+  require(!fs::is_directory(path, unknown),
+          [&] { return fmt::format("cannot write {}: it is a folder", path.string()); });
+  if (!fs::is_regular_file(path, unknown) || fs::file_size(path, unknown) == 0) return;
+  require(read_text(path).find(mark) != std::string::npos, [&] {
+    return fmt::format("{} exists and does not contain {}: name another file, or remove it",
+                       path.string(), mark);
+  });
+}
+
+void write_output(const fs::path& path, std::string_view text, std::string_view mark) {
+  require_ours(path, mark);
+  std::error_code unknown;
+  if (fs::exists(path, unknown) && !fs::is_regular_file(path, unknown)) {
+    OpenFile file(path, O_WRONLY, "open");
+    write_all(file.descriptor(), text, path);
+    if (!file.close()) fail("close", path);
+    return;
+  }
+  const fs::path place = fs::is_symlink(path, unknown) ? fs::weakly_canonical(path) : path;
+  const fs::path folder = place.has_parent_path() ? place.parent_path() : ".";
+  for (const std::string& name : names_in(folder))  // what a killed process left of this file
+    if (name.starts_with(place.filename().string() + ".") && is_abandoned(folder / name))
+      fs::remove(folder / name, unknown);
+  write_text(place, text);
 }
 
 void write_unflushed(const fs::path& path, std::string_view text) { write_new(path, text, false); }

@@ -82,6 +82,8 @@ void declare_run(VerbArguments& verb, RunArguments& given) {
               "Memory limit of a cell, 256MB or more (default: 4GB)");
   declare_what_is_done(verb, given);
   verb.flag("--no-report", given.no_report, "Do not write a report");
+  verb.flag("--uncertified", given.uncertified,
+            "Run external problems whose derivatives fail their checks; each table marks them");
   verb.flag("--keep-output", given.keeps_output,
             "Keep the output of each cell in its record, up to 64 KiB");
   verb.flag("--fields", given.keeps_fields,

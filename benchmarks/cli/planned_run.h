@@ -25,7 +25,7 @@ struct RunArguments {
   bool no_report = false, quiet = false, allow_large = false, keeps_output = false;
   bool keeps_fields = false;
   bool keeps_spectra = false;
-  bool in_process = false;
+  bool in_process = false, uncertified = false;
 };
 void declare_run(VerbArguments& verb, RunArguments& given);
 // The arguments of `run` that `plan` has too.

@@ -100,7 +100,8 @@ int exit_code_of(const Outcome& outcome) {
   }
   if (outcome.interrupted > 0) {
     say(stderr,
-        fmt::format("{} killed by another program; the same command runs the missing cells\n",
+        fmt::format("{} killed by another program, or edited while running; the same command runs "
+                    "the missing cells\n",
                     reports::counted(std::size_t(outcome.interrupted), "cell")));
     return kInterrupted;
   }

@@ -8,9 +8,9 @@
 #include <set>
 
 #include "benchmarks/plan/catalog.h"
+#include "benchmarks/plan/suite.h"
 #include "core/errors.h"
 #include "core/json.h"
-#include "core/records/json_view.h"
 #include "core/text.h"
 
 namespace isoline::benchmarks {
@@ -98,10 +98,7 @@ Claim claim_from(const Catalog& catalog, const Rates& rates, const Json& json,
 
 std::vector<Claim> claims_from_json(const Catalog& catalog, const Rates& rates, const Json& file,
                                     const std::string& origin) {
-  const Json schema = parse_json(std::string(builtin_schemas().at("claims")), "claims schema");
-  const auto violations = schema_violations(file, schema);
-  require(violations.empty(),
-          [&] { return fmt::format("{} is not a file of claims: {}", origin, violations[0]); });
+  require_valid(file, "claims", origin);
   std::vector<Claim> claims;
   for (const Json& json : file.at("claims"))
     claims.push_back(claim_from(catalog, rates, json, file.at("name")));

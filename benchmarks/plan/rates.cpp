@@ -9,10 +9,10 @@
 #include <nlohmann/json.hpp>
 
 #include "benchmarks/plan/catalog.h"
+#include "benchmarks/plan/suite.h"
 #include "core/errors.h"
 #include "core/json.h"
 #include "core/options.h"
-#include "core/records/json_view.h"
 #include "core/seeds.h"
 #include "core/spec.h"
 
@@ -53,7 +53,9 @@ Rates Rates::builtin() {
 Rates Rates::named(const std::string& given) {
   if (given == "builtin") return builtin();
   if (given == "none") return {};
-  return from_json(read_json(given), given);
+  const Json json = read_json(given);
+  require_valid(json, "rates", given);
+  return from_json(json, given);
 }
 
 Rates Rates::from_json(const Json& json, const std::string& origin) {
@@ -101,10 +103,7 @@ const BestLosses& BestLosses::builtin() {
 }
 
 BestLosses BestLosses::from_json(const Json& json, const std::string& origin) {
-  const Json schema = parse_json(std::string(builtin_schemas().at("best")), "best schema");
-  const auto violations = schema_violations(json, schema);
-  require(violations.empty(),
-          [&] { return origin + " is not a table of best losses: " + violations[0]; });
+  require_valid(json, "best", origin);
   BestLosses best;
   for (const Json& row : json.at("rows")) {
     Row& read = best.rows_.emplace_back();

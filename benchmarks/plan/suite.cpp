@@ -123,11 +123,16 @@ static Suite builtin_suite(const std::string& name) {
   throw UsageError(unknown_name("suite", name, names));
 }
 
+void require_valid(const Json& json, const std::string& schema, const std::string& origin) {
+  const std::string text(builtin_schemas().at(schema));
+  const auto violations = schema_violations(json, parse_json(text, schema));
+  require(violations.empty(), [&] {
+    return fmt::format("{} violates the schema '{}': {}", origin, schema, violations[0]);
+  });
+}
+
 Suite suite_from_json(const Json& json, const std::string& origin) {
-  const Json schema = parse_json(std::string(builtin_schemas().at("suite")), "suite schema");
-  const auto violations = schema_violations(json, schema);
-  require(violations.empty(),
-          [&] { return fmt::format("{} is not a suite: {}", origin, violations[0]); });
+  require_valid(json, "suite", origin);
   Suite suite{.name = json.at("name"), .title = json.value("title", ""), .blocks = {}};
   if (json.contains("cells_of")) suite.blocks = builtin_suite(json["cells_of"]).blocks;
   for (const Json& block : json.value("matrix", Json::array()))

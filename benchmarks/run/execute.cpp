@@ -19,6 +19,7 @@
 #include "core/clock.h"
 #include "core/errors.h"
 #include "core/files.h"
+#include "core/foreign/handshake.h"
 #include "core/foreign/line.h"
 #include "core/frames.h"
 #include "core/random.h"
@@ -39,6 +40,8 @@ void run(const Catalog& catalog, const Request& request, Trace& trace, Checkpoin
   const std::string reason = why_inapplicable(entry, request.optimizer.options, problem);
   if (!reason.empty()) throw NotApplicable(reason);
   const auto method = entry.make(request.optimizer.options, catalog.optimizers);
+  require_unedited(request.problem.foreign);
+  require_unedited(request.optimizer.foreign);
   const OracleSet granted = needs_of(entry, request.optimizer.options, problem);
   const auto privileges = optimizers::privileges_of(granted, problem.inverse_kind());
   set_text(trace.privileges, fmt::format("{}", fmt::join(privileges, "\n")));

@@ -17,6 +17,7 @@
 #include "core/clock.h"
 #include "core/errors.h"
 #include "core/files.h"
+#include "core/foreign/handshake.h"
 #include "core/records/provenance.h"
 #include "core/seeds.h"
 #include "core/text.h"
@@ -32,6 +33,19 @@ void Outcome::count(const Record& record) {
   if (record.status == Status::crashed && !crash)
     crash = Crash{record.request, "runs/" + record.file_name()};
   if (record.status == Status::interrupted) ++interrupted;
+}
+
+void require_trust(bool is_given, const Record& record) {
+  if (is_given) return;
+  for (const Component* part : {&record.request.problem, &record.request.optimizer})
+    for (const NamedOption& option : part->options)
+      require(option.name != "command" &&
+                  option_text(option.value).find("command") == std::string::npos,
+              [&] {
+                return fmt::format(
+                    "{} would start a program: {}; if you trust the records, add --trust",
+                    title_of(record.request), part->spec);
+              });
 }
 
 std::string title_of(const Request& request) {
@@ -266,7 +280,13 @@ class Runner {
 
   void keep(std::size_t slot) {
     const Request& request = *tasks_[slot].request;
-    const Worker& worker = workers_[slot];
+    Worker& worker = workers_[slot];
+    try {
+      require_unedited(request.problem.foreign);
+      require_unedited(request.optimizer.foreign);
+    } catch (const KilledProgram& edited) {
+      worker.conclude(Status::interrupted, edited.what());
+    }
     Record record = record_of(request, worker.trace());
     record.provenance.run = tasks_[slot].run;
     if (request.seed > 0 && !options_.keeps_fields) record.fields.reset();
@@ -342,6 +362,8 @@ Request request_again(const Catalog& catalog, const Record& record, double hard_
   request.problem.asked = problem.asked;
   request.optimizer.asked = optimizer.asked;
   request.hard_seconds = hard_seconds;
+  if (request.problem.foreign && record.foreign.problem)  // it may say "(uncertified)"
+    request.problem.foreign->label = record.foreign.problem->label;
   return named(std::move(request));
 }
 

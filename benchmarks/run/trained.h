@@ -10,6 +10,8 @@
 
 namespace isoline::benchmarks {
 
+inline constexpr const char* kNetworkSchema = "isoline.network/1";
+
 struct TrainedNetwork {
   Component problem, optimizer;
   std::uint64_t seed = 0;

@@ -57,7 +57,7 @@ int run(const BestArguments& given, Session& session) {
     const Component& problem = record.request.problem;
     if (!session.catalog().problems.contains(problem.name)) continue;
     const auto [known, is_new] = declares.try_emplace(problem.spec, false);
-    if (is_new) known->second = declares_minimum(session.catalog(), problem, record.request.seed);
+    if (is_new) known->second = record.minimum && !record.is_best_known;  // nothing is started
     if (!known->second) improved += best.add(record);
   }
   write_text(given.out, best_losses_text(best.to_json()));

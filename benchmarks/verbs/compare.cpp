@@ -1,8 +1,12 @@
 // isoline compare BASE NEW: lists what has become worse and better.
 #include <fmt/format.h>
 
+#include <nlohmann/json.hpp>
+
 #include "benchmarks/cli/terminal.h"
 #include "benchmarks/cli/verb.h"
+#include "benchmarks/plan/suite.h"
+#include "core/json.h"
 #include "core/text.h"
 #include "reports/compare/gate.h"
 
@@ -37,7 +41,10 @@ int run(const CompareArguments& given, Session&) {
   reports::GateOptions options{.is_common_only = given.is_common_only};
   if (given.tolerance >= 0) options.tolerance = given.tolerance;
   if (given.noise >= 0) options.least_noise = given.noise;
-  if (!given.allowed.empty()) options.allowed = reports::read_allowed(given.allowed);
+  if (!given.allowed.empty()) {
+    require_valid(read_json(given.allowed), "allowed", given.allowed);
+    options.allowed = reports::read_allowed(given.allowed);
+  }
   options.listener = progress_on_terminal("reading records");
   const reports::GateResult result = reports::compare_results(given.before, given.after, options);
   say(stdout, given.as_json       ? reports::gate_json(result)

@@ -25,6 +25,7 @@ struct ReplayArguments {
   std::string sample;             // "1%", "20"; empty: all of the records
   std::uint64_t seed = 0;         // of the sample; 0: another one each time
   std::int64_t memory_bytes = 0;  // 0: as the runner has it
+  bool trust = false;
 };
 
 void declare(VerbArguments& verb, ReplayArguments& given) {
@@ -34,6 +35,7 @@ void declare(VerbArguments& verb, ReplayArguments& given) {
   verb.text("--sample", given.sample, "Replay a random sample of the records: 1%, or 20 of them");
   verb.seed("--seed", given.seed, "Seed of the sample; 0: a new one each time, which is printed");
   verb.memory("--memory", given.memory_bytes, "Memory limit of a cell (default: 4GB)");
+  verb.flag("--trust", given.trust, kTrust);
   verb.plugins();
 }
 
@@ -65,6 +67,7 @@ int replay(const std::string& path, const ReplayArguments& given, Session& sessi
     return fmt::format("{} is a folder: name records, such as those in its runs/", path);
   });
   const Record record = read_unchecked_record(path);
+  require_trust(given.trust, record);
   const std::string title = fmt::format("{}: {}", path, title_of(record.request));
   Request request;
   try {

@@ -91,6 +91,7 @@ int run(const RunArguments& given, Session& session) {
   if (!given.shard.empty()) keep_shard(shard_of(given.shard), all);
   RunOptions options{.jobs = given.jobs > 0 ? given.jobs : one_a_core(),
                      .force = given.force,
+                     .uncertified = given.uncertified,
                      .reuse = given.reuse,
                      .retry = statuses_of(given.retry),
                      .exclusive = given.exclusive,

@@ -80,7 +80,7 @@ TEST_F(ForeignCells, OfOneThatAnswersTooLateAreTimedOutAndNoFiniteNumberDiverges
 
 TEST_F(ForeignCells, TakeWhatTheirProgramStartedWithThem) {
   const auto file = folder.path() / "process";
-  const Record record = record_after("forks " + file.string());
+  const Record record = record_after("forks file=" + file.string());
   EXPECT_EQ(record.status, Status::budget) << record.message;
   pid_t process = 0;
   std::ifstream(file) >> process;
@@ -123,7 +123,45 @@ TEST_F(ForeignCells, AreRunOnlyWhereTheProblemIsCertified) {
   EXPECT_EQ(complaint("is-sound"), "");
 }
 
+TEST_F(ForeignCells, OfAnUncertifiedProblemAreMarkedInEachTable) {
+  options.uncertified = true;
+  const Request wrong =
+      request_of(process_of(misbehaving("misbehaving.py has-a-wrong-sign")), "gd");
+  run_plan(catalog(), "trial", {wrong, request_of(kValley, "gd")}, folder.path(), options, {});
+  std::size_t marked = 0;
+  for (const std::string& name : names_in(folder.path() / "runs")) {
+    const Record record = read_record(folder.path() / "runs" / name);
+    const bool is_marked = record.foreign.problem->label.ends_with(" (uncertified)");
+    EXPECT_EQ(is_marked, record.cell == wrong.cell);
+    marked += is_marked;
+  }
+  EXPECT_EQ(marked, 1U);
+}
+
+TEST_F(ForeignCells, HandOverACopyOfX) {
+  const Request changes =
+      request_of(process_of(misbehaving("misbehaving.py changes-its-argument")), "gd");
+  EXPECT_EQ(refusal([&] { run_plan(catalog(), "trial", {changes}, folder.path(), options, {}); }),
+            "");
+}
+
 // --- records and builds
+
+// The digest of the old script must not stand beside results of the new one.
+TEST_F(ForeignCells, OfAScriptThatIsEditedDuringTheRunAreInterrupted) {
+  const auto script = folder.path() / "mine.py";
+  const std::string original = read_text(ISOLINE_SOURCE_DIR "/tests/clients/misbehaving.py");
+  write_text(script, original);
+  const Request during =
+      request_of(process_of("python3 " + script.string() + " edits-itself"), "gd");
+  const Request before = request_of(process_of("python3 " + script.string() + " is-sound"), "gd");
+  EXPECT_EQ(record_of(before).status, Status::budget);
+  EXPECT_EQ(record_of(during).status, Status::interrupted) << "edited while the cell ran";
+  options.force = true;
+  EXPECT_EQ(record_of(before).status, Status::interrupted) << "edited before the cell began";
+  write_text(script, original);
+  EXPECT_EQ(record_of(before).status, Status::budget);
+}
 
 TEST_F(ForeignCells, SayWhoComputedThem) {
   const Record record = record_of(request_of(kValley, process_of(example("descent.py"))));
@@ -182,6 +220,7 @@ TEST_F(ForeignCells, OfAnOptimizerKeepWhatItClaimsAndPrintsAndFailWithWhatItDid)
             "the method called the oracle 'jacobian', which it does not declare as needed");
   EXPECT_NE(record_of_method("raises").message.find("ValueError: the step"), std::string::npos);
   EXPECT_NE(record_of_method("leaves").message.find("it exited with code 4"), std::string::npos);
+  EXPECT_NE(record_of_method("forgets").message.find("ended without finish"), std::string::npos);
   const Record endless = record_of_method("never-stops", {.work = 40});
   EXPECT_EQ(endless.status, Status::budget) << endless.message;
   EXPECT_LE(endless.summary.work, 42);

@@ -246,6 +246,13 @@ TEST_F(Report, ByAnyMeasureAtAnyToleranceTellsWhichInItsJson) {
   shell.expect("./isoline validate results/report/report.json");
 }
 
+TEST_F(Report, KeepsTheProblemsThatAreNamed) {
+  shell.expect("./isoline report results --out one --problem square");
+  const std::string table = read_text(shell.folder() / "one" / "report.csv");
+  EXPECT_TRUE(contains(table, "square,gd") && !contains(table, "rosenbrock,")) << table;
+  shell.expect("./isoline report results --problem sine", {.exit_code = 1});
+}
+
 TEST_F(Report, AToleranceBetweenTwoIsTheNextStricterOneAndSaysSo) {
   shell.expect("./isoline report results --tolerance 5e-5",
                {.err = {"4e-5, the next stricter one"}});
@@ -272,6 +279,26 @@ TEST(BestVerb, KeepsTheLeastLossOfRunsThatDeclareNoneAndNoOther) {
   shell.expect("./isoline validate best.json");
   shell.expect("./isoline best out --out best.json", {.out = {"improved: 0\n"}});
   EXPECT_EQ(read_json(shell.folder() / "best.json"), table);
+}
+
+// A record may come from someone else.
+TEST(Records, StartNoCommandUntilTheyAreTrusted) {
+  const Shell shell;
+  const fs::path started = shell.folder() / "started";
+  write_text(shell.folder() / "mine.py",
+             "import isoline\nopen('started', 'w').close()\n"
+             "isoline.problem(lambda x: [x[0] - 1], [3], jacobian=lambda x: [[1]])\n");
+  shell.expect(
+      "./isoline run --problem 'process[command=\"python3 mine.py\"]' --optimizer gd --out out "
+      "--iterations 5 --quiet --no-report");
+  ASSERT_TRUE(fs::remove(started));
+  shell.expect("./isoline best out --out best.json && ./isoline report out");
+  const std::string named = "python3 mine.py";
+  shell.expect("./isoline replay out/runs/*.json", {.exit_code = 1, .err = {named}});
+  shell.expect("./isoline baseline out --out base.json", {.exit_code = 1, .err = {named}});
+  EXPECT_FALSE(fs::exists(started));
+  shell.expect("./isoline replay --trust out/runs/*.json");
+  EXPECT_TRUE(fs::exists(started));
 }
 
 // The gate of this repository on runs of the built program: it fails on each planted fault, with

@@ -146,6 +146,8 @@ const std::vector<std::pair<std::string, std::string>> kMistakes = {
     {"compare . . --tolerance -1", "--tolerance"},
     {"compare . . --json --markdown", "--json"},
     {"compare . . --allow nowhere.json", "nowhere.json"},
+    {"run --problem square --optimizer gd --rates wrong.json", "wrong.json violates the schema"},
+    {"compare . . --allow wrong.json", "wrong.json violates the schema"},
     {"merge nowhere --out results", "nowhere"},
     {"merge .", "--out"},
     {"claims notebok", "did you mean 'notebook'"},
@@ -159,6 +161,7 @@ const std::vector<std::pair<std::string, std::string>> kMistakes = {
 
 TEST(Usage, MistakesAreOneSentenceWithASuggestionAndExitOne) {
   const Shell shell;
+  write_text(shell.folder() / "wrong.json", "{\"rows\": [1]}");
   for (const auto& [command, sentence] : kMistakes) {
     const Finished result =
         shell.expect("./isoline " + command, {.exit_code = 1, .err = {sentence}});
@@ -297,6 +300,16 @@ TEST(ForeignText, ARecordsMessageIsShownAsTextAndKeptAsItIs) {
 
 // Output on a terminal: summaries first, short lists, durations, and the next command after a
 // crash.
+
+// A file that is opened must not get what belongs on the terminal, and a full disk is reported.
+TEST(Terminal, ClosedAndFullStreamsAreNoticed) {
+  const Shell shell;
+  shell.expect("./isoline run --problem square --optimizer gd --out out --no-report 2>&-");
+  EXPECT_TRUE(std::filesystem::is_empty(shell.folder() / "out" / "cells.lock"));
+  for (const char* verb : {"describe gd", "check square", "report out"})
+    shell.expect(std::string("./isoline ") + verb + " >/dev/full",
+                 {.exit_code = 2, .err = {"No space left"}});
+}
 
 TEST(Terminal, ARunSaysHowLongItTook) {
   const Finished result =

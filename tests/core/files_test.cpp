@@ -1,6 +1,7 @@
 // Files under hostile names, temporary files of other programs, and the formats NPY and JSON.
 #include "core/files.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -8,6 +9,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <array>
 #include <cmath>
 #include <csignal>
 #include <cstring>
@@ -16,6 +18,7 @@
 
 #include "core/errors.h"
 #include "core/json.h"
+#include "core/output.h"
 #include "core/records/json_view.h"
 #include "core/records/npy.h"
 #include "core/records/record.h"
@@ -167,6 +170,48 @@ TEST(Files, AFailedWriteLeavesTheOldFileAndNoOther) {
 }
 
 // A limit on the size of files stands in for a full disk: write() fails half-way in both.
+TEST(Files, OfAUserAreWrittenThroughWhatIsNoFileAndNeverInThePlaceOfAnothers) {
+  const TemporaryFolder owned;
+  const fs::path file = owned.path() / "file", link = owned.path() / "link";
+  write_output("/dev/null", "mark 1", "mark");
+  EXPECT_EQ(fs::status("/dev/null").type(), fs::file_type::character);
+  write_output(file, "mark 1", "mark");
+  fs::create_symlink("file", link);
+  write_output(link, "mark 2", "mark");
+  EXPECT_TRUE(fs::is_symlink(link));
+  EXPECT_EQ(read_text(file), "mark 2");
+  const fs::path pipe = owned.path() / "pipe";
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  const int reader = open(pipe.c_str(), O_RDONLY | O_NONBLOCK);
+  write_output(pipe, "mark 3", "mark");
+  std::array<char, 16> got{};
+  EXPECT_EQ(read(reader, got.data(), got.size()), 6);
+  close(reader);
+  EXPECT_TRUE(fs::is_fifo(pipe));
+  write_text(file, "a letter of mine");
+  EXPECT_THROW(write_output(file, "mark 4", "mark"), UsageError);
+  EXPECT_EQ(read_text(file), "a letter of mine");
+  EXPECT_THROW(write_output(owned.path(), "mark 5", "mark"), UsageError);
+}
+
+TEST(Files, ThatTheSystemDoesNotOpenAreToldFromDamagedOnes) {
+  const pid_t child = fork();
+  if (child == 0) {
+    const rlimit none{0, 0};
+    setrlimit(RLIMIT_NOFILE, &none);
+    try {
+      read_text("/proc/self/exe");
+    } catch (const AccessError&) {
+      _exit(0);
+    } catch (...) {
+    }
+    _exit(1);
+  }
+  int status = 0;
+  ASSERT_EQ(waitpid(child, &status, 0), child);
+  EXPECT_EQ(status, 0);
+}
+
 TEST(Files, AFullDiskIsAnErrorAndLeavesNothingBehind) {
   const TemporaryFolder owned;
   const std::filesystem::path& folder = owned.path();
