@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/decompose.h"
 #include "core/workspace.h"
 #include "make.h"
 #include "problems/dense_physics.h"
@@ -58,6 +59,50 @@ TEST_P(EveryProblem, SatisfiesWhatProblemsMust) {
     for (const Finding& finding : examine(problem, stream))
       EXPECT_LE(finding.figure, finding.limit)
           << finding.property << " (" << finding.reason << "), seed " << seed;
+  }
+}
+
+// P(x + d) − P(x) = ∫ J(x + td) d dt over 0 < t < 1, the fundamental theorem of calculus, by
+// Simpson's rule over a short path. The flow is left out: its paths cross points without a
+// derivative.
+TEST_P(EveryProblem, ChangesByItsAverageDerivativeAlongAPath) {
+  const Problem problem = make(GetParam());
+  if (!problem.has_identity_network() || GetParam().starts_with("navier-stokes")) return;
+  RandomStream stream(0, GetParam(), "path");
+  const Vector x = problem.start();
+  const Vector d =
+      1e-3 * x.cwiseAbs().cwiseMax(1).cwiseProduct(stream.uniform_vector(x.size(), -1, 1));
+  Point at;
+  problem.forward(x + d, at);
+  Matrix secant = at.y, mean = Matrix::Zero(at.y.rows(), at.y.cols()), slope = mean;
+  for (const auto& [t, weight] : {std::pair{0.5, 4.0 / 6}, {1.0, 1.0 / 6}, {0.0, 1.0 / 6}}) {
+    problem.forward(x + t * d, at);
+    problem.pushforward(d, slope, at);
+    mean += weight * slope;
+  }
+  secant -= at.y;
+  EXPECT_LE((mean - secant).norm(), 1e-7 * secant.norm() + 1e-13 * at.y.norm());
+}
+
+// P⁻¹(y + Δy; x) − x tends to J⁻¹Δy, and differs from it by O(Δy²): the limit of small steps, in
+// which the inverse is local.
+TEST(LocalInverse, TendsToTheInverseJacobian) {
+  for (const char* spec : {"square", "sine[xi=1]", "sine[xi=32]", "exponential"}) {
+    const Problem problem = make(spec);
+    Point at;
+    problem.forward(problem.start(), at);
+    Matrix J(at.y.size(), at.x().size());
+    for (Index j = 0; j < J.cols(); ++j)
+      problem.pushforward(Vector::Unit(J.cols(), j), J.col(j), at);
+    const Vector away = problem.target() - at.y;
+    const auto rest = [&](Real share) {
+      Matrix found = at.x();
+      EXPECT_TRUE(problem.local_inverse(at.y + share * away, found, at).all());
+      Vector linear;
+      EXPECT_TRUE(solve_square(J, share * away, linear));
+      return (found - at.x() - linear).norm();
+    };
+    EXPECT_NEAR(rest(1e-4) / rest(5e-5), 4, 0.05) << spec;
   }
 }
 

@@ -43,6 +43,22 @@ Judgement judgement_of(const Asked& asked, const std::vector<Record>& runs) {
   return judge(Json::array({claim_of(asked)}), runs).at(0);
 }
 
+// A claim asks for cells without a limit of time.
+TEST(Claims, TakeRunsThatNoLimitOfTimeHasEnded) {
+  Json claim = claim_of({});
+  std::vector<Record> runs = adam_and_sip();
+  for (Record& run : runs) {
+    for (Json& term : claim["cells"][0]["terms"])
+      for (Json& cell : term[0]["cells"])
+        if (cell == run.cell) cell = cell_digest(run.request);
+    run.request.budget.seconds = 600;
+    run.cell = cell_digest(run.request);
+  }
+  EXPECT_EQ(judge(Json::array({claim}), runs).at(0).verdict, Verdict::consistent);
+  for (Record& run : runs) run.is_nondeterministic = true;
+  EXPECT_EQ(judge(Json::array({claim}), runs).at(0).verdict, Verdict::not_comparable);
+}
+
 const Json kText{{"from", "text"}, {"relative", 0.05}};
 const Json kFigure{{"from", "figure"}, {"relative", 0.2}};
 const Json kTwo{{"from", "figure"}, {"relative", 0.2}, {"values", 2}};
