@@ -99,7 +99,7 @@ const std::vector<std::pair<std::string, std::string>> kMistakes = {
     {"run --problem square --optimizer gd --seeds ''", "--seeds: it must not be empty"},
     {"run --problem square --optimizer gd --out ''", "--out: it must not be empty"},
     {"run --problem square --optimizer gd --seeds 0", "--seeds: the number of seeds"},
-    {"run --problem square --optimizer gd --starts 1000", "--starts: instances"},
+    {"run --problem square --optimizer gd --starts 0", "--starts: the number"},
     {"run --problem square --optimizer gd --best nowhere.json", "nowhere.json"},
     {"run --problem square --optimizer gd --plugin nowhere.so", "--plugin: nowhere.so"},
     {"run --problem square --optimizer 'gd[lr=1,rate=2]'", "rate is given twice"},
