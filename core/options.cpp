@@ -71,7 +71,7 @@ class FieldParser {
   }
   Real within(Real value) const {
     if (!isoline::contains(field_.range, value)) reject("in " + range_text(field_.range));
-    return value;
+    return value + 0.0;  // −0 as 0: both are one setting
   }
   [[noreturn]] void reject(const std::string& law, const std::string& nearest = "") const {
     std::string text =

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "benchmarks/plan/rates.h"
 #include "benchmarks/plan/suite.h"
 #include "benchmarks/run/progress.h"
 #include "benchmarks/run/run_plan.h"
@@ -18,12 +19,23 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// Calls read() and puts the flag into its complaint.
+auto read_as(const char* flag, const auto& read) {
+  try {
+    return read();
+  } catch (const UsageError& error) {
+    throw UsageError(fmt::format("{}: {}", flag, error.what()));
+  }
+}
+
 void override_blocks(const RunArguments& given, Suite& suite) {
   const std::uint64_t most_seeds = given.allow_large ? kMostWhereLarge : kMostSeeds;
   for (MatrixBlock& block : suite.blocks) {
-    if (!given.seeds.empty()) block.seeds = parse_seeds(given.seeds, most_seeds);
+    if (!given.seeds.empty())
+      block.seeds = read_as("--seeds", [&] { return parse_seeds(given.seeds, most_seeds); });
     if (!given.instances.empty() || !given.starts.empty())
-      block.seeds = crossed_seeds(given.instances, given.starts);
+      block.seeds = read_as("--instances and --starts",
+                            [&] { return crossed_seeds(given.instances, given.starts); });
     if (given.iterations > 0) block.budget.iterations = given.iterations;
     if (given.work > 0) block.budget.work = given.work;
     if (given.target >= 0) block.budget.target = given.target;
@@ -57,6 +69,8 @@ void declare_cells(VerbArguments& verb, RunArguments& given) {
             "criterion is x, to the norm of x* (default: 1e-10)");
   verb.whole("--threads", given.threads, "Threads of the libraries within a cell", kThreads);
   verb.text("--rates", given.rates, "Table of tuned rates: builtin, none or a file").shown();
+  verb.text("--best", given.best,
+            "Table of `isoline best`: f_L of problems that declare no least loss");
   verb.flag("--allow-large", given.allow_large, "Plan more than a million cells");
   verb.plugins();
 }
@@ -110,6 +124,7 @@ PlannedRun planned_run(const RunArguments& given, const Catalog& catalog) {
   require(given.memory_bytes == 0 || given.memory_bytes >= kLeastMemory, [&] {
     return fmt::format("--memory must be at least 256MB, got {} bytes", given.memory_bytes);
   });
+  if (!given.best.empty()) read_as("--best", [&] { BestLosses::add_known(given.best); });
   const bool is_limited = !given.problem.empty() || !given.optimizer.empty();
   const bool is_suite = !given.suite.empty() || !is_limited;
   Suite suite;

@@ -49,10 +49,12 @@ Session::Session(std::string command, std::function<Catalog()> make)
 const Catalog& Session::catalog() {
   if (catalog_) return *catalog_;
   Catalog made = make_();
-  for (const std::string& path : plugins_) {
-    require_loadable(path);
-    add_plugin(made, path);
-  }
+  for (const std::string& path : plugins_) try {
+      require_loadable(path);
+      add_plugin(made, path);
+    } catch (const UsageError& error) {
+      throw UsageError(std::string("--plugin: ") + error.what());
+    }
   catalog_ = std::make_shared<const Catalog>(std::move(made));
   return *catalog_;
 }

@@ -66,22 +66,42 @@ MatrixBlock block_from(const Json& json) {
 
 bool is_selector(const std::string& text) { return text == "*" || text.starts_with('@'); }
 
+// A list such as "gd,@factorizing" in parts; its selectors stand first or last.
+std::vector<std::string> parts_of(std::string text) {
+  std::vector<std::string> parts;
+  for (auto at = text.find(','); at != text.npos && is_selector(text.substr(0, at));
+       at = text.find(',')) {
+    parts.push_back(text.substr(0, at));
+    text.erase(0, at + 1);
+  }
+  for (auto at = text.rfind(','); at != text.npos && is_selector(text.substr(at + 1));
+       at = text.rfind(',')) {
+    parts.push_back(text.substr(at + 1));
+    text.erase(at);
+  }
+  parts.push_back(std::move(text));
+  return parts;
+}
+
 // The names in a block, with selectors replaced by the names that they match.
 template <class Registered>
 std::vector<std::string> named_specs(const Registered& registry,
                                      const std::vector<std::string>& texts,
                                      const std::vector<std::string>& excepted) {
   std::vector<std::string> specs;
-  for (const std::string& text : texts) {
-    if (!is_selector(text)) {
-      specs.push_back(text);
-      continue;
+  for (const std::string& whole : texts)
+    for (const std::string& text : parts_of(whole)) {
+      if (!is_selector(text)) {
+        specs.push_back(text);
+        continue;
+      }
+      const std::size_t before = specs.size();
+      for (const auto& [name, entry] : registry)
+        if (entry.in_all && is_selected(entry, text) &&
+            std::ranges::find(excepted, name) == excepted.end())
+          specs.push_back(name);
+      require(specs.size() > before, [&] { return fmt::format("'{}' selects nothing", text); });
     }
-    for (const auto& [name, entry] : registry)
-      if (entry.in_all && is_selected(entry, text) &&
-          std::ranges::find(excepted, name) == excepted.end())
-        specs.push_back(name);
-  }
   return specs;
 }
 
@@ -90,10 +110,6 @@ std::vector<std::string> problem_specs(const Catalog& catalog, const MatrixBlock
 }
 
 std::vector<std::string> optimizer_specs(const Catalog& catalog, const MatrixBlock& block) {
-  for (const std::string& text : block.optimizers)
-    require(!is_selector(text) ||
-                !named_specs(catalog.optimizers, {text}, block.except_optimizers).empty(),
-            [&] { return fmt::format("'{}' does not select any optimizer", text); });
   return named_specs(catalog.optimizers, block.optimizers, block.except_optimizers);
 }
 

@@ -346,7 +346,7 @@ Record record_of(const Request& request, const Trace& trace) {
   add_verdicts(trace, record);
   record.counts = trace.last.counts;
   record.prices = trace.prices;
-  const std::optional<Real> best = BestLosses::builtin().find(request.problem, request.seed);
+  const std::optional<Real> best = BestLosses::known().find(request.problem, request.seed);
   record.is_best_known = best && best == record.minimum;
   record.criterion = digest_of(criterion_of(record));
   record.summary = summary_of(trace);

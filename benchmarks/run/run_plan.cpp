@@ -115,11 +115,15 @@ void write_used_rates(const Rates& rates, const std::vector<Request>& requests, 
     // "direct" of "direct.json": what a search in that table alone calls it.
     const std::string table = request.rates.substr(0, request.rates.rfind(".json"));
     const auto add_found = [&](const Rates::Row& row) {
-      add({{"problem", problem.spec},
-           {"optimizer", optimizer},
-           {"options", to_json(row.options)},
-           {"file", row.origin},
-           {"source", parse_json(row.source, row.origin)}});
+      const Json source = parse_json(row.source, row.origin);
+      Json found{{"problem", problem.spec},
+                 {"optimizer", optimizer},
+                 {"options", to_json(row.options)},
+                 {"file", row.origin},
+                 {"source", source}};
+      if (row.is_from_grid && !source.contains("families") && !row.names_all_of(problem))
+        found["setting"] = row.setting;
+      add(found);
     };
     const Rates::Row* row = rates.find(problem, optimizer, table);
     if (!row) continue;

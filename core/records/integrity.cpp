@@ -41,6 +41,8 @@ class Invariants {
              curve_.iteration.end(),
          "the iterations of its curve do not increase");
     hold(std::ranges::is_sorted(curve_.work), "the work of its curve decreases");
+    for (const std::vector<Real>* times : {&curve_.wall_seconds, &curve_.processor_seconds})
+      hold(std::ranges::is_sorted(*times), "the times of its curve decrease");
     if (!broke_off) check_ends();
     check_prices();
     check_losses();
@@ -64,8 +66,11 @@ class Invariants {
     for (const std::vector<Real>* times :
          {&curve_.wall_seconds, &curve_.processor_seconds, &record_.repeat_wall_seconds})
       hold(std::ranges::none_of(*times, is_negative), "its times are negative");
-    hold(summary_.work >= 0 && summary_.iterations >= 0 && !is_negative(summary_.wall_seconds),
-         "its summary has negative work, iterations or time");
+    hold(summary_.work >= 0 && summary_.iterations >= 0 && summary_.rejected_steps >= 0 &&
+             summary_.peak_memory_bytes >= 0 && !is_negative(summary_.wall_seconds) &&
+             !is_negative(summary_.processor_seconds),
+         "its summary has negative counts, times or memory");
+    hold(std::ranges::none_of(record_.counts, is_negative), "its counts are negative");
   }
 
   // The summary is the first and the last point of the curve. Of one point both are it.
@@ -145,7 +150,13 @@ class Invariants {
 
   // A target is met by the iterate of an iteration, or by a trial on the way to the next one.
   void check_hits(const Hits& hits) {
+    const auto forwards = hits.counts.find(std::string(kOracleNames[0]));
+    hold(forwards == hits.counts.end() || forwards->second == hits.forwards,
+         "the forward solves of its hits are not those of its counts");
     for (std::size_t j = 0; j < hits.target.size(); ++j) {
+      hold(std::abs(hits.target[j] - rung(j)) <= kRounding * rung(j),
+           "its target {} is not the one of this place, {}", hits.target[j], rung(j));
+      hold(!(hits.wall_seconds[j] < 0), "its hits have negative times");
       const Real goal = goal_at(hits.target[j]);
       if (hits.iteration[j] < 0) {
         hold(!(summary_.best_loss < goal - slack()),

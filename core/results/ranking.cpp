@@ -78,6 +78,7 @@ std::vector<std::size_t> best_first(const Comparison& c) {
     if (c.order.has(a) != c.order.has(b)) return c.order.has(a);
     const Standing &mine = c.optimizers[a].tightest(), &other = c.optimizers[b].tightest();
     if (!are_tied(mine.score, other.score)) return mine.score > other.score;
+    if (mine.solved != other.solved) return mine.solved > other.solved;
     if (mine.reached != other.reached) return mine.reached > other.reached;
     return c.optimizers[a].standings[0].score > c.optimizers[b].standings[0].score;
   });
@@ -262,7 +263,7 @@ Comparison compare_optimizers(const Study& study, const Yardstick& yardstick) {
 
 bool is_ordered(const Comparison& c, std::size_t p) {
   if (c.problems[p].is_learned) return is_all_learned(c);
-  return !is_sanity(c, p) && !is_ill_posed(c, p);
+  return !is_sanity(c, p) && !is_ill_posed(c, p) && !c.problems[p].lacks_least_loss();
 }
 
 bool is_sanity(const Comparison& c, std::size_t p) {
@@ -270,7 +271,7 @@ bool is_sanity(const Comparison& c, std::size_t p) {
     return [group](const ProblemAxis& problem) { return problem.group() == group; };
   };
   return (is_in("classical")(c.problems[p]) || is_in("toy")(c.problems[p])) &&
-         std::ranges::any_of(c.problems, is_in("physics"));
+         !c.problems[p].lacks_least_loss() && std::ranges::any_of(c.problems, is_in("physics"));
 }
 
 bool is_ill_posed(const Comparison& c, std::size_t p) {
@@ -323,6 +324,10 @@ bool are_tied(Real score, Real other) {
   return std::abs(score - other) <= kRounding;
 }
 
+bool are_tied(const Standing& standing, const Standing& other) {
+  return are_tied(standing.score, other.score) && standing.solved == other.solved;
+}
+
 std::vector<Ranked> standings_to(const Comparison& c, Measure by, std::size_t target) {
   return standings_over(c, c.order, by, target);
 }
@@ -354,6 +359,7 @@ std::vector<Ranked> standings_over(const Comparison& c, const Order& order, Meas
   }
   std::ranges::stable_sort(standings, [](const Ranked& a, const Ranked& b) {
     if (!are_tied(a.standing.score, b.standing.score)) return a.standing.score > b.standing.score;
+    if (a.standing.solved != b.standing.solved) return a.standing.solved > b.standing.solved;
     return a.standing.reached > b.standing.reached;
   });
   return standings;

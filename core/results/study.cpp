@@ -19,6 +19,7 @@ namespace isoline::results {
 void fields(Like<TunedRate> auto& rate, auto& field) {
   field("problem", rate.problem);
   field("optimizer", rate.optimizer);
+  field.optional("setting", rate.setting);
   field.optional("file", rate.file);
   std::map<std::string, std::vector<Real>> grid;
   std::vector<std::vector<Real>> scores;
@@ -427,6 +428,7 @@ std::vector<Reached> targets_met(const Record& record, const Prices& prices, Aim
       return x_goal(rung(j), *record.x_scale, record.x_floor);
     });
   }
+  if (!record.minimum) return {};
   if (record.hits) return from_hits(record, prices);
   const Real minimum = best.minimum(record), scale = best.scale(record);
   return from_curve(record, prices, record.curve.loss,

@@ -47,7 +47,7 @@ std::string deeds_html(const Comparison& c, std::size_t s) {
       for (const std::size_t run : cell.runs)
         if (is_failure(c.runs[run].record->status)) message = c.runs[run].record->message;
       add(failed, fmt::format("{} of {} runs: {}", cell.failed, cell.runs.size(), message));
-    } else if (!work.is_solved()) {
+    } else if (!work.is_solved() && !c.problems[p].lacks_least_loss()) {
       add(unsolved, fmt::format("{}; final loss {} at best", status_text(cell.statuses),
                                 figure(cell.loss.low)));
     }
@@ -109,11 +109,11 @@ std::string options_html(const Comparison& c, std::size_t s, const Sheet& sheet)
 // "3rd of 36 on the 17 settings that all ranked methods ran on", or that it is not ranked.
 std::string place_text(const Comparison& c, std::size_t s) {
   if (!c.order.has(s)) return "Not ranked";
-  const Real score = c.optimizers[s].tightest().score;
-  const auto before = std::ranges::count_if(c.order.methods, [&](std::size_t other) {
-    const Real theirs = c.optimizers[other].tightest().score;
-    return theirs > score && !are_tied(theirs, score);
+  const Standing& own = c.optimizers[s].tightest();
+  const auto first = std::ranges::find_if(c.order.methods, [&](std::size_t other) {
+    return are_tied(own, c.optimizers[other].tightest());
   });
+  const auto before = first - c.order.methods.begin();
   return fmt::format("{} of {} on the {} common to all ranked methods",
                      ordinal(1 + static_cast<std::size_t>(before)), c.order.methods.size(),
                      counted(c.order.settings.size(), common_noun(c)));

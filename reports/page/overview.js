@@ -43,10 +43,11 @@ function drawStandings(table) {
 // How far from the best, as a class of the style sheet: how many of the report's steps are passed.
 const heatOf = (value, low) => `h${DATA.shades.filter((step) => value / low > step).length}`;
 
-function heatCell(cell, low, best) {
+function heatCell(cell, low, best, isUnknown = false) {
   if (cell === undefined) return cellWith('', '', {className: 'none'});
   const work = takenBy(cell), {failed, missing} = cell, all = cell.reached.length, reached = reachedOf(cell);
   if (all === 0) return missing > 0 ? cellWith('missing', '', {className: 'lost'}) : cellWith('n/a', '', {className: 'na'});
+  if (isUnknown) return cellWith('?', '', {className: 'none'});  // no loss of it counts as solved
   const isTold = (reached > 0 && reached < all) || failed > 0 || missing > 0;
   const told = `${reached}/${all}${failed > 0 ? `, ${failed} failed` : ''}${missing > 0 ? `, ${missing} missing` : ''}`;
   return cellWith(amount(work), isTold ? told : '', {className: work === Infinity ? 'no' : work <= best ? 'h0 best' : heatOf(atLeast(work), atLeast(low))});
@@ -96,7 +97,7 @@ function drawHeat(table) {
         element('th', {scope: 'row'}, ...nameOfMethod(s), ...kind === undefined ? [] : [element('small', {}, kind)]),
         standing === undefined ? cellWith('') : cellWith(String(standing.solved), `/${standing.settings}`, {className: 'solved'}),
         ...columns.map((p) => {
-          const place = DATA.problems[p].learned === undefined ? heatCell(by.get(p), least[p], best[p]) : learnedCell(DATA.problems[p], s);
+          const place = DATA.problems[p].learned === undefined ? heatCell(by.get(p), least[p], best[p], DATA.problems[p].isUnknown) : learnedCell(DATA.problems[p], s);
           place.dataset.p = p;
           return place;
         }));

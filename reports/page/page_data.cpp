@@ -117,6 +117,7 @@ std::string problem_json(const Comparison& c, std::size_t p,
              is_ordered(c, p), json_list(asked, [&](std::size_t s) { return cell_json(c, p, s); }),
              indices(ranked), indices(shown_at_first(c, ranked))) +
          origins_json(c, p) + learned_json(c, p) +
+         (problem.lacks_least_loss() ? ",\"isUnknown\":true" : "") +
          (fields ? ",\"fields\":" + fields_json(*fields) : "") + "}";
 }
 

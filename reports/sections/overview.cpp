@@ -58,9 +58,15 @@ Leading leaders(const Comparison& c, const Profile& profile, Real factor) {
 
 std::string least_loss_reading(const Comparison& c, std::size_t problem,
                                const std::vector<std::size_t>& order) {
-  const std::size_t best = *std::ranges::min_element(
-      order, {}, [&](std::size_t s) { return c.cell(problem, s).loss.median; });
-  const Real loss = c.cell(problem, best).loss.median;
+  const auto loss_of = [&](std::size_t s) { return c.cell(problem, s).loss.median; };
+  const std::size_t best = *std::ranges::min_element(order, {}, loss_of);
+  const Real loss = loss_of(best);
+  if (c.problems[problem].lacks_least_loss() && loss < kNever)  // in order of their losses
+    return words("curve.unknown", name_in_sentence(c.optimizers[best]), loss,
+                 order.size() < 2
+                     ? ""
+                     : words("curve.next-loss", name_in_sentence(c.optimizers[order[1]]),
+                             reached_figure(loss_of(order[1]))));
   return words(loss == kNever ? "curve.none-finite" : "curve.least-loss",
                words(c.problems[problem].aim == Aim::x ? "curve.x-error" : "curve.gap"),
                tau_name(c), name_in_sentence(c.optimizers[best]), loss);
@@ -116,6 +122,10 @@ std::vector<std::string> remarks(const Comparison& c) {
   if (!partial.empty())
     all.push_back(words("remarks.partial", counted_settings(c, c.order.settings.size()),
                         methods_of(c), first_of(partial, kNamed)));
+  std::vector<std::string> budgets;
+  for (const OptimizerAxis& optimizer : c.optimizers)
+    if (optimizer.has_budgets) budgets.push_back(name_in_sentence(optimizer));
+  if (!budgets.empty()) all.push_back(words("remarks.budgets", first_of(budgets, kNamed)));
   if (study.superseded > 0) all.push_back(words("remarks.superseded", study.superseded));
   if (!study.unreadable.empty())
     all.push_back(words("remarks.unreadable", study.unreadable.size()));
@@ -129,7 +139,7 @@ std::vector<std::string> remarks(const Comparison& c) {
     named.push_back(words("remarks.source", method, joined({those.begin(), those.end()}, "; ")));
   if (!named.empty()) all.push_back(words("remarks.imported", joined(named)));
   for (const ProblemAxis& problem : c.problems)
-    if (!problem.is_minimum_declared)
+    if (!problem.is_minimum_known)
       all.push_back(words("remarks.no-minimum", problem_name(problem)));
   return all;
 }
@@ -174,7 +184,10 @@ std::string curve_reading(const Comparison& c, std::size_t problem) {
                    ? ""
                    : runner_up(c, c.cell(problem, order[0]), c.cell(problem, order[next]),
                                name_in_sentence(c.optimizers[order[next]])),
-               words(unsolved == 0 ? "curve.all" : "curve.unsolved", unsolved, order.size()));
+               words(unsolved > 0        ? "curve.unsolved"
+                     : order.size() == 1 ? "curve.only"
+                                         : "curve.all",
+                     unsolved, order.size()));
 }
 
 // The learned problems, at equal work.

@@ -205,7 +205,8 @@ std::vector<std::string> verdict(const Comparison& c) {
     return std::ranges::any_of(
         row, [](const Cell& cell) { return cell.headline[kTightest].is_solved(); });
   });
-  if (!is_any_solved) return {words("ranking.none-solved", tau_name(c))};
+  const bool are_all_unknown = std::ranges::all_of(c.problems, &ProblemAxis::lacks_least_loss);
+  if (!is_any_solved && !are_all_unknown) return {words("ranking.none-solved", tau_name(c))};
   std::vector<std::string> all;
   std::string left_out = left_out_text(c);
   if (!left_out.empty()) left_out = "Not ranked: " + left_out;
@@ -243,15 +244,18 @@ std::vector<Reading> ranking_facts(const Comparison& c) {
 }
 
 std::string left_out_text(const Comparison& c) {
-  std::vector<std::string> parts, ill_posed;
+  std::vector<std::string> parts, ill_posed, unknown;
   std::size_t sanity = 0;
   for (std::size_t p = 0; p < c.problems.size(); ++p) {
     sanity += is_sanity(c, p);
     if (is_ill_posed(c, p)) ill_posed.push_back(problem_name(c.problems[p]));
+    if (c.problems[p].lacks_least_loss()) unknown.push_back(problem_name(c.problems[p]));
   }
   if (sanity > 0) parts.push_back(words("ranking.sanity", sanity));
   if (!ill_posed.empty())
     parts.push_back(words("ranking.ill-posed", ill_posed.size(), first_of(ill_posed, 4)));
+  if (!unknown.empty())
+    parts.push_back(words("ranking.unknown", unknown.size(), first_of(unknown, 4)));
   return joined(parts, " ");
 }
 
@@ -297,7 +301,7 @@ Table ranking_table(const Comparison& c) {
     const std::size_t s = c.order.methods[i];
     const OptimizerAxis& axis = c.optimizers[s];
     const Standing& standing = axis.tightest();
-    const bool is_tied = i > 0 && are_tied(standing.score, c.optimizers[s - 1].tightest().score);
+    const bool is_tied = i > 0 && are_tied(standing, c.optimizers[s - 1].tightest());
     if (!is_tied) rank = i + 1;
     TableCell name(optimizer_text(c, s));
     const results::Place* place = c.decision ? c.decision->place_of(s) : nullptr;
@@ -340,17 +344,12 @@ Table sanity_table(const Comparison& c) {
   return table;
 }
 
-// The error in x at a quarter, a half and all of the budget; the least at the end first.
-Table ill_posed_table(const Comparison& c) {
-  constexpr std::array<Real, 3> kShares = {0.25, 0.5, 1};
-  Table table = worded_table("ill-posed");
-  std::vector<std::size_t> settings;
-  for (std::size_t p = 0; p < c.problems.size(); ++p)
-    if (is_ill_posed(c, p)) settings.push_back(p);
-  for (const std::size_t p : settings) {
-    table.columns.push_back(words("ill-posed.setting", problem_name(c.problems[p]),
-                                  percent(c.problems[p].least_goal / x_goal(0, 1, 1))));
-  }
+// A row per method and a column per setting. show(cell, p, s) adds text and numbers to a cell of
+// the table; of the last number the least is bold, and the reading lists it.
+Table settings_table(const Comparison& c, const char* key, const std::vector<std::size_t>& settings,
+                     const auto& title, const auto& show) {
+  Table table = worded_table(key);
+  for (const std::size_t p : settings) table.columns.push_back(title(p));
   std::vector<Real> least(settings.size(), kNever);
   for (std::size_t s = 0; s < c.optimizers.size(); ++s) {
     std::vector<TableCell> row;
@@ -358,13 +357,7 @@ Table ill_posed_table(const Comparison& c) {
       const Cell& cell = c.cell(settings[i], s);
       TableCell& shown = row.emplace_back(cell.inapplicable.empty() ? "" : "n/a");
       if (!cell.is_measured()) continue;
-      std::vector<std::string> texts;
-      for (const Real share : kShares) {
-        const Real error = x_error_at(c, settings[i], s, share).median;
-        texts.push_back(error == kNever ? "✗" : fmt::format("{:.3g}", error));
-        shown.numbers.push_back({fmt::format("at_{:g}", share), error});
-      }
-      shown.text = joined(texts, " · ");
+      show(shown, settings[i], s);
       least[i] = std::min(least[i], shown.numbers.back().second);
     }
     if (std::ranges::any_of(row, [](const TableCell& cell) { return !cell.numbers.empty(); }))
@@ -378,7 +371,51 @@ Table ill_posed_table(const Comparison& c) {
   for (std::size_t i = 0; i < settings.size(); ++i)
     readings.push_back(fmt::format("{} {:.3g}", problem_name(c.problems[settings[i]]), least[i]));
   table.is_folded = true;
-  table.reading = words("ill-posed.reading", joined(readings));
+  table.reading = words(std::string(key) + ".reading", joined(readings));
+  return table;
+}
+
+// The error in x at a quarter, a half and all of the budget.
+Table ill_posed_table(const Comparison& c) {
+  constexpr std::array<Real, 3> kShares = {0.25, 0.5, 1};
+  std::vector<std::size_t> settings;
+  for (std::size_t p = 0; p < c.problems.size(); ++p)
+    if (is_ill_posed(c, p)) settings.push_back(p);
+  const auto title = [&](std::size_t p) {
+    return words("ill-posed.setting", problem_name(c.problems[p]),
+                 percent(c.problems[p].least_goal / x_goal(0, 1, 1)));
+  };
+  return settings_table(c, "ill-posed", settings, title,
+                        [&](TableCell& shown, std::size_t p, std::size_t s) {
+                          std::vector<std::string> texts;
+                          for (const Real share : kShares) {
+                            const Real error = x_error_at(c, p, s, share).median;
+                            texts.push_back(error == kNever ? "✗" : fmt::format("{:.3g}", error));
+                            shown.numbers.push_back({fmt::format("at_{:g}", share), error});
+                          }
+                          shown.text = joined(texts, " · ");
+                        });
+}
+
+// Final losses where the least loss is unknown, and their distances from the best of any run.
+Table losses_table(const Comparison& c) {
+  std::vector<std::size_t> settings;
+  for (std::size_t p = 0; p < c.problems.size(); ++p)
+    if (c.problems[p].lacks_least_loss()) settings.push_back(p);
+  const auto title = [&](std::size_t p) { return problem_name(c.problems[p]); };
+  Table table = settings_table(
+      c, "losses", settings, title, [&](TableCell& shown, std::size_t p, std::size_t s) {
+        const Cell& cell = c.cell(p, s);
+        const auto last = [](const Run& run) {
+          const std::vector<Real> left = losses_left(run);
+          return left.empty() ? kNever : left.back();
+        };
+        const Real distance = c.aggregate(cell.runs, last, cell.missing()).median;
+        shown.text = fmt::format("{} ({})", reached_figure(cell.loss.median),
+                                 distance == kNever ? "✗" : "+" + percent(distance));
+        shown.numbers = {{"distance", distance}, {"loss", cell.loss.median}};
+      });
+  table.is_folded = false;
   return table;
 }
 
@@ -389,8 +426,8 @@ Section standings_section(const Comparison& c) {
   for (std::string& sentence : verdict(c)) section.readings.push_back({"", std::move(sentence)});
   if (!c.order.settings.empty()) section.tables.push_back(ranking_table(c));
   if (!c.sanity.settings.empty()) section.tables.push_back(sanity_table(c));
-  if (Table table = ill_posed_table(c); !table.rows.empty())
-    section.tables.push_back(std::move(table));
+  for (Table table : {losses_table(c), ill_posed_table(c)})
+    if (!table.rows.empty()) section.tables.push_back(std::move(table));
   return section;
 }
 

@@ -149,6 +149,7 @@ Table three_choices_table(const Comparison& c) {
 
 std::string rates_text(const Comparison& c) {
   std::set<std::string> methods, tuned, published, tunable;
+  std::size_t elsewhere = 0, rows = 0;
   bool is_left_out = false;
   for (std::size_t s = 0; s < c.optimizers.size(); ++s) {
     const std::string& method = c.optimizers[s].method;
@@ -160,6 +161,8 @@ std::string rates_text(const Comparison& c) {
       if (origin == Origin::tuned) {
         tuned.insert(method);
         is_left_out |= rate_of(c, p, s)->is_left_out();
+        elsewhere += !rate_of(c, p, s)->setting.empty();
+        ++rows;
       }
       if (origin == Origin::published) published.insert(method);
     }
@@ -169,7 +172,9 @@ std::string rates_text(const Comparison& c) {
   // Older component metadata do not state which options can be tuned.
   const std::size_t fixed = tunable.empty() ? 0 : methods.size() - tunable.size();
   return words("tuning.methods", methods.size(), tuned.size(),
-               is_left_out ? words("tuning.others") : words("tuning.same", setting_noun(c)),
+               is_left_out      ? words("tuning.others")
+               : elsewhere == 0 ? words("tuning.same", setting_noun(c))
+                                : words("tuning.elsewhere", elsewhere, rows),
                published.empty() ? "" : fmt::format(", and {} published ones", published.size()),
                fixed == 0 ? "" : fmt::format(", {} with nothing to tune", fixed));
 }

@@ -190,6 +190,15 @@ TEST(Suites, PassOverWhatItsEntryKeepsOutOfAll) {
   EXPECT_TRUE(names_something("square", "odd"));
 }
 
+TEST(Suites, ASelectorMayStandBesideNames) {
+  const auto cells = [](const char* optimizers) {
+    return expand(catalog(), suite_of("square", optimizers), Rates()).size();
+  };
+  EXPECT_EQ(cells("gd[rate=0.3],*"), cells("*") + 1);
+  EXPECT_EQ(cells("*,gd"), cells("*"));
+  EXPECT_EQ(cells("@first-order,gd[rate=0.3|0.4],@first-order"), cells("@first-order") + 2);
+}
+
 TEST(Suites, AMisspeltNameIsAnErrorWithASuggestion) {
   EXPECT_NE(refusal([] { read_suite("quik"); }).find("'quick'"), std::string::npos);
 }

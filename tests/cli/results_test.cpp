@@ -279,6 +279,18 @@ TEST(BestVerb, KeepsTheLeastLossOfRunsThatDeclareNoneAndNoOther) {
   shell.expect("./isoline validate best.json");
   shell.expect("./isoline best out --out best.json", {.out = {"improved: 0\n"}});
   EXPECT_EQ(read_json(shell.folder() / "best.json"), table);
+  // Runs that read the table have an f_L; those that do not are compared by their losses.
+  const auto solved_with = [&](const std::string& given, const std::string& out) {
+    shell.expect(
+        "./isoline run --problem 'brown-dennis[m=10]' --optimizer gd,levenberg-marquardt --rates "
+        "none --work 500 --seeds 2 --quiet --out " +
+        out + given);
+    for (const auto& file : std::filesystem::directory_iterator(shell.folder() / out / "runs"))
+      EXPECT_EQ(read_json(file.path()).value("best_known", false), !given.empty());
+    return read_json(shell.folder() / out / "report/report.json").at("ranked").size();
+  };
+  EXPECT_EQ(solved_with("", "plain"), 0U);
+  EXPECT_EQ(solved_with(" --best best.json", "known"), 1U);
 }
 
 // A record may come from someone else.

@@ -187,6 +187,20 @@ std::string complaint(const OptionValues& given) {
   return refusal([&] { complete(given); });
 }
 
+struct Shift {
+  Real shift = 1;
+};
+void fields(Shift& o, auto& field) { field("shift", o.shift, between(-1, 1), "of either sign"); }
+
+TEST(Options, AZeroHasNoSign) {
+  const auto zero = [](const char* text) {
+    const OptionValues all = complete_options(option_table<Shift>(), "s", {{"shift", text}});
+    return all.number("shift", 1);
+  };
+  EXPECT_FALSE(std::signbit(zero("-0")));
+  EXPECT_EQ(zero("-0.5"), -0.5);
+}
+
 TEST(Options, AreCompletedByDefaultsAndReadBack) {
   EXPECT_EQ(complete({}),
             OptionValues({{"rate", 0.5}, {"count", 3}, {"bold", false}, {"form", "code"}}));

@@ -383,6 +383,24 @@ TEST_F(Faults, AreNotInTheResultsThatTheyArePlantedInto) {
     EXPECT_EQ(broken_invariants(record), std::vector<std::string>()) << record.cell;
 }
 
+// What no run can write is refused by every reader, even where no comparison depends on it.
+TEST_F(Faults, InTimesCountsAndTargetsBreakAnInvariantEach) {
+  const std::vector<std::pair<const char*, Edit>> edits = {
+      {"processor time", [](Record& r) { r.summary.processor_seconds = -1; }},
+      {"memory", [](Record& r) { r.summary.peak_memory_bytes = -1; }},
+      {"rejected steps", [](Record& r) { r.summary.rejected_steps = -1; }},
+      {"counts", [](Record& r) { r.counts[kJacobian] = -1; }},
+      {"order of times", [](Record& r) { std::ranges::reverse(r.curve.wall_seconds); }},
+      {"times of hits", [](Record& r) { r.hits->wall_seconds[0] = -1; }},
+      {"forwards of hits", [](Record& r) { ++r.hits->forwards[2]; }},
+      {"targets of hits", [](Record& r) { r.hits->target[2] /= 2; }}};
+  for (const auto& [name, edit] : edits) {
+    Record record = sound_records()[2];
+    edit(record);
+    EXPECT_FALSE(broken_invariants(record).empty()) << name;
+  }
+}
+
 TEST_F(Faults, InFiguresAreCaught) { expect(figure_faults()); }
 TEST_F(Faults, InTheCriterionOfSuccessAreCaught) { expect(criterion_faults()); }
 TEST_F(Faults, InCellsAreCaught) { expect(cell_faults()); }

@@ -109,6 +109,12 @@ TEST(Markdown, HostileNamesBreakNoRow) {
   }
 }
 
+TEST(Latex, HasGreekLetters) {
+  const std::string tex =
+      latex_report(document_of(Compared(study_of({{"p", "Δη", 1}, {"p", "b", 2}}))));
+  EXPECT_TRUE(has(tex, "$\\Delta$$\\eta$")) << tex;
+}
+
 TEST(Latex, HostileNamesKeepTheTableWhole) {
   const Study study = hostile_study();
   const std::string tex = latex_report(document_of(compare_optimizers(study)));

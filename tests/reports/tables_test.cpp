@@ -28,12 +28,12 @@ TEST(Tables, DataProfileCountsForwardSolvesAndKeepsFailures) {
   EXPECT_EQ(at(table, "a", "n problems"), "3");
 }
 
-// A loss from −1 to −5 with f_L = −5, read off the curve, since no minimum is declared.
+// A loss from −1 to −5 with f_L = −5, read off the curve, as of records without hits.
 TEST(Tables, ProfilesAreRightForNegativeLosses) {
   Study study = study_of({{"p", "a", 2}});
   Record& record = study.runs[0];
   record.hits.reset();
-  record.minimum.reset();
+  record.minimum = -5;
   for (Real& loss : record.curve.loss) loss = -5 + 4 * loss;  // 1 … 1e-10 before
   record.summary.start_loss = -1;
   record.summary.loss = record.summary.best_loss = -5;
