@@ -399,7 +399,7 @@ void measure_in(Judgement& out, const Measured& from) {
   out.is_covered = true;
   out.cells = cells_of(set);
   for (const std::string& cell : std::set<std::string>(out.cells.begin(), out.cells.end()))
-    out.seconds += from.runs.at(cell)->summary.wall_seconds;
+    out.seconds += from.runs.at(cell)->summary.processor_seconds;
   const bool is_known = take(out, from);
   if (set.contains("deviation"))
     out.caveat = set["deviation"].get<std::string>() + (out.caveat.empty() ? "" : " ") + out.caveat;
