@@ -11,7 +11,7 @@
 
 namespace isoline::results {
 
-// What a simulator offers besides y = P(x); each level includes those before it.
+// Offers of a simulator besides y = P(x): each level includes those before it.
 enum class Derivatives { none, gradient, jacobian, hessian };
 inline constexpr std::array<std::string_view, 4> kDerivativeNames = {"forward", "gradient",
                                                                      "jacobian", "hessian"};
