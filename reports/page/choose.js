@@ -19,7 +19,7 @@ function writeMeans(asked) {
 }
 
 function drawAdvice(place) {
-  const [text, settings, flat] = adviceNow(), rows = [];
+  const [text, settings, flat] = adviceNow() ?? [worded('choose-large'), 0, []], rows = [];
   for (let i = 0; i < flat.length; i += 6) {
     const [s, solved, , score, work, isInGroup] = flat.slice(i, i + 6);
     const row = element('tr', {className: isInGroup ? 'tied' : ''}, cellWith(String(i / 6 + 1)), element('th', {scope: 'row'}, ...nameOfMethod(s)), cellWith(String(solved), `/${settings}`), cellWith(figure(work ?? Infinity)), cellWith(score.toFixed(2)));

@@ -242,6 +242,7 @@ constexpr std::array<std::array<Index, 2>, 4> kSizes = {
 constexpr std::array<Real, 4> kBudgets = {kNever, 10'000, 1'000, 100};
 
 std::string advice_json(const Comparison& c) {
+  if (is_large(c)) return "[]";  // each is a decision of its own
   constexpr std::size_t kMost = 10, kEach = kSizes.size() * kBudgets.size();
   std::vector<std::string> all(2 * kDerivativeNames.size() * kEach);
   share(all.size(), [&](std::size_t i) {
