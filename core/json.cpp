@@ -57,8 +57,8 @@ Json parse_json(const std::string& text, const std::string& origin) {
   try {
     return Json::parse(text, is_kept);
   } catch (const Json::exception& error) {       // also of numbers that are out of range
-    const std::string_view what = error.what();  // after "[json.exception.parse_error.101] "
-    throw UsageError(fmt::format("{} is not JSON: {}", origin, what.substr(what.find(']') + 2)));
+    const std::string_view what = error.what();  // "[the library's own name of it] what is wrong"
+    throw UsageError(fmt::format("{} is not JSON: {}", origin, what.substr(what.find(' ') + 1)));
   }
 }
 

@@ -276,6 +276,9 @@ std::string terminal_table(const Document& document) {
     text += "\n" + (tables.empty() ? "" : table_text(tables[0])) + best_of_each(c) + "\n";
   for (const Reading& sentence : document.section("standings").readings)
     text += wrapped(terminal_text(sentence.text));
+  const Section& claims = document.section("claims");
+  if (!c.study->plan.suites.empty() || !document.claims.empty())
+    text += wrapped(claims.readings.empty() ? claims.otherwise : claims.readings[0].text);
   if (const std::string legend = marks_legend(c); !legend.empty()) text += wrapped(legend);
   return text + failure_lines(c);
 }

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "core/seeds.h"
 #include "reports/sections/words.h"
@@ -38,11 +39,14 @@ std::vector<Reading> readings_of(const Judgement& judgement) {
     const auto& measured = judgement.measured;
     const std::string interval =
         measured && measured->n > 1 ? words("claim.interval", interval_name(measured->n)) : "";
+    const bool is_here =
+        std::ranges::any_of(judgement.sets, [](const CellSet& set) { return set.here > 0; });
     all.push_back({"Quantity", judgement.quantity + "."});
     all.push_back(
         {"Published", words("claim.published", judgement.published, band_text(*judgement.band))});
-    all.push_back({"Measured", measured ? measured_text(judgement) + interval + "."
-                                        : words("claim.unmeasured")});
+    all.push_back({"Measured", measured
+                                   ? measured_text(judgement) + interval + "."
+                                   : words(is_here ? "claim.partly-here" : "claim.unmeasured")});
   }
   for (Reading& note : claim_notes(judgement)) all.push_back(std::move(note));
   for (const CellSet& set : judgement.sets) all.push_back({"Cells", cells_sentence(set)});
@@ -231,9 +235,22 @@ Section claims_section(const std::vector<Judgement>& judgements) {
   if (judgements.empty()) return section;
   section.readings = {{"", claims_reading(judgements)}};
   Table& table = section.tables.emplace_back(worded_table("claims-table"));
+  constexpr std::size_t kRepeated = 3;  // a remark of so many claims stands below the table, once
+  std::map<std::string, std::size_t> counts;
+  std::vector<std::string> below;
+  for (const Judgement& judgement : judgements)
+    for (const Reading& note : claim_notes(judgement)) ++counts[note.text];
   for (const Judgement& judgement : judgements) {
     std::vector<std::string> remarks;
-    for (const Reading& note : claim_notes(judgement)) remarks.push_back(note.text);
+    for (const Reading& note : claim_notes(judgement)) {
+      if (counts[note.text] < kRepeated) {
+        remarks.push_back(note.text);
+        continue;
+      }
+      const auto at = std::ranges::find(below, note.text);
+      remarks.push_back(fmt::format("[{}]", at - below.begin() + 1));
+      if (at == below.end()) below.push_back(note.text);
+    }
     TableCell claim = judgement.sentence;
     claim.note = judgement.quantity;
     claim.remark = judgement.source;
@@ -243,6 +260,8 @@ Section claims_section(const std::vector<Judgement>& judgements) {
                           joined(remarks, " ")});
     table.row_topics.push_back({.claim = judgement.id});
   }
+  for (std::size_t i = 0; i < below.size(); ++i)
+    table.caption += fmt::format("{}[{}] {}", table.caption.empty() ? "" : " ", i + 1, below[i]);
   return section;
 }
 

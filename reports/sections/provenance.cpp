@@ -50,7 +50,7 @@ Section builds_section(const Comparison& c) {
   commands.erase("");
   // A column a build, so that what differs stands side by side.
   Table& table = section.tables.emplace_back(
-      Table{.id = "builds", .columns = {""}, .align = "l" + std::string(builds.size(), 'p')});
+      Table{.id = "builds", .columns = {"what"}, .align = "l" + std::string(builds.size(), 'p')});
   for (std::size_t i = 0; i < builds.size(); ++i)
     table.columns.push_back(builds.size() == 1 ? "build" : fmt::format("build {}", i + 1));
   for (std::size_t term = 0; term < kTerms.size(); ++term) {

@@ -14,13 +14,6 @@
 namespace isoline::reports {
 namespace {
 
-Real doublings_of(Real a, Real b) {
-  const Real most = std::log2(kProfileEnd);
-  if (a == kNever && b == kNever) return 0;
-  if (a == kNever || b == kNever) return a == kNever ? most : -most;
-  return std::clamp(std::log2(std::max(a, 1.0)) - std::log2(std::max(b, 1.0)), -most, most);
-}
-
 // "gauss-newton, adam and 3 more"
 std::string names_text(const Comparison& c, const std::vector<std::size_t>& methods,
                        std::size_t most) {
@@ -147,44 +140,18 @@ std::string common_settings(const Comparison& c) {
 
 }  // namespace
 
-Real Pairing::typical() const { return doublings.empty() ? 1 : std::exp2(-median_of(doublings)); }
-
-std::array<Real, 2> Pairing::interval() const {
-  const MedianInterval interval = median_interval(doublings);
-  return {std::exp2(-interval.high), std::exp2(-interval.low)};
-}
-
-Pairing pairing_of(const Costs& costs, const Families& families, std::size_t a, std::size_t b) {
-  Pairing pairing;
-  for (const auto& rows : families) {
-    std::vector<Real> values;
-    bool is_solved = false;
-    for (const std::size_t row : rows) {
-      const auto &mine = costs[row][a], &other = costs[row][b];
-      if (!mine || !other) continue;
-      is_solved = is_solved || *mine < kNever || *other < kNever;
-      values.push_back(doublings_of(*mine, *other));
-    }
-    if (values.empty()) continue;
-    pairing.neither += !is_solved;
-    if (!is_solved) continue;
-    const Real middle = median_of(std::move(values));
-    pairing.doublings.push_back(middle);
-    ++(middle < 0 ? pairing.wins : middle > 0 ? pairing.losses : pairing.ties);
-  }
-  return pairing;
-}
-
 std::vector<MethodPair> all_pairs(const Comparison& c) {
   Costs costs = median_costs(c, kTightest);
-  for (std::size_t p = 0; p < costs.size(); ++p)
-    if (!is_ordered(c, p)) costs[p].assign(costs[p].size(), std::nullopt);
-  Families families;
-  for (const auto& [name, problems] : problems_by_name(c)) families.push_back(problems);
+  std::vector<std::string> families;
+  for (std::size_t p = 0; p < costs.size(); ++p) {
+    families.push_back(c.problems[p].name);
+    for (std::size_t s = 0; s < costs[p].size(); ++s)
+      if (!is_ordered(c, p) || !c.cell(p, s).inapplicable.empty()) costs[p][s].reset();
+  }
   std::vector<MethodPair> all;
   for (std::size_t a = 0; a < c.optimizers.size(); ++a)
     for (std::size_t b = a + 1; b < c.optimizers.size(); ++b)
-      all.push_back({a, b, pairing_of(costs, families, a, b)});
+      all.push_back({a, b, work_ratio(costs, families, a, b)});
   return all;
 }
 

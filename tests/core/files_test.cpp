@@ -382,6 +382,12 @@ std::string complaint_of_json(const std::string& text) {
   return refusal([&] { parse_json(text, "given.json"); });
 }
 
+TEST(Json, IsRefusedInWordsWithoutTheNamesOfItsLibrary) {
+  const std::string complaint = complaint_of_json("\x93NUMPY");
+  EXPECT_EQ(complaint.find("exception"), std::string::npos) << complaint;
+  EXPECT_NE(complaint.find("line 1"), std::string::npos) << complaint;
+}
+
 // 200,000 levels overflow the stack of a function that copies, compares or writes such a tree.
 TEST(Json, ThatNestsWithoutEndIsRefused) {
   for (const std::string opening : {"[", "{\"a\":"}) {
