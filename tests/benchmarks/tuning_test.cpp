@@ -44,7 +44,7 @@ TEST(Rates, AreForTheDefaultModeWhateverNestedOptionsSay) {
   EXPECT_EQ(rate("sine"), 0.5);
   EXPECT_EQ(rate("sine[xi=3]"), 0.5);
   EXPECT_EQ(rate("sine[mode=learn]"), 0.25);
-  EXPECT_EQ(rate("sine[network=mine[mode=odd]]"), 0.5);  // of a network that direct never makes
+  EXPECT_THROW(rate("sine[network=mine[mode=odd]]"), UsageError);  // which direct never makes
 }
 
 void expect_row_is_sound(const Json& row) {
