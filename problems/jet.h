@@ -9,7 +9,7 @@
 
 namespace isoline::problems {
 
-// Of Real: with these, a formula reads alike for every scalar.
+// With these for Real, a formula reads alike for every scalar.
 using std::atan, std::cos, std::exp, std::log, std::sin, std::sqrt;
 
 template <class T, int N>

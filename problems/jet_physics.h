@@ -21,7 +21,9 @@ class JetPhysics : public DensePhysics {
   JetPhysics(F f, Index n, Index m) : DensePhysics(n, m), f_(std::move(f)) {}
   void value(VectorRef x, VectorOut y) const override { f_(x.data(), n(), y.data(), m()); }
   void derivative(VectorRef x, BatchOut J) const override {
-    std::vector<First> in(x.begin(), x.end()), out(m());
+    thread_local std::vector<First> in, out;
+    in.assign(x.begin(), x.end());
+    out.resize(m());
     for (int first = 0; first < n(); first += kLanes) {
       const int lanes = std::min(kLanes, n() - first);
       for (int j = 0; j < n(); ++j) in[j].by.fill(0);
@@ -33,7 +35,9 @@ class JetPhysics : public DensePhysics {
   }
   bool has_curvature() const override { return n() <= kLanes; }
   void second(VectorRef x, VectorRef u, BatchOut H) const override {
-    std::vector<Second> in(x.begin(), x.end()), out(m());
+    thread_local std::vector<Second> in, out;
+    in.assign(x.begin(), x.end());
+    out.resize(m());
     for (int j = 0; j < n(); ++j) in[j].by[j] = in[j].value.by[j] = 1;
     f_(in.data(), n(), out.data(), m());
     for (int i = 0; i < m(); ++i)

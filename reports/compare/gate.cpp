@@ -446,7 +446,9 @@ void conclude(GateResult& result, const GateOptions& options) {
     settle(kNotComparable, "not comparable", {"the two sides have no common cell"});
   } else if (const auto& all = result.incomparable; !all.empty()) {
     const std::string first = all[0].title + ": " + all[0].reason;
-    settle(kNotComparable, "partly not comparable, the other cells are not worse",
+    settle(kNotComparable,
+           all.size() == result.joined ? "not comparable"
+                                       : "partly not comparable, the other cells are not worse",
            {all.size() == 1 ? first : fmt::format("{} cells, such as {}", all.size(), first)});
   } else if (!better.empty() || !faster.empty()) {
     settle(kBetterOnly, "better, not worse in any cell", {settings, better, faster});

@@ -176,8 +176,8 @@ class Served(unittest.TestCase):
                 self.assertEqual(caller.raw(method, path, good)[0], 404, path)
             with socket.create_connection(("127.0.0.1", caller.port), timeout=PATIENCE) as silent, \
                     socket.create_connection(("127.0.0.1", caller.port), timeout=PATIENCE) as large:
-                silent.sendall(b"POST /Evaluate HTTP/1.1\r\nContent-Length: 100\r\n\r\n{")
-                large.sendall(b"POST /Evaluate HTTP/1.1\r\nContent-Length: %d\r\n\r\n" % (1 << 30))
+                silent.sendall(b"POST /Evaluate HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Length: 100\r\n\r\n{")
+                large.sendall(b"POST /Evaluate HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Length: %d\r\n\r\n" % (1 << 30))
                 self.assertIn(b" 413 ", large.recv(4096)[:20])
                 self.assertEqual(caller.ask("Evaluate", **GOOD)[0], 200)
 

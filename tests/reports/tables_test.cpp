@@ -374,7 +374,7 @@ TEST(Amortized, ANetworkNoNearerThanWhereSolversStartIsSaidToBe) {
   const Shown shown({trained(0, 11, 3), single("newton", 0, 2)});
   EXPECT_EQ(shown.number(0, kSolved), 0);
   EXPECT_EQ(shown.text(0, "break-even"), "never");
-  EXPECT_TRUE(has(shown.section.tables[0].reading, "newton starts with"))
+  EXPECT_TRUE(has(shown.section.tables[0].reading, "newton already has"))
       << shown.section.tables[0].reading;
 }
 
