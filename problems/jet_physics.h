@@ -10,9 +10,9 @@
 
 namespace isoline::problems {
 
-inline constexpr int kLanes = 12;  // unknowns whose derivatives one evaluation gives
-using First = Jet<Real, kLanes>;
-using Second = Jet<First, kLanes>;
+inline constexpr int kJetLanes = 12;  // unknowns whose derivatives one evaluation gives
+using First = Jet<Real, kJetLanes>;
+using Second = Jet<First, kJetLanes>;
 
 // F: f(x, n, y, m) on arrays of Real, First and Second.
 template <class F>
@@ -24,8 +24,8 @@ class JetPhysics : public DensePhysics {
     thread_local std::vector<First> in, out;
     in.assign(x.begin(), x.end());
     out.resize(m());
-    for (int first = 0; first < n(); first += kLanes) {
-      const int lanes = std::min(kLanes, n() - first);
+    for (int first = 0; first < n(); first += kJetLanes) {
+      const int lanes = std::min(kJetLanes, n() - first);
       for (int j = 0; j < n(); ++j) in[j].by.fill(0);
       for (int j = 0; j < lanes; ++j) in[first + j].by[j] = 1;
       f_(in.data(), n(), out.data(), m());
@@ -33,7 +33,7 @@ class JetPhysics : public DensePhysics {
         for (int j = 0; j < lanes; ++j) J(i, first + j) = out[i].by[j];
     }
   }
-  bool has_curvature() const override { return n() <= kLanes; }
+  bool has_curvature() const override { return n() <= kJetLanes; }
   void second(VectorRef x, VectorRef u, BatchOut H) const override {
     thread_local std::vector<Second> in, out;
     in.assign(x.begin(), x.end());

@@ -190,7 +190,8 @@ void register_nist(ProblemRegistry& registry) {
        .source = "NIST Statistical Reference Datasets, nonlinear regression",
        .note = "27 data sets, two starts each. The error in x is 10^(−LRE), LRE the log relative "
                "error of the worst parameter.",
-       .aim = Aim::x},
+       .aim = Aim::x,
+       .in_all = false},
       make_nist));
 }
 
