@@ -4,12 +4,18 @@
 cmake_minimum_required(VERSION 3.25)
 execute_process(COMMAND git rev-parse --short=12 HEAD WORKING_DIRECTORY ${SOURCE}
                 OUTPUT_VARIABLE commit OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
+# Untracked files are listed below the working directory only, and SOURCE may be a part of the tree.
+execute_process(COMMAND git rev-parse --show-toplevel WORKING_DIRECTORY ${SOURCE}
+                OUTPUT_VARIABLE top OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
+if(NOT top)
+  set(top ${SOURCE})
+endif()
 # The build also reads untracked files of these types.
 set(read *.cpp *.h *.in *.cmake *CMakeLists.txt *.json *.js *.css *.html)
 execute_process(COMMAND git status --porcelain --untracked-files=no WORKING_DIRECTORY ${SOURCE}
                 OUTPUT_VARIABLE changes ERROR_QUIET)
 execute_process(COMMAND git ls-files --others --exclude-standard -- ${read}
-                WORKING_DIRECTORY ${SOURCE} OUTPUT_VARIABLE strangers ERROR_QUIET)
+                WORKING_DIRECTORY ${top} OUTPUT_VARIABLE strangers ERROR_QUIET)
 if(NOT commit)
   set(commit "unknown")
 endif()

@@ -20,6 +20,7 @@
 #include <utility>
 
 #include "core/errors.h"
+#include "core/output.h"
 #include "core/text.h"
 
 namespace isoline {
@@ -74,7 +75,8 @@ void write_new(const fs::path& path, std::string_view text, bool is_flushed) {
 
 [[noreturn]] void refuse_as_the_system(const fs::path& path) {
   if (errno == ENOENT) throw UsageError(path.string() + ": no such file");
-  refuse(path, strerror(errno));
+  if (errno == ELOOP) refuse(path, strerror(errno));
+  throw AccessError(fmt::format("cannot read {}: {}", path.string(), strerror(errno)));
 }
 
 // The kind of a path that is not a regular file.
@@ -94,7 +96,7 @@ void require_readable(const struct stat& found, const fs::path& path, std::size_
            fmt::format("it has {} bytes, and at most {} are read", found.st_size, most_bytes));
 }
 
-// All of an open file, which has about so many bytes: some of the system's say 0.
+// Reads an open file whole. The expected size is a hint: for some system files it is 0.
 std::string all_of(int file, std::size_t size, const fs::path& path, std::size_t most_bytes) {
   constexpr std::size_t kLeast = 1 << 12;
   std::string text(std::max(size + 1, kLeast), '\0');  // one byte more, to detect the end
@@ -144,7 +146,8 @@ std::optional<pid_t> writer_of(const fs::path& path) {
   return process;
 }
 
-// Never onto what has the new name. Some file systems cannot promise that: there it is looked up.
+// Does not replace an existing file. If the file system cannot guarantee this, the function checks
+// for the file first.
 bool has_moved(const fs::path& from, const fs::path& to) {
   if (::renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_NOREPLACE) == 0) return true;
   if (errno != EINVAL && errno != ENOSYS) return false;
@@ -160,8 +163,8 @@ bool is_of_a_dead_process(const fs::path& path) {
 
 }  // namespace
 
-// Looked at before it is opened, for some devices act when they are, and after, for another file
-// may have taken the name.
+// The file is checked before it is opened, because opening some devices has an effect, and again
+// after it is open, because another file may have replaced it.
 std::string read_text(const fs::path& path, std::size_t most_bytes, Links links) {
   const bool follows = links == Links::followed;
   struct stat found {};
@@ -225,6 +228,34 @@ void write_text(const fs::path& path, std::string_view text) {
   }
 }
 
+void require_ours(const fs::path& path, std::string_view mark) {
+  std::error_code unknown;
+  require(!fs::is_directory(path, unknown),
+          [&] { return fmt::format("cannot write {}: it is a folder", path.string()); });
+  if (!fs::is_regular_file(path, unknown) || fs::file_size(path, unknown) == 0) return;
+  require(read_text(path).find(mark) != std::string::npos, [&] {
+    return fmt::format("{} exists and does not contain {}: name another file, or remove it",
+                       path.string(), mark);
+  });
+}
+
+void write_output(const fs::path& path, std::string_view text, std::string_view mark) {
+  require_ours(path, mark);
+  std::error_code unknown;
+  if (fs::exists(path, unknown) && !fs::is_regular_file(path, unknown)) {
+    OpenFile file(path, O_WRONLY, "open");
+    write_all(file.descriptor(), text, path);
+    if (!file.close()) fail("close", path);
+    return;
+  }
+  const fs::path place = fs::is_symlink(path, unknown) ? fs::weakly_canonical(path) : path;
+  const fs::path folder = place.has_parent_path() ? place.parent_path() : ".";
+  for (const std::string& name : names_in(folder))  // what a killed process left of this file
+    if (name.starts_with(place.filename().string() + ".") && is_abandoned(folder / name))
+      fs::remove(folder / name, unknown);
+  write_text(place, text);
+}
+
 void write_unflushed(const fs::path& path, std::string_view text) { write_new(path, text, false); }
 
 void flush_all(const fs::path& folder) {
@@ -242,13 +273,14 @@ HiddenFolder::HiddenFolder() {
     return fmt::format("TMPDIR must name a folder for temporary files, got {}",
                        printable(named != nullptr ? named : "none"));
   });
-  // Named after this process, so that the next run finds what one that was killed left.
+  // The name contains the ID of this process, so that the next run finds the files of a process
+  // that was killed.
   std::error_code unreadable;
   for (fs::directory_iterator at(among, unreadable), end; !unreadable && at != end;
        at.increment(unreadable))
     if (at->path().filename().string().starts_with("isoline-") && is_of_a_dead_process(at->path()))
       fs::remove_all(at->path(), unreadable);
-  constexpr int kMost = 1000;  // of one process, or of those that had its number before
+  constexpr int kMost = 1000;  // of this process, or of earlier ones with the same ID
   for (int i = 1; i <= kMost; ++i) {
     path_ = temporary_of(among / fmt::format("isoline-{}", i));
     if (mkdir(path_.c_str(), 0700) == 0) return;

@@ -1,5 +1,5 @@
-// Pictures of the first sample of a batch, one number a cell of a field, and the frames that a run
-// keeps of them.
+// Images of the first sample of a batch, with one number per cell of a field, and the images that a
+// run stores.
 #pragma once
 
 #include <functional>

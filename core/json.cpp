@@ -1,4 +1,4 @@
-// JSON with numbers that survive.
+// JSON that preserves infinite numbers and NaN.
 #include "core/json.h"
 
 #include <fmt/format.h>
@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <string_view>
 
 #include "core/errors.h"
 #include "core/files.h"
@@ -55,8 +56,9 @@ Json parse_json(const std::string& text, const std::string& origin) {
   };
   try {
     return Json::parse(text, is_kept);
-  } catch (const Json::exception& error) {  // also of numbers that are out of range
-    throw UsageError(fmt::format("{} is not JSON: {}", origin, error.what()));
+  } catch (const Json::exception& error) {       // also of numbers that are out of range
+    const std::string_view what = error.what();  // "[the library's own name of it] what is wrong"
+    throw UsageError(fmt::format("{} is not JSON: {}", origin, what.substr(what.find(' ') + 1)));
   }
 }
 

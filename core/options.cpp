@@ -1,4 +1,4 @@
-// Options: checked, completed, described and written in short.
+// Checks, completes, describes and abbreviates options.
 #include "core/options.h"
 
 #include <fmt/format.h>
@@ -71,7 +71,7 @@ class FieldParser {
   }
   Real within(Real value) const {
     if (!isoline::contains(field_.range, value)) reject("in " + range_text(field_.range));
-    return value;
+    return value + 0.0;  // −0 as 0: both are one setting
   }
   [[noreturn]] void reject(const std::string& law, const std::string& nearest = "") const {
     std::string text =
@@ -180,7 +180,8 @@ OptionValues complete_options(const OptionTable& table, const std::string& compo
   for (const auto& [key, value] : given) {
     const std::string name(option_name(key));
     const auto field = std::ranges::find(table, name, &OptionField::name);
-    if (names.empty()) throw UsageError(fmt::format("{} takes no options, got {}", component, key));
+    if (names.empty())
+      throw UsageError(fmt::format("{} does not have options, got '{}'", component, key));
     if (field == table.end())
       throw UsageError(component + ": " + unknown_name("option", name, names));
     complete.set(name, std::visit(FieldParser(component, *field, value), field->standard));

@@ -27,14 +27,14 @@ void gemm(CBLAS_TRANSPOSE a, CBLAS_TRANSPOSE b, int m, int n, int k, const Compl
   cblas_cgemm(CblasColMajor, a, b, m, n, k, &one, A, lda, B, ldb, &keep, C, ldc);
 }
 
-void require_fit(bool do_fit) {  // `require` would make its text
+void require_fit(bool do_fit) {  // `require` would build its text each time
   if (!do_fit) throw UsageError("the shapes of the matrices of a product do not match");
 }
 
 int as_int(Index n) { return static_cast<int>(n); }
 
 template <class Array>
-int stride(const Array& array) {  // BLAS wants at least one, of an empty matrix too
+int stride(const Array& array) {  // BLAS requires at least one, also for an empty matrix
   return std::max(1, as_int(array.outerStride()));
 }
 

@@ -11,8 +11,8 @@
 
 namespace isoline {
 
-// Entry has a member `name`, and may have `file`: the one that registers it; and `needs_argument`:
-// how to name one, where its name alone means nothing.
+// Entry has a member `name`, and may have `file`, the file that registers it, and `needs_argument`,
+// how to write a spec if the name alone is not sufficient.
 template <class Entry>
 class Registry {
  public:
@@ -35,7 +35,7 @@ class Registry {
     for (const auto& [name, entry] : entries_) all.push_back(name);
     return all;
   }
-  // Those that can be made by their name alone.
+  // The entries that can be created from their name alone.
   Registry ready() const {
     Registry all(kind_);
     for (const auto& [name, entry] : entries_)

@@ -1,4 +1,5 @@
-// Quoting by single quotes, within which a shell reads every letter but one as itself; and back.
+// Quotes words with single quotes, within which a shell reads every letter except one as itself,
+// and reads quoted words.
 #include "core/shell.h"
 
 #include <unistd.h>

@@ -1,4 +1,4 @@
-// Words as a POSIX shell reads them back: what a record says was typed can be typed again.
+// Words as a POSIX shell reads them, so that a command in a record can be typed again.
 #pragma once
 
 #include <sys/types.h>

@@ -170,12 +170,13 @@ SeedSpan span_of(std::string_view part, std::string_view whole) {
   const auto dots = part.find("..");
   if (dots == std::string_view::npos) {
     const std::uint64_t count = number(part);
-    require(count > 0, "the number of seeds must be positive, got 0");
+    require(count > 0, "a count of seeds, instances or starts must be at least 1, got 0");
     return {0, count - 1};
   }
   const SeedSpan span{number(part.substr(0, dots)), number(part.substr(dots + 2))};
   if (span.first > span.second)
-    throw UsageError(fmt::format("the first seed must not exceed the last, got '{}'", whole));
+    throw UsageError(
+        fmt::format("the first number of a range must not exceed the last, got '{}'", whole));
   return span;
 }
 
@@ -216,7 +217,7 @@ OptionValues options_of(const Spec& spec) {
   for (const auto& [key, value] : spec.options) {
     const std::string name(option_name(key));
     require(!options.contains(name),
-            [&] { return fmt::format("{}: {} is given twice", spec.name, name); });
+            [&] { return fmt::format("{}: {} occurs twice", spec.name, name); });
     options.set(name, value);
   }
   return options;
@@ -234,8 +235,8 @@ std::vector<std::uint64_t> parse_seeds(std::string_view text, std::uint64_t most
     count = sum_of(count, sum_of(spans.back().second - spans.back().first, 1));
   }
   require(count <= most, [&] {
-    return fmt::format("'{}' means {} seeds; at most {} are allowed", text, count_text(count),
-                       count_text(most));
+    return fmt::format("'{}' lists {} seeds, instances or starts; at most {} are allowed", text,
+                       count_text(count), count_text(most));
   });
   std::vector<std::uint64_t> seeds;
   for (const auto& [first, last] : spans)

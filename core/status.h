@@ -1,5 +1,5 @@
-// How a run ends, what it may spend, what its problem aims at and by which targets, and what the
-// program returns.
+// The status of a run, its budget, the success criterion of its problem with the targets, and the
+// exit codes of the program.
 #pragma once
 
 #include <algorithm>

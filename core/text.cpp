@@ -1,5 +1,5 @@
-// Decodes UTF-8 by table 3-7 of the Unicode standard, which knows no overlong form, no surrogate
-// and nothing above U+10FFFF.
+// Decodes UTF-8 by table 3-7 of the Unicode standard, which excludes overlong forms, surrogates and
+// code points above U+10FFFF.
 #include "core/text.h"
 
 #include <fmt/format.h>
@@ -121,7 +121,7 @@ std::string printable(std::string_view text) {
 void say(std::FILE* out, std::string_view text) {
   const std::string shown = printable(text);
   if (std::fwrite(shown.data(), 1, shown.size(), out) < shown.size())
-    throw std::system_error(errno, std::generic_category(), "cannot write what is to be read");
+    throw std::system_error(errno, std::generic_category(), "cannot write the output");
 }
 
 // Counts as they are read: in groups of three digits.
@@ -155,9 +155,9 @@ std::string unknown_name(std::string_view what, std::string_view wrong,
   const std::string nearest = nearest_name(wrong, known);
   if (!nearest.empty())
     return fmt::format("unknown {} '{}'; did you mean '{}'?", what, wrong, nearest);
-  constexpr std::size_t kMostListed = 20;
+  constexpr std::size_t kMostListed = 30;
   if (known.size() > kMostListed)
-    return fmt::format("unknown {} '{}'; none of the {} known names is similar", what, wrong,
+    return fmt::format("unknown {} '{}'; `isoline list` prints the {} known names", what, wrong,
                        known.size());
   return fmt::format("unknown {} '{}'; known: {}", what, wrong, fmt::join(known, ", "));
 }

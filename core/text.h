@@ -12,22 +12,22 @@
 
 namespace isoline {
 
-// With U+FFFD for all that is no UTF-8; what is valid stays as it is, to the byte.
+// Replaces each invalid byte by U+FFFD. Valid UTF-8 stays as it is.
 std::string valid_utf8(std::string_view text);
 
-// The beginning of a text, of so many bytes at most, and of whole characters.
+// The beginning of a text: complete characters of at most this number of bytes.
 std::string_view cut(std::string_view text, std::size_t most_bytes);
 
-// As a terminal may have it: valid, and with `\u001b` written for what would move its cursor,
-// change its colours or turn the direction of what follows. Line ends and tabs stay. What is JSON
-// stays the same JSON.
+// Text that is safe for a terminal: valid UTF-8 with `\u001b` for characters that would move the
+// cursor, change colours or change the direction of the text. Line ends and tabs stay. JSON stays
+// the same JSON.
 std::string printable(std::string_view text);
 
-// All that a user reads on standard output and standard error goes through here, printable. Throws
-// where it cannot be written.
+// Prints text for the user, made printable. All output goes through this function. Throws if the
+// output cannot be written.
 void say(std::FILE* out, std::string_view text);
 
-// Counts that are named before they are made: products and sums that stop at the largest number.
+// Numbers of things that do not exist yet: products and sums saturate at the largest number.
 
 inline constexpr std::uint64_t kUncountable = std::numeric_limits<std::uint64_t>::max();
 
@@ -46,7 +46,7 @@ std::string count_text(std::uint64_t count);  // "50,000"; of kUncountable "more
 // The known name nearest by edit distance, if near enough to be meant; else empty.
 std::string nearest_name(std::string_view wrong, const std::vector<std::string>& known);
 
-// "unknown WHAT 'wrong'; did you mean 'right'?", or the list of what is known.
+// "unknown WHAT 'wrong'; did you mean 'right'?", or the list of known names.
 std::string unknown_name(std::string_view what, std::string_view wrong,
                          const std::vector<std::string>& known);
 

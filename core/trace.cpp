@@ -1,4 +1,4 @@
-// The iterations that a trace keeps, its texts, and the constraints on all of it.
+// Selects the iterations that a trace stores, and checks the texts and numbers of a trace.
 #include "core/trace.h"
 
 #include <cmath>

@@ -143,23 +143,23 @@ def findings(report):
     starts = max(cell["runs"] for cell in report["cells"] if cell["problem"] in report["ranked"])
     band = sum(place["in_group"] for place in leader["places"])
     lead = (f"**Findings** of the default suite: {report['answered'] - inapplicable:,} runs; {inapplicable} more "
-            f"cells are inapplicable. A score that rewards little work and many solved problems ranks "
-            f"{len(leader['places'])} methods on {leader['settings']} settings of {leader['families']} problems from "
-            f"physics with {starts} starting points each.")
+            f"cells are not applicable. {len(leader['places'])} methods are ranked on {leader['settings']} settings of "
+            f"{leader['families']} problems from physics ({starts} instances each); the score rewards little work and "
+            "many solved settings.")
     return lead, [
         f"{best} significantly best in work. {first['optimizer']} ranks first (solves {first['solved']} of "
         f"{leader['settings']} settings), {second['optimizer']} second (solves {second['solved']}; paired sign-flip "
         f"test, p = {second['p']:.2f}). {band} of {len(leader['places'])} methods, including the first, are not "
         "significantly worse than the first.",
         f"In wall time, {' and '.join(by_time)} {'ranks' if len(by_time) == 1 else 'rank'} first.",
-        f"levenberg-marquardt solves {lm['solved']} settings, gauss-newton {by_name['gauss-newton']['solved']}. Work of "
-        f"levenberg-marquardt over the least work, the median over settings: {float(lm['typical']):.1f}.",
-        f"With rates chosen on the other problems, adam solves {by_name['adam']['solved']} settings, hig "
+        f"levenberg-marquardt solves {lm['solved']} settings and, in the median, needs "
+        f"{float(lm['typical']):.1f} times the least work; gauss-newton solves {by_name['gauss-newton']['solved']}.",
+        f"With learning rates tuned on the other problems, adam solves {by_name['adam']['solved']} settings, hig "
         f"{by_name['hig']['solved']} and gd {by_name['gd']['solved']}.",
         f"sip † solves {len(solved)} of the {len(inverse)} ranked settings that have an inverse P⁻¹, each with {works} "
-        "forward solves. P⁻¹ is charged at its declared cost.",
-        "At equal work, the median error in x of a network trained by sip † to invert a sine map is "
-        f"1/{sine_at_equal_work(report):.0f} of adam's ({seeds} seeds).",
+        "forward solves, where P⁻¹ counts at its declared cost.",
+        "At equal work, a network trained by sip † to invert a sine map has "
+        f"1/{sine_at_equal_work(report):.0f} of adam's median error in x ({seeds} seeds).",
     ]
 
 

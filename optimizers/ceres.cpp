@@ -24,7 +24,7 @@ struct Evaluation {
   Linearization point = {};
   std::exception_ptr error = nullptr;
 
-  // Runs `read` on the linearization at θ; false where the run is over or something is not finite.
+  // Calls `read` with the linearization at θ; false if the run is over or a value is not finite.
   template <class Read>
   bool at(const double* parameters, Read read) {
     if (error || f.is_spent() || f.status() != Status::running) return false;
@@ -33,7 +33,7 @@ struct Evaluation {
     try {
       if (point_theta.size() == 0 || point_theta != theta) f.linearize(point_theta = theta, point);
       read(point);
-    } catch (const BudgetSpent&) {  // as the meter knows from then on
+    } catch (const BudgetSpent&) {  // which the meter records
       return false;
     } catch (...) {
       error = std::current_exception();

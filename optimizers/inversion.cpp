@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <limits>
 
 #include "core/decompose.h"
 
@@ -29,17 +30,70 @@ class AlongGradient final : public Inversion {
   Matrix g_, slope_;  // (m, B), (k, B) of the mean loss
 };
 
+// Where y is to go for a share of the way: y + share Δy, Δy = y* − y or, sample by sample, Newton's
+// step −|H|⁻¹ ∂L/∂y, H = ∂²L/∂y², of the book's chapter on scale invariance. The signs of H are
+// left out, as saddle-free Newton does, or losses without a minimum in y, such as an infidelity,
+// would rise. There is no step along directions without curvature.
+class TargetStep {
+ public:
+  explicit TargetStep(bool is_newton) : is_newton_(is_newton) {}
+
+  void set(Meter& f, const Linearization& at, Real share, Matrix& wanted) {
+    if (is_newton_) {
+      find_newton_step(at);
+      wanted = at.y() + share * step_;
+    } else if (share == 1) {
+      wanted = f.target();
+    } else {
+      wanted = at.y() + share * (f.target() - at.y());
+    }
+  }
+
+ private:
+  void find_newton_step(const Linearization& at) {
+    const Index m = at.y().rows(), samples = at.y().cols();
+    at.cotangent(step_);
+    unit_.setZero(m, samples);
+    column_.resize(m, samples);
+    H_.resize(m, m * samples);
+    for (Index i = 0; i < m; ++i) {
+      unit_.row(i).setOnes();
+      at.loss_curvature(unit_, column_);
+      unit_.row(i).setZero();
+      for (Index b = 0; b < samples; ++b) H_.col(b * m + i) = column_.col(b);
+    }
+    for (Index b = 0; b < samples; ++b) {
+      if (!symmetric_eigen(H_.middleCols(b * m, m), eigen_)) continue;
+      const Real least = std::numeric_limits<Real>::epsilon() * eigen_.lambda.cwiseAbs().maxCoeff();
+      along_ = eigen_.V.transpose() * step_.col(b);
+      for (Index i = 0; i < m; ++i) {
+        const Real size = std::abs(eigen_.lambda[i]);
+        along_[i] = size > least * static_cast<Real>(m) ? -along_[i] / size : 0;
+      }
+      step_.col(b) = eigen_.V * along_;
+    }
+  }
+
+  bool is_newton_;
+  SymmetricEigen eigen_;
+  Matrix step_, unit_, column_, H_;  // (m, B) ∂L/∂y and then Δy; (m, B) twice; (m, m·B)
+  Vector along_;                     // (m)
+};
+
 // The problem's own: x̃ = P⁻¹(y + η (y* − y); x), or x + η (P⁻¹(y*; x) − x) where it does not undo
 // P.
 class ByProblem final : public Inversion {
  public:
-  ByProblem(Real step, bool falls_back) : step_(step), falls_back_(falls_back), gradient_(step) {}
+  explicit ByProblem(const InversionOptions& o)
+      : step_(o.step),
+        falls_back_(o.fallback == "gradient"),
+        aim_(o.difference == "newton"),
+        gradient_(o.step) {}
 
   // A sample whose inverse fails keeps its x, and gives no gradient; or moves along its gradient.
   Index invert(Meter& f, Linearization& at, Matrix& found) override {
     const bool undoes_physics = f.inverse_kind() == Inverse::exact;
-    wanted_ = f.target();
-    if (undoes_physics) wanted_ = at.y() + step_ * (f.target() - at.y());
+    aim_.set(f, at, undoes_physics ? step_ : 1, wanted_);
     found = at.x();
     const Success success = at.local_inverse(wanted_, found);
     if (!undoes_physics) found = at.x() + step_ * (found - at.x());
@@ -54,6 +108,7 @@ class ByProblem final : public Inversion {
  private:
   Real step_;
   bool falls_back_;
+  TargetStep aim_;
   AlongGradient gradient_;
   Matrix wanted_, instead_;  // (m, B), (k, B)
 };
@@ -158,15 +213,16 @@ class ByNewton final : public Inversion {
   Matrix bend_;    // (k, k·B) Σᵢ (P(x) − y*)ᵢ ∇²Pᵢ
 };
 
-// x̃ = argmin ½‖P(x) − y − η (y* − y)‖² from the current x, by L-BFGS over all samples at once.
+// x̃ = argmin ½‖P(x) − y − η Δy‖² from the current x, by L-BFGS over all samples at once.
 class ByLbfgs final : public Inversion {
  public:
-  ByLbfgs(Real step, Index most_evaluations) : step_(step), most_evaluations_(most_evaluations) {}
+  explicit ByLbfgs(const InversionOptions& o)
+      : step_(o.step), most_evaluations_(o.inverse_evaluations), aim_(o.difference == "newton") {}
 
   // To the rounding of what is wanted.
   Index invert(Meter& f, Linearization& at, Matrix& found) override {
     constexpr Real kRelativeMisfit = 1e-14;
-    wanted_ = at.y() + step_ * (f.target() - at.y());
+    aim_.set(f, at, step_, wanted_);
     const Index k = at.x().rows(), samples = at.x().cols();
     flat_ = at.x().reshaped();
     const auto misfit = [&](VectorRef x, VectorOut gradient) {
@@ -187,6 +243,7 @@ class ByLbfgs final : public Inversion {
  private:
   Real step_;
   Index most_evaluations_;
+  TargetStep aim_;
   Linearization trial_;
   Matrix wanted_, misfit_;  // (m, B)
   Vector flat_;             // (k·B)
@@ -200,12 +257,11 @@ bool uses_own_inverse(const InversionOptions& o, Inverse kind) {
 }  // namespace
 
 std::unique_ptr<Inversion> make_inversion(const InversionOptions& o, Inverse kind) {
-  if (uses_own_inverse(o, kind))
-    return std::make_unique<ByProblem>(o.step, o.fallback == "gradient");
+  if (uses_own_inverse(o, kind)) return std::make_unique<ByProblem>(o);
   if (o.inverse == "gradient") return std::make_unique<AlongGradient>(o.step);
   if (o.inverse == "newton")
     return std::make_unique<ByNewton<SaddleFree>>(o.step, SaddleFree{o.max_loss_change});
-  return std::make_unique<ByLbfgs>(o.step, o.inverse_evaluations);
+  return std::make_unique<ByLbfgs>(o);
 }
 
 OracleSet needs_of(const InversionOptions& o, const Problem& problem) {
@@ -225,6 +281,10 @@ OracleSet needs_of(const InversionOptions& o, const Problem& problem) {
 std::string objection_to(const InversionOptions& o, const Problem& problem) {
   if (o.inverse == "damped" && problem.inverse_kind() != Inverse::damped)
     return "inverse=damped, and the physics has an inverse, but not a damped one";
+  constexpr Index kMostOutputs = 512;  // numbers of y, of which H is factorized
+  if (o.difference == "newton" && problem.outputs() > kMostOutputs)
+    return fmt::format("difference=newton is for up to {} numbers of y per sample, not {}",
+                       kMostOutputs, problem.outputs());
   return o.inverse == "newton" ? objection_to_newton(problem, "inverse=newton") : "";
 }
 

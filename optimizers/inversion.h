@@ -56,7 +56,7 @@ class Inversion {
 // Which, and how: the options that all methods share that invert the physics.
 struct InversionOptions {
   Real step = 1, max_loss_change = 0.2;
-  std::string inverse = "auto", fallback = "none";
+  std::string inverse = "auto", difference = "target", fallback = "none";
   Index inverse_evaluations = 200;
 };
 
@@ -66,6 +66,10 @@ inline void fields(InversionOptions& o, auto& field) {
         "local inverse: the problem's own (damped requires a damped one); a saddle-free Newton "
         "step; L-BFGS; or U = −η ∂L/∂x of each sample's loss, which is backpropagation; auto: the "
         "problem's own where there is one, else L-BFGS");
+  field(
+      "difference", o.difference, Choices{"target", "newton"},
+      "Δy that the problem's own inverse and L-BFGS undo: y* − y, or Newton's step on the loss in "
+      "y with |∂²L/∂y²|, which is the same for multiples of ‖y − y*‖²");
   field("max-loss-change", o.max_loss_change, above(0),
         "of inverse=newton: limit Δ on the linear change of a sample's loss along a direction of "
         "low or negative curvature");

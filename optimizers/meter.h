@@ -141,24 +141,26 @@ class Meter {
 
   // The solver of a library reports each iteration here, and stops unless the answer is `running`.
   Status iterate(VectorRef theta);
-  // Whether work or time is spent, for inner loops and library callbacks; the harness's loop knows.
+  // Whether the budget of work or time is spent, for inner loops and callbacks of libraries. The
+  // loop of the harness checks this itself.
   bool is_spent() const {
     return is_out_of_work() || iteration_ >= budget_.iterations || is_out_of_time();
   }
   Status status() const { return status_; }
   void reject_step() { ++trace_.rejected_steps; }
-  void claim(std::string_view words);  // what a library says of its own success
-  // Quantities of the method's own, traced at kept iterations as the problem's are: named once,
-  // when the method starts, and noted as often as they change.
+  void claim(std::string_view words);  // a library's statement about its own success
+  // Quantities of the method, which the trace stores at the same iterations as those of the
+  // problem. A method names them once, at its start, and reports them each time they change.
   void name_series(const std::vector<std::string>& names);
   void note(std::size_t which, Real value);
 
   // --- for the harness
   Status begin(VectorRef theta);
-  // All that a run has come to, to be gone on with by another process; reading it begins the run.
+  // The complete state of a run, from which another process can continue. Reading it starts the
+  // run.
   void persist(Archive& archive);
-  // Returns the θ that the run comes to: this one, or the last that was judged where the budget has
-  // no forward left for this one.
+  // Returns the final θ of the run: this one, or the last verified one if the budget does not have
+  // a forward solve left for this one.
   Vector finish(VectorRef theta, Status verdict);
   void leave_gradients_out() { measures_gradients_ = false; }  // of what is judged
   const Problem& problem() const { return problem_; }
@@ -195,7 +197,7 @@ class Meter {
   void keep_point();
   bool is_spectrum_due(bool is_last) const;
   void keep_spectrum(bool is_last);
-  void show();        // what was learned
+  void show();        // the result of training
   void prepare();     // samples and limits
   void set_scales();  // by which this run's targets are measured; after the start's loss
   Real target_at(Real tau) const { return trace_.minimum + tau * trace_.scale; }  // nan where none
@@ -237,7 +239,7 @@ class Meter {
   Real target_x_error_;  // −∞: the loss decides
   // One forward of the budget is left for the returned point.
   std::int64_t most_work_;
-  bool is_exhausted_ = false;  // an oracle would have cost more
+  bool is_exhausted_ = false;  // an oracle would have exceeded the budget
   Real paid_loss_;             // of the last point that the method has paid for
   bool is_prepaid_ = false;    // a forward at judged_theta_
   Vector accepted_;            // (n), the last θ that was judged and is paid for

@@ -1,5 +1,5 @@
-// A method by the functions of a shared library, which asks the meter through functions of its own.
-// No exception crosses the library: it is kept, and thrown again when the library has returned.
+// A method of a shared library, which calls the meter through a table of functions. An exception
+// does not cross the library: it is stored, and thrown again when the library has returned.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -15,7 +15,7 @@ namespace {
 
 using Eigen::Map;
 
-// The problem as the library sees it.
+// The problem, as presented to the library.
 struct Questions : isoline_oracles {
   Meter& f;
   const bool is_whole_solve;
@@ -29,7 +29,7 @@ struct Questions : isoline_oracles {
 
   // r and J are divided by it: √B.
   Real root() const { return std::sqrt(static_cast<Real>(f.samples())); }
-  // Products are of a point.
+  // Products refer to the current point.
   Linearization& point() {
     require(is_linearized, "all oracles except loss() and report() need linearize() first");
     return at;
@@ -46,7 +46,7 @@ struct Questions : isoline_oracles {
   }
 };
 
-// Answers one question; 1 where the run is over.
+// Answers one call; returns 1 if the run is over.
 template <class Answer>
 int answer(isoline_oracles* asked, const Answer& of) noexcept {
   Questions& all = static_cast<Questions&>(*asked);
@@ -54,7 +54,7 @@ int answer(isoline_oracles* asked, const Answer& of) noexcept {
   try {
     of(all);
     return 0;
-  } catch (const BudgetSpent&) {  // a whole solve ends where it is; a step is not taken
+  } catch (const BudgetSpent&) {  // a whole solve ends at its current point; a step is not taken
     if (!all.is_whole_solve) all.error = std::current_exception();
     return 1;
   } catch (...) {

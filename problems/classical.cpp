@@ -10,27 +10,21 @@
 #include <numbers>
 #include <optional>
 
-#include "problems/dense_physics.h"
+#include "problems/more_garbow_hillstrom.h"
 
 namespace isoline::problems {
 namespace {
 
-// f of few unknowns, by formulas of one sample as DensePhysics has them.
+// f of few unknowns.
 struct Formula {
+  JetFunction f;
   Index inputs, outputs;
-  void (*value)(VectorRef x, VectorOut y);
-  void (*derivative)(VectorRef x, BatchOut J);
-  void (*second)(VectorRef x, VectorRef u, BatchOut H);
   bool (*invert)(VectorRef y, VectorRef x0, VectorOut x) = nullptr;  // exact, where there is one
 };
 
-class ByFormula final : public DensePhysics {
+class ByFormula final : public JetPhysics<JetFunction> {
  public:
-  explicit ByFormula(const Formula& f) : DensePhysics(f.inputs, f.outputs), f_(f) {}
-  void value(VectorRef x, VectorOut y) const override { f_.value(x, y); }
-  void derivative(VectorRef x, BatchOut J) const override { f_.derivative(x, J); }
-  bool has_curvature() const override { return true; }
-  void second(VectorRef x, VectorRef u, BatchOut H) const override { f_.second(x, u, H); }
+  explicit ByFormula(const Formula& f) : JetPhysics(f.f, f.inputs, f.outputs), f_(f) {}
   Inverse inverse_kind() const override { return f_.invert ? Inverse::exact : Inverse::none; }
   bool invert(VectorRef y, VectorRef x0, VectorOut x) const override { return f_.invert(y, x0, x); }
 
@@ -38,86 +32,20 @@ class ByFormula final : public DensePhysics {
   Formula f_;
 };
 
-constexpr Formula kRosenbrock{
-    .inputs = 2,
-    .outputs = 2,
-    .value = [](VectorRef x, VectorOut y) { y << 10 * (x[1] - x[0] * x[0]), 1 - x[0]; },
-    .derivative = [](VectorRef x, BatchOut J) { J << -20 * x[0], 10, -1, 0; },
-    .second = [](VectorRef, VectorRef u, BatchOut H) { H(0, 0) = -20 * u[0]; },
-    .invert =
-        [](VectorRef y, VectorRef, VectorOut x) {
-          x[0] = 1 - y[1];
-          x[1] = y[0] / 10 + x[0] * x[0];
-          return true;
-        }};
-
-constexpr Formula kBrownBadlyScaled{
-    .inputs = 2,
-    .outputs = 3,
-    .value = [](VectorRef x, VectorOut y) { y << x[0] - 1e6, x[1] - 2e-6, x[0] * x[1] - 2; },
-    .derivative = [](VectorRef x, BatchOut J) { J << 1, 0, 0, 1, x[1], x[0]; },
-    .second = [](VectorRef, VectorRef u, BatchOut H) { H(0, 1) = H(1, 0) = u[2]; }};
-
-constexpr Formula kBeale{.inputs = 2,
-                         .outputs = 3,
-                         .value =
-                             [](VectorRef x, VectorOut y) {
-                               const Real x2 = x[1];
-                               y << 1.5 - x[0] * (1 - x2), 2.25 - x[0] * (1 - x2 * x2),
-                                   2.625 - x[0] * (1 - x2 * x2 * x2);
-                             },
-                         .derivative =
-                             [](VectorRef x, BatchOut J) {
-                               const Real x2 = x[1];
-                               J << x2 - 1, x[0],               //
-                                   x2 * x2 - 1, 2 * x[0] * x2,  //
-                                   x2 * x2 * x2 - 1, 3 * x[0] * x2 * x2;
-                             },
-                         .second =
-                             [](VectorRef x, VectorRef u, BatchOut H) {
-                               const Real x2 = x[1];
-                               H(0, 1) = H(1, 0) = u[0] + 2 * u[1] * x2 + 3 * u[2] * x2 * x2;
-                               H(1, 1) = 2 * u[1] * x[0] + 6 * u[2] * x[0] * x2;
-                             }};
-
-// (ρ, 2πθ) are the polar coordinates of (x1, x2), θ in (−¼, ¾). The paper leaves x1 = 0 undefined:
-// here θ = ±¼ there, with the sign of x2.
-constexpr Real kTurn = 2 * std::numbers::pi;
-void curve_helical_valley(VectorRef x, VectorRef u, BatchOut H) {
-  const Real rho = std::hypot(x[0], x[1]), c = x[0] / rho, s = x[1] / rho;
-  const Real turn = -100 * u[0] / (kTurn * rho * rho), stretch = 10 * u[1] / rho;
-  H(0, 0) = 2 * turn * c * s + stretch * s * s;
-  H(0, 1) = H(1, 0) = turn * (s * s - c * c) - stretch * c * s;
-  H(1, 1) = -2 * turn * c * s + stretch * c * c;
+bool invert_rosenbrock(VectorRef y, VectorRef, VectorOut x) {
+  x[0] = 1 - y[1];
+  x[1] = y[0] / 10 + x[0] * x[0];
+  return true;
 }
-constexpr Formula kHelicalValley{
-    .inputs = 3,
-    .outputs = 3,
-    .value =
-        [](VectorRef x, VectorOut y) {
-          Real theta = std::atan2(x[1], x[0]) / kTurn;  // (−½, ½]
-          if (x[0] < 0 && theta < 0) theta += 1;
-          y << 10 * (x[2] - 10 * theta), 10 * (std::hypot(x[0], x[1]) - 1), x[2];
-        },
-    .derivative =
-        [](VectorRef x, BatchOut J) {
-          const Real rho = std::hypot(x[0], x[1]), c = x[0] / rho, s = x[1] / rho;
-          const Real turn = 100 / (kTurn * rho);
-          J << turn * s, -turn * c, 10,  //
-              10 * c, 10 * s, 0,         //
-              0, 0, 1;
-        },
-    .second = curve_helical_valley,
-    .invert =
-        [](VectorRef y, VectorRef x0, VectorOut x) {
-          const Real rho = 1 + y[1] / 10, theta = (y[2] - y[0] / 10) / 10;
-          x = x0;
-          if (!(rho > 0 && theta >= -0.25 && theta < 0.75)) return false;
-          x << rho * std::cos(kTurn * theta), rho * std::sin(kTurn * theta), y[2];
-          return true;
-        }};
 
-const Real kRoot5 = std::sqrt(5.0), kRoot10 = std::sqrt(10.0), kRoot90 = std::sqrt(90.0);
+bool invert_helical_valley(VectorRef y, VectorRef x0, VectorOut x) {
+  constexpr Real kTurn = 2 * std::numbers::pi;
+  const Real rho = 1 + y[1] / 10, theta = (y[2] - y[0] / 10) / 10;
+  x = x0;
+  if (!(rho > 0 && theta >= -0.25 && theta < 0.75)) return false;
+  x << rho * std::cos(kTurn * theta), rho * std::sin(kTurn * theta), y[2];
+  return true;
+}
 
 // x with x1 + 10 x2 = a, x3 − x4 = d, x2 − 2 x3 = p, x1 − x4 = q
 Vector solve_powell(Real a, Real d, Real p, Real q) {
@@ -127,69 +55,21 @@ Vector solve_powell(Real a, Real d, Real p, Real q) {
 
 // The Jacobian is singular at the solution 0. The inverse is linear once the signs of
 // p = x2 − 2 x3 and q = x1 − x4 are chosen: of the four, the nearest.
-constexpr Formula kPowellSingular{
-    .inputs = 4,
-    .outputs = 4,
-    .value =
-        [](VectorRef x, VectorOut y) {
-          const Real p = x[1] - 2 * x[2], q = x[0] - x[3];
-          y << x[0] + 10 * x[1], kRoot5 * (x[2] - x[3]), p * p, kRoot10 * q * q;
-        },
-    .derivative =
-        [](VectorRef x, BatchOut J) {
-          const Real dp = 2 * (x[1] - 2 * x[2]), dq = 2 * kRoot10 * (x[0] - x[3]);
-          J << 1, 10, 0, 0,           //
-              0, 0, kRoot5, -kRoot5,  //
-              0, dp, -2 * dp, 0,      //
-              dq, 0, 0, -dq;
-        },
-    .second =
-        [](VectorRef, VectorRef u, BatchOut H) {
-          const Real p = 2 * u[2], q = 2 * kRoot10 * u[3];
-          H << q, 0, 0, -q,         //
-              0, p, -2 * p, 0,      //
-              0, -2 * p, 4 * p, 0,  //
-              -q, 0, 0, q;
-        },
-    .invert =
-        [](VectorRef y, VectorRef x0, VectorOut x) {
-          const Vector guess = x0;
-          x = guess;
-          if (!(y[2] >= 0 && y[3] >= 0)) return false;
-          Real nearest = std::numeric_limits<Real>::infinity();
-          for (const Real p : {-std::sqrt(y[2]), std::sqrt(y[2])}) {
-            for (const Real q : {-std::sqrt(y[3] / kRoot10), std::sqrt(y[3] / kRoot10)}) {
-              const Vector candidate = solve_powell(y[0], y[1] / kRoot5, p, q);
-              const Real distance = (candidate - guess).norm();
-              if (distance < nearest) x = candidate;
-              nearest = std::min(nearest, distance);
-            }
-          }
-          return true;
-        }};
-
-constexpr Formula kWood{.inputs = 4,
-                        .outputs = 6,
-                        .value =
-                            [](VectorRef x, VectorOut y) {
-                              y << 10 * (x[1] - x[0] * x[0]), 1 - x[0],
-                                  kRoot90 * (x[3] - x[2] * x[2]), 1 - x[2],
-                                  kRoot10 * (x[1] + x[3] - 2), (x[1] - x[3]) / kRoot10;
-                            },
-                        .derivative =
-                            [](VectorRef x, BatchOut J) {
-                              J << -20 * x[0], 10, 0, 0,               //
-                                  -1, 0, 0, 0,                         //
-                                  0, 0, -2 * kRoot90 * x[2], kRoot90,  //
-                                  0, 0, -1, 0,                         //
-                                  0, kRoot10, 0, kRoot10,              //
-                                  0, 1 / kRoot10, 0, -1 / kRoot10;
-                            },
-                        .second =
-                            [](VectorRef, VectorRef u, BatchOut H) {
-                              H(0, 0) = -20 * u[0];
-                              H(2, 2) = -2 * kRoot90 * u[2];
-                            }};
+bool invert_powell_singular(VectorRef y, VectorRef x0, VectorOut x) {
+  const Vector guess = x0;
+  x = guess;
+  if (!(y[2] >= 0 && y[3] >= 0)) return false;
+  Real nearest = std::numeric_limits<Real>::infinity();
+  for (const Real p : {-std::sqrt(y[2]), std::sqrt(y[2])}) {
+    for (const Real q : {-std::sqrt(y[3] / std::sqrt(10.0)), std::sqrt(y[3] / std::sqrt(10.0))}) {
+      const Vector candidate = solve_powell(y[0], y[1] / std::sqrt(5.0), p, q);
+      const Real distance = (candidate - guess).norm();
+      if (distance < nearest) x = candidate;
+      nearest = std::min(nearest, distance);
+    }
+  }
+  return true;
+}
 
 template <int standard, int least>
 struct Residuals {
@@ -200,41 +80,12 @@ void fields(Residuals<standard, least>& o, auto& field) {
   field("m", o.m, between(least, 1000), "number of residuals");
 }
 
-// e^(−rate·t) entry by entry: an expression, not an array.
-auto decay(const Eigen::ArrayXd& t, Real rate) {
-  return t.unaryExpr([rate](Real ti) { return std::exp(-rate * ti); });
-}
-
-class Box3d final : public DensePhysics {
- public:
-  explicit Box3d(Index m)
-      : DensePhysics(3, m),
-        t_(Vector::LinSpaced(m, 1, static_cast<Real>(m)) / 10),
-        weight_(decay(t_, 1) - decay(t_, 10)) {}
-  void value(VectorRef x, VectorOut y) const override {
-    y = decay(t_, x[0]) - decay(t_, x[1]) - x[2] * weight_;
-  }
-  void derivative(VectorRef x, BatchOut J) const override {
-    J.col(0) = -t_ * decay(t_, x[0]);
-    J.col(1) = t_ * decay(t_, x[1]);
-    J.col(2) = -weight_;
-  }
-  bool has_curvature() const override { return true; }
-  void second(VectorRef x, VectorRef u, BatchOut H) const override {
-    H(0, 0) = (u.array() * t_.square() * decay(t_, x[0])).sum();
-    H(1, 1) = -(u.array() * t_.square() * decay(t_, x[1])).sum();
-  }
-
- private:
-  Eigen::ArrayXd t_, weight_;  // (m)
-};
-
 // Zero at (1, 10, 1), at (10, 1, −1) and all along x1 = x2, x3 = 0.
 ProblemParts make_box3d(const Residuals<10, 3>& o, const Draw& draw) {
   Matrix isolated(3, 2);
   isolated << 1, 10, 10, 1, 1, -1;
-  ProblemParts parts =
-      classical(std::make_unique<Box3d>(o.m), Eigen::Vector3d(0, 10, 20), draw, 0, isolated);
+  ProblemParts parts = classical(std::make_unique<JetPhysics<JetFunction>>(kBox3d, 3, o.m),
+                                 Eigen::Vector3d(0, 10, 20), draw, 0, isolated);
   parts.x_error = [isolated](BatchRef x, const Batch&) {
     const Real to_line = std::hypot((x(0, 0) - x(1, 0)) / std::sqrt(2.0), x(2, 0));
     return std::min(distance_to_nearest(x, isolated), to_line);
@@ -242,49 +93,14 @@ ProblemParts make_box3d(const Residuals<10, 3>& o, const Draw& draw) {
   return parts;
 }
 
-// p + q s − r entry by entry: an expression, not an array.
-auto misfit(Real p, Real q, const Eigen::ArrayXd& s, const Eigen::ArrayXd& r) {
-  return p + q * s - r;
-}
-
-class BrownDennis final : public DensePhysics {
- public:
-  explicit BrownDennis(Index m)
-      : DensePhysics(4, m), t_(Vector::LinSpaced(m, 1, static_cast<Real>(m)) / 5) {
-    exp_t_ = t_.unaryExpr([](Real t) { return std::exp(t); });
-    sin_t_ = t_.sin();
-    cos_t_ = t_.cos();
-  }
-  void value(VectorRef x, VectorOut y) const override {
-    y = misfit(x[0], x[1], t_, exp_t_).square() + misfit(x[2], x[3], sin_t_, cos_t_).square();
-  }
-  void derivative(VectorRef x, BatchOut J) const override {
-    J.col(0) = 2 * misfit(x[0], x[1], t_, exp_t_);
-    J.col(1) = J.col(0).array() * t_;
-    J.col(2) = 2 * misfit(x[2], x[3], sin_t_, cos_t_);
-    J.col(3) = J.col(2).array() * sin_t_;
-  }
-  bool has_curvature() const override { return true; }
-  void second(VectorRef, VectorRef u, BatchOut H) const override {
-    H(0, 0) = H(2, 2) = 2 * u.sum();
-    H(0, 1) = H(1, 0) = 2 * (u.array() * t_).sum();
-    H(1, 1) = 2 * (u.array() * t_.square()).sum();
-    H(2, 3) = H(3, 2) = 2 * (u.array() * sin_t_).sum();
-    H(3, 3) = 2 * (u.array() * sin_t_.square()).sum();
-  }
-
- private:
-  Eigen::ArrayXd t_, exp_t_, sin_t_, cos_t_;  // (m)
-};
-
 // The residuals do not vanish: Σ fᵢ² = 85822.2… at m = 20, the only m with a published minimum.
 ProblemParts make_brown_dennis(const Residuals<20, 4>& o, const Draw& draw) {
   // By Newton's method in quadruple precision from the standard start, to ‖∇‖ = 1e-29.
   constexpr Real kMinimum = 42911.1008131781723303;  // ½ of the published 85822.2
   const Eigen::Vector4d minimizer(-11.5944399047621653826, 13.2036300512072038213,
                                   -0.403439488176859519644, 0.236778774455736299147);
-  ProblemParts parts = classical(std::make_unique<BrownDennis>(o.m), Eigen::Vector4d(25, 5, -5, -1),
-                                 draw, kMinimum, minimizer);
+  ProblemParts parts = classical(std::make_unique<JetPhysics<JetFunction>>(kBrownDennis, 4, o.m),
+                                 Eigen::Vector4d(25, 5, -5, -1), draw, kMinimum, minimizer);
   if (o.m != 20) {
     parts.minimum.reset();
     parts.truth.reset();
@@ -433,21 +249,22 @@ void register_classical(ProblemRegistry& registry) {
   using V3 = Eigen::Vector3d;
   using V4 = Eigen::Vector4d;
   add("rosenbrock", "Rosenbrock's valley", "f = (10(x₂ − x₁²), 1 − x₁)", 1, "; Rosenbrock (1960)",
-      kRosenbrock, V2(-1.2, 1), V2(1, 1), {{-2, 2, -1, 3}});
+      {kRosenbrock, 2, 2, invert_rosenbrock}, V2(-1.2, 1), V2(1, 1), {{-2, 2, -1, 3}});
   add("brown-badly-scaled", "Brown's badly scaled function",
-      "f = (x₁ − 10⁶, x₂ − 2·10⁻⁶, x₁x₂ − 2)", 4, "", kBrownBadlyScaled, V2(1, 1), V2(1e6, 2e-6));
+      "f = (x₁ − 10⁶, x₂ − 2·10⁻⁶, x₁x₂ − 2)", 4, "", {kBrownBadlyScaled, 2, 3}, V2(1, 1),
+      V2(1e6, 2e-6));
   add("beale", "Beale's function", "fᵢ = yᵢ − x₁(1 − x₂ⁱ),  y = (1.5, 2.25, 2.625)", 5,
-      "; Beale (1958)", kBeale, V2(1, 1), V2(3, 0.5), {{-0.5, 4.5, -1.5, 1.5}});
+      "; Beale (1958)", {kBeale, 2, 3}, V2(1, 1), V2(3, 0.5), {{-0.5, 4.5, -1.5, 1.5}});
   add("helical-valley", "Helical valley",
       "f = (10(x₃ − 10θ), 10(ρ − 1), x₃),  (x₁, x₂) = ρ(cos 2πθ, sin 2πθ)", 7,
-      "; Fletcher and Powell (1963)", kHelicalValley, V3(-1, 0, 0), V3(1, 0, 0), {},
-      "θ jumps from ¾ to −¼ across x₁ = 0 > x₂.");
+      "; Fletcher and Powell (1963)", {kHelicalValley, 3, 3, invert_helical_valley}, V3(-1, 0, 0),
+      V3(1, 0, 0), {}, "θ jumps from ¾ to −¼ across x₁ = 0 > x₂.");
   add("powell-singular", "Powell's singular function",
       "f = (x₁ + 10x₂, √5(x₃ − x₄), (x₂ − 2x₃)², √10(x₁ − x₄)²)", 13, "; Powell (1962)",
-      kPowellSingular, V4(3, -1, 0, 1), Vector::Zero(4));
+      {kPowellSingular, 4, 4, invert_powell_singular}, V4(3, -1, 0, 1), Vector::Zero(4));
   add("wood", "Wood's function",
       "f = (10(x₂ − x₁²), 1 − x₁, √90(x₄ − x₃²), 1 − x₃, √10(x₂ + x₄ − 2), (x₂ − x₄)/√10)", 14,
-      "; Colville (1968)", kWood, V4(-3, -1, -3, -1), Vector::Ones(4));
+      "; Colville (1968)", {kWood, 4, 6}, V4(-3, -1, -3, -1), Vector::Ones(4));
   registry.add(problem_entry(
       {.name = "box3d",
        .title = "Box's three-dimensional function",

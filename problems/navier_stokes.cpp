@@ -38,7 +38,7 @@ struct Options {
 };
 
 void fields(Options& o, auto& field) {
-  field("N", o.N, between(4, 128), "cells along each side, an even number");
+  field("N", o.N, between(6, 128), "cells along each side, an even number");
   field("steps", o.steps, between(1, 1000), "time steps");
   field("dt", o.dt, above(0), "time step Δt; a cell is 128/N wide");
   field("viscosity", o.viscosity, at_least(0), "viscosity ν, 0 as published");

@@ -166,20 +166,32 @@ class ProcessPhysics final : public ByJacobian {
   Box box_;
 };
 
-ProblemParts process_parts(const ProblemHandshake& said, std::shared_ptr<Session> session,
+ProblemParts process_parts(const ProblemHandshake& said, const std::shared_ptr<Session>& session,
                            const Draw& draw) {
   const Vector standard = vector_of(said.start);
-  ProblemParts parts{.physics = std::make_unique<ProcessPhysics>(std::move(session), said),
-                     .start = draw.start(standard),
+  const StartScale scale = said.has_own_scale ? StartScale::own : StartScale::at_least_one;
+  ProblemParts parts{.physics = std::make_unique<ProcessPhysics>(session, said),
+                     .start = draw.start(standard, scale),
+                     .start_scale = scale,
                      .target = vector_of(said.target),
                      .aim = said.aim,
                      .minimum = said.minimum};
   if (!said.drawn.empty()) parts.start = Start(vector_of(said.drawn), standard);
   parts.start.drawn =
       box_of(said).nearest(parts.start.drawn);  // a sampled start may lie outside the bounds
+  if (said.x_floor > 0) parts.x_floor = [floor = said.x_floor](const Batch&) { return floor; };
+  if (said.has_x_error)
+    parts.x_error = [session](BatchRef x, const Batch&) {
+      const Matrix whole = x;  // in one piece
+      Real error = 0;
+      session->line.send(Verb::x_error, 0, numbers_of(whole));
+      session->line.receive_answer(Verb::x_error, {&error, 1});
+      return error;
+    };
   if (said.truth.empty()) return parts;
   const Matrix truth = vector_of(said.truth);
   parts.truth = truth;
+  if (said.has_x_error) return parts;
   parts.x_error = [truth](BatchRef x, const Batch&) { return (x - truth).norm(); };
   return parts;
 }
@@ -192,7 +204,7 @@ Problem make_process(const OptionValues& options, const Draw& draw) {
     Session other(given.command);
     said.drawn = greet_problem(other.line, draw.start_seed(), given.startup).drawn;
   }
-  return Problem(process_parts(said, std::move(session), draw));
+  return Problem(process_parts(said, session, draw));
 }
 
 Foreign introduce(const OptionValues& options) {

@@ -65,9 +65,9 @@ class Sine final : public DensePhysics {
     const Real u = y[0] / amplitude_;
     x << x0[0], x0[1];
     if (!(std::abs(u) <= 1)) return false;
-    const Real s1 = frequency_ * z1(x0);
-    const Real rising = nearest(std::asin(u), s1);
-    const Real falling = nearest(std::numbers::pi - std::asin(u), s1);
+    const Real s1 = frequency_ * z1(x0), angle = std::asin(u);
+    const Real rising = nearest(angle, s1);
+    const Real falling = nearest(std::numbers::pi - angle, s1);
     const Real s = std::abs(rising - s1) <= std::abs(falling - s1) ? rising : falling;
     const Real solved1 = s / frequency_, solved2 = y[1] / slope_;
     x << cos_ * solved1 + sin_ * solved2, -sin_ * solved1 + cos_ * solved2;
@@ -79,7 +79,7 @@ class Sine final : public DensePhysics {
   Real z2(VectorRef x) const { return sin_ * x[0] + cos_ * x[1]; }
   static Real nearest(Real s, Real s1) {  // s + 2πn closest to s1
     constexpr Real kPeriod = 2 * std::numbers::pi;
-    return s + kPeriod * std::round((s1 - s) / kPeriod);
+    return s + kPeriod * std::rint((s1 - s) / kPeriod);
   }
 
   Real amplitude_, frequency_, slope_, cos_, sin_;
@@ -91,7 +91,7 @@ Real distance(const Sine& physics, BatchRef target, BatchRef x) {
   Eigen::Vector2d solution;
   for (Index b = 0; b < x.cols(); ++b) {
     physics.invert(target.col(b), x.col(b), solution);
-    sum += std::hypot(x(0, b) - solution[0], x(1, b) - solution[1]);
+    sum += (x.col(b) - solution).norm();
   }
   return sum / static_cast<Real>(x.cols());
 }

@@ -7,7 +7,8 @@
 #include "core/threads.h"
 
 int main(int count, char** arguments) {
-  isoline::prepare_libraries(arguments);
+  // optimizers/kernels_test.cpp starts a process with kernels of its own.
+  if (!std::getenv("ISOLINE_KERNELS_TEST")) isoline::prepare_libraries(arguments);
   if (const char* threads = std::getenv("ISOLINE_TEST_THREADS"))
     isoline::set_library_threads(std::atoi(threads));
   testing::InitGoogleTest(&count, arguments);

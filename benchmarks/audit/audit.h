@@ -1,4 +1,4 @@
-// The audit: what every optimizer's properties are, measured on problems with known answers.
+// The audit: the properties of every optimizer, measured on problems with known solutions.
 #pragma once
 
 #include <filesystem>

@@ -1,12 +1,16 @@
-// The one place where CLI11 parses: the program, its verbs and what is wrong with a command.
+// Parses the command line with CLI11, which no other file uses, and states what is wrong with it.
 #include <fmt/format.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cctype>
 #include <charconv>
 #include <cmath>
+#include <memory>
 #include <optional>
+#include <sstream>
 
 #include "benchmarks/cli/verb.h"
 #include "core/errors.h"
@@ -18,22 +22,21 @@ namespace isoline::benchmarks {
 namespace {
 
 constexpr const char* kAbout =
-    "Isoline compares optimizers on physical inverse problems: every problem of a registry "
-    "against\n"
-    "every optimizer of a registry, one JSON record per run, and a report.";
+    "Isoline compares optimizers on physical inverse problems. It runs every optimizer on every "
+    "problem, writes one JSON record per run, and reports the results.";
 constexpr const char* kExamples =
     "Examples:\n"
     "  isoline run                            the default suite, then its report\n"
     "  isoline run --problem 'sine[xi=1|32]' --optimizer 'adam[rate=1e-3],ceres-lm' --seeds 5\n"
-    "  isoline run quick --optimizer adam     the cells of a suite that have this optimizer\n"
+    "  isoline run quick --optimizer adam     the cells of a suite with this optimizer\n"
     "  isoline describe sip                   formula, options, required derivatives, source\n"
     "  isoline check rosenbrock               are its derivatives right?\n"
-    "  isoline audit gd adam sip              scaling, invariance, order: measured\n"
+    "  isoline audit gd adam sip              its measured scaling, invariance and order\n"
     "  isoline compare results/old results/new    what is worse than before?\n"
-    "  isoline claims notebook                are the notebook's numbers reproduced?\n"
-    "  isoline help run                       the options of a verb, with examples\n\n"
-    "Exit codes: 0 good, 1 wrong usage, 2 worse or failed, 3 better only, 4 not comparable,\n"
-    "130 interrupted.";
+    "  isoline claims notebook                do the numbers of the notebook hold?\n"
+    "  isoline help run                       the options of a command, with examples\n\n"
+    "Exit codes: 0 success, 1 wrong usage, 2 failed cells or a regression, 3 improvements only, "
+    "4 not comparable, 130 interrupted.";
 
 template <class Number>
 std::optional<Number> number_in(std::string_view text) {
@@ -150,13 +153,13 @@ std::vector<std::string> option_names(const CLI::App& verb) {
 std::string value_complaint(const CLI::App& verb, const std::string& name) {
   const CLI::Option* option = verb.get_option_no_throw(name);
   const bool is_repeated = option != nullptr && option->count() > 1;
-  return name + (is_repeated ? " is given more than once" : " needs a value");
+  return name + (is_repeated ? " occurs more than once" : " needs a value");
 }
 
 // For the first argument that CLI11 could not place.
 std::string argument_complaint(const CLI::App& verb, const std::string& unexpected) {
   if (!unexpected.starts_with('-'))
-    return fmt::format("{} takes no further argument, got '{}'", verb.get_name(), unexpected);
+    return fmt::format("{}: unexpected argument '{}'", verb.get_name(), unexpected);
   const std::string name = unexpected.substr(0, unexpected.find('='));
   const std::string nearest = nearest_name(name, option_names(verb));
   return fmt::format("unknown option {}{}", name,
@@ -167,6 +170,39 @@ template <class Kind>
 bool is_a(const CLI::ParseError& error) {
   return dynamic_cast<const Kind*>(&error) != nullptr;
 }
+
+// The line, broken at spaces behind the column `indent`.
+std::string broken(std::string line, std::size_t indent, std::size_t most) {
+  std::string text;
+  for (;;) {
+    std::size_t columns = 0, space = line.npos;
+    for (std::size_t at = 0; at < line.size() && columns <= most; ++at) {
+      if (line[at] == ' ' && columns > indent) space = at;
+      columns += (static_cast<unsigned char>(line[at]) & 0xC0U) != 0x80U;
+    }
+    if (columns <= most || space == line.npos) return text + line + '\n';
+    text += line.substr(0, space) + '\n';
+    line = std::string(indent, ' ') + line.substr(space + 1);
+  }
+}
+
+// Help text that fits the terminal, and 80 columns elsewhere. Examples stay whole, to be copied.
+struct WrappedHelp : CLI::Formatter {
+  std::string make_help(const CLI::App* app, std::string name,
+                        CLI::AppFormatMode mode) const override {
+    constexpr std::size_t kUsual = 80, kLeast = 50;
+    winsize size{};
+    const bool is_wide = ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col >= kLeast;
+    std::istringstream lines(CLI::Formatter::make_help(app, std::move(name), mode));
+    std::string text;
+    for (std::string line; std::getline(lines, line);)
+      text += line.starts_with("  isoline ")
+                  ? line + '\n'
+                  : broken(line, line.starts_with(' ') ? get_column_width() : 0,
+                           is_wide ? size.ws_col : kUsual);
+    return text;
+  }
+};
 
 class CommandLine {
  public:
@@ -195,14 +231,15 @@ CommandLine::CommandLine(const std::string& program, Session& session, bool runs
       session_(session),
       runs_(runs),
       app_(kAbout, program) {
+  app_.formatter(std::make_shared<WrappedHelp>());
   app_.footer(kExamples);
   app_.set_version_flag("--version", "isoline " + version());
   app_.require_subcommand(1);
-  app_.get_formatter()->label("SUBCOMMAND", "VERB");
+  app_.get_formatter()->label("SUBCOMMAND", "COMMAND");
   for (Verb& verb : verbs_) {
     if (verb.name == "help") {
       verb.declare = [this](VerbArguments& arguments) {
-        arguments.text("VERB", helped_, "The verb (default: the program)");
+        arguments.text("COMMAND", helped_, "The command (default: the program)");
       };
       verb.run = [this](Session&) {
         say(stdout, help_text());
@@ -219,7 +256,7 @@ void CommandLine::declare(const Verb& verb) {
   if (verb.declare) verb.declare(arguments);
   const char* between = verb.notes.empty() ? "" : "\n\n";
   declared.footer(fmt::format("Examples:\n{}{}{}", verb.examples, between, verb.notes))
-      ->group("Verbs");
+      ->group("Commands");
   declared.callback([this, &verb] {
     if (!helped_.empty()) require_verb(helped_);
     if (runs_) exit_code_ = verb.run(session_);
@@ -237,7 +274,7 @@ void CommandLine::require_verb(const std::string& name) const {
   std::vector<std::string> known;
   for (const Verb& verb : verbs_) known.push_back(verb.name);
   require(std::ranges::find(known, name) != known.end(),
-          [&] { return unknown_name("verb", name, known); });
+          [&] { return unknown_name("command", name, known); });
 }
 
 std::string CommandLine::complaint(const CLI::ParseError& error) const {
@@ -247,9 +284,11 @@ std::string CommandLine::complaint(const CLI::ParseError& error) const {
   const std::vector<std::string> unexpected = verb.remaining();
   std::string text = error.what();
   if (parsed.empty() && unexpected.empty())
-    text = fmt::format("name a verb, such as run; `{} help` lists them", program_);
+    text = fmt::format("a command is missing, such as run; `{} help` lists the commands", program_);
   else if (!unexpected.empty() && (parsed.empty() || is_a<CLI::ExtrasError>(error)))
     text = argument_complaint(verb, unexpected.front());
+  else if (const std::size_t at = text.find(" excludes "); at != text.npos)
+    text.replace(at, 10, " cannot be combined with ");
   else if (is_a<CLI::ArgumentMismatch>(error))
     text = value_complaint(verb, text.substr(0, text.find(':')));
   const std::string name = parsed.empty() ? "" : " " + verb.get_name();
@@ -285,7 +324,7 @@ std::vector<Verb> all_verbs() {
   for (const auto& [name, verb] : registry) verbs.push_back(verb);
   std::ranges::stable_sort(verbs, {}, &Verb::help_position);
   verbs.push_back({.name = "help",
-                   .summary = "Print the help of the program or of a verb",
+                   .summary = "Print the help of the program or of a command",
                    .examples = "  isoline help\n  isoline help run"});
   verbs.push_back({.name = "version",
                    .summary = "Print the version",

@@ -1,10 +1,11 @@
-// The words of a command line as cells, and the cells as shards.
+// Turns the arguments of a command line into cells, and the cells into shards.
 #include "benchmarks/cli/planned_run.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
+#include "benchmarks/plan/rates.h"
 #include "benchmarks/plan/suite.h"
 #include "benchmarks/run/progress.h"
 #include "benchmarks/run/run_plan.h"
@@ -18,12 +19,23 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// Calls read() and puts the flag into its complaint.
+auto read_as(const char* flag, const auto& read) {
+  try {
+    return read();
+  } catch (const UsageError& error) {
+    throw UsageError(fmt::format("{}: {}", flag, error.what()));
+  }
+}
+
 void override_blocks(const RunArguments& given, Suite& suite) {
   const std::uint64_t most_seeds = given.allow_large ? kMostWhereLarge : kMostSeeds;
   for (MatrixBlock& block : suite.blocks) {
-    if (!given.seeds.empty()) block.seeds = parse_seeds(given.seeds, most_seeds);
+    if (!given.seeds.empty())
+      block.seeds = read_as("--seeds", [&] { return parse_seeds(given.seeds, most_seeds); });
     if (!given.instances.empty() || !given.starts.empty())
-      block.seeds = crossed_seeds(given.instances, given.starts);
+      block.seeds = read_as("--instances and --starts",
+                            [&] { return crossed_seeds(given.instances, given.starts); });
     if (given.iterations > 0) block.budget.iterations = given.iterations;
     if (given.work > 0) block.budget.work = given.work;
     if (given.target >= 0) block.budget.target = given.target;
@@ -35,9 +47,9 @@ void override_blocks(const RunArguments& given, Suite& suite) {
 }  // namespace
 
 void declare_cells(VerbArguments& verb, RunArguments& given) {
-  verb.text("SUITE", given.suite,
-            "Name of a suite, or path of one (default: quick); --problem and --optimizer keep the "
-            "cells with these");
+  verb.text(
+      "SUITE", given.suite,
+      "Name or path of a suite (default: quick); --problem and --optimizer select cells of it");
   verb.text("--problem", given.problem, "Problems: 'sine[xi=1|32,phi=45],square'").joined();
   verb.text("--optimizer", given.optimizer, "Optimizers: 'adam[rate=1e-3],ceres-lm'").joined();
   const Argument seeds =
@@ -48,50 +60,57 @@ void declare_cells(VerbArguments& verb, RunArguments& given) {
   verb.text("--starts", given.starts,
             "Starts, each with every instance of --instances: 3, 0..2 or =1 (default: =0)")
       .excludes(seeds);
-  verb.whole("--iterations", given.iterations, "Largest number of iterations of a cell");
-  verb.whole("--work", given.work, "Largest work of a cell, in forward solves");
+  verb.whole("--iterations", given.iterations, "Limit of the iterations of a cell");
+  verb.whole("--work", given.work, "Limit of the work of a cell, in forward solves");
   verb.time("--time", given.seconds,
-            "Time limit of a cell: 10s, 2m; at twice this processor time, it is killed");
+            "Time limit of a cell: 10s, 2m; it is killed after twice this processor time");
   verb.real("--target", given.target, between(0, 1),
-            "Stop at f_L + TARGET s, with s the scale of the loss; if the criterion is x, at "
-            "TARGET of its error (default: 1e-10)");
+            "Tolerance at which a run stops, relative to the scale of the loss or, if the success "
+            "criterion is x, to the norm of x* (default: 1e-10)");
   verb.whole("--threads", given.threads, "Threads of the libraries within a cell", kThreads);
   verb.text("--rates", given.rates, "Table of tuned rates: builtin, none or a file").shown();
+  verb.text("--best", given.best,
+            "Table of `isoline best`: f_L of problems that declare no least loss");
   verb.flag("--allow-large", given.allow_large, "Plan more than a million cells");
   verb.plugins();
 }
 
 void declare_what_is_done(VerbArguments& verb, RunArguments& given) {
-  verb.text("--out", given.out,
-            "Result folder (default: results/SUITE; for your own matrix or a part of a suite, "
-            "a name that follows from the plan)");
-  verb.flag("--force", given.force, "Repeat finished cells");
-  verb.flag("--reuse", given.reuse, "Keep cells of another build");
-  verb.texts("--retry", given.retry, "Repeat cells with this status: failed,crashed,timeout,memory")
+  verb.text(
+      "--out", given.out,
+      "Result folder (default: results/SUITE; for your own study or a part of a suite, a name "
+      "that follows from the plan)");
+  verb.flag("--force", given.force, "Run finished cells again");
+  verb.flag("--reuse", given.reuse, "Keep the records of another build");
+  verb.texts("--retry", given.retry,
+             "Run cells with these statuses again: failed,crashed,timeout,memory")
       .between_commas();
 }
 
 void declare_run(VerbArguments& verb, RunArguments& given) {
   declare_cells(verb, given);
-  verb.whole("--jobs", given.jobs, "Cells at a time (default: one per core)", kJobs);
+  verb.whole("--jobs", given.jobs, "Number of cells at a time (default: one per core)", kJobs);
   verb.flag("--exclusive", given.exclusive, "One cell at a time, for reliable times");
   verb.whole("--repeat", given.repeat, "Timings per cell", {1, 1000});
   verb.memory("--memory", given.memory_bytes,
               "Memory limit of a cell, 256MB or more (default: 4GB)");
   declare_what_is_done(verb, given);
-  verb.flag("--no-report", given.no_report, "Write no report");
+  verb.flag("--no-report", given.no_report, "Do not write a report");
+  verb.flag("--uncertified", given.uncertified,
+            "Run external problems whose derivatives fail their checks; each table marks them");
   verb.flag("--keep-output", given.keeps_output,
             "Keep the output of each cell in its record, up to 64 KiB");
   verb.flag("--fields", given.keeps_fields,
             "Keep x of grid problems at six iterations for every seed (default: for seed 0 only)");
   verb.flag("--spectrum", given.keeps_spectra,
             "Keep the singular values of J = ∂y/∂θ at iterations 0, 1, 2, 4, 8, … and the last; "
-            "finished cells without them are repeated");
+            "finished cells without them run again");
   verb.text("--shard", given.shard,
             "Run one shard, such as 3/16, into shards/3-of-16 of the result folder; auto: "
             "the shard of this task of a SLURM array, or of ISOLINE_SHARD");
-  const Argument dry = verb.flag("--dry-run", given.is_dry,
-                                 "Print the plan: cells, cached, inapplicable, predicted time");
+  const Argument dry =
+      verb.flag("--dry-run", given.is_dry,
+                "Print the plan only: its cells, their states and the predicted time");
   verb.flag("--all", given.lists_all, "With --dry-run: list every cell, not the first 20")
       .needs(dry);
   verb.flag("--in-process", given.in_process,
@@ -105,6 +124,7 @@ PlannedRun planned_run(const RunArguments& given, const Catalog& catalog) {
   require(given.memory_bytes == 0 || given.memory_bytes >= kLeastMemory, [&] {
     return fmt::format("--memory must be at least 256MB, got {} bytes", given.memory_bytes);
   });
+  if (!given.best.empty()) read_as("--best", [&] { BestLosses::add_known(given.best); });
   const bool is_limited = !given.problem.empty() || !given.optimizer.empty();
   const bool is_suite = !given.suite.empty() || !is_limited;
   Suite suite;

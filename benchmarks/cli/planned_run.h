@@ -15,7 +15,7 @@
 namespace isoline::benchmarks {
 
 struct RunArguments {
-  std::string suite, problem, optimizer, seeds, instances, starts, out, rates = "builtin";
+  std::string suite, problem, optimizer, seeds, instances, starts, out, best, rates = "builtin";
   std::string shard;                                        // "3/16", "auto"; empty: the whole
   std::int64_t iterations = 0, work = 0, memory_bytes = 0;  // 0: as the suite or the runner has it
   double seconds = 0, target = -1;                          // 0, −1: as the suite has it
@@ -25,7 +25,7 @@ struct RunArguments {
   bool no_report = false, quiet = false, allow_large = false, keeps_output = false;
   bool keeps_fields = false;
   bool keeps_spectra = false;
-  bool in_process = false;
+  bool in_process = false, uncertified = false;
 };
 void declare_run(VerbArguments& verb, RunArguments& given);
 // The arguments of `run` that `plan` has too.

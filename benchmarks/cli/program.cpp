@@ -1,11 +1,14 @@
 // From the arguments of main() to an exit code.
 #include "benchmarks/cli/program.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <csignal>
 #include <cstdio>
+#include <cstring>
 #include <filesystem>
 #include <new>
 
@@ -46,10 +49,12 @@ Session::Session(std::string command, std::function<Catalog()> make)
 const Catalog& Session::catalog() {
   if (catalog_) return *catalog_;
   Catalog made = make_();
-  for (const std::string& path : plugins_) {
-    require_loadable(path);
-    add_plugin(made, path);
-  }
+  for (const std::string& path : plugins_) try {
+      require_loadable(path);
+      add_plugin(made, path);
+    } catch (const UsageError& error) {
+      throw UsageError(std::string("--plugin: ") + error.what());
+    }
   catalog_ = std::make_shared<const Catalog>(std::move(made));
   return *catalog_;
 }
@@ -66,6 +71,15 @@ std::string command_of(const std::string& program, int count, char** arguments) 
   return valid_utf8(command);
 }
 
+// Else the first file that is opened takes the place of a closed stream, and gets its text.
+void open_standard_streams() {
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    if (fcntl(stream, F_GETFD) >= 0) continue;
+    const int how = stream == STDERR_FILENO ? O_WRONLY : O_RDONLY;  // output fails, and is reported
+    if (open("/dev/null", how) != stream) _exit(1);
+  }
+}
+
 int left_with(int code, const std::string& program, const char* what) {
   try {
     say(stderr, program + ": " + what + "\n");
@@ -78,6 +92,7 @@ int left_with(int code, const std::string& program, const char* what) {
 
 int main(int count, char** arguments, const std::function<benchmarks::Catalog()>& catalog,
          const SourceTree& tree) {
+  open_standard_streams();
   prepare_libraries(arguments);
   std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is a write that fails, and says so
   if (!tree.commit.empty()) set_program_tree(tree.commit, tree.is_dirty);
@@ -86,8 +101,10 @@ int main(int count, char** arguments, const std::function<benchmarks::Catalog()>
   benchmarks::Session session(command_of(program, count, arguments), catalog);
   try {
     const int code = benchmarks::parse_and_run(program, count, arguments, session);
+    if (std::fflush(stdout) != 0)
+      return left_with(kWorse, program,
+                       fmt::format("cannot write standard output: {}", strerror(errno)).c_str());
     if (session.plugins().empty()) return code;
-    std::fflush(nullptr);
     _exit(code);  // what a library does when it is unloaded costs nothing that is done
   } catch (const UsageError& error) {
     return left_with(kUsage, program, error.what());

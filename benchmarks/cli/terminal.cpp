@@ -1,4 +1,4 @@
-// Progress, outcomes and reports as the terminal shows them.
+// Prints progress, outcomes and reports on a terminal.
 #include "benchmarks/cli/terminal.h"
 
 #include <fmt/format.h>
@@ -40,11 +40,11 @@ std::string debugging_advice(const Crash& crash, const fs::path& folder) {
                                           reports::rerun_arguments(crash.request));
   return fmt::format(
       "to debug {}:\n"
-      "  record      {}: \"message\" is the cause, \"output\" its last output\n"
-      "  alone       {}\n"
-      "  debugger    gdb --args {}\n"
-      "  core file   ulimit -c unlimited; {}\n"
-      "              the system writes it to: {}\n",
+      "  its record      {}: \"message\" is the cause, \"output\" the last output\n"
+      "  in one process  {}\n"
+      "  in a debugger   gdb --args {}\n"
+      "  with core file  ulimit -c unlimited; {}\n"
+      "                  the system writes it to: {}\n",
       title_of(crash.request), (folder / crash.record).string(), command, command, command,
       printable(core_pattern()));
 }
@@ -73,17 +73,17 @@ void print_failures(const Outcome& outcome, const std::filesystem::path& folder)
 void print_outcome(const Outcome& outcome, const std::filesystem::path& folder, bool quiet) {
   print_failures(outcome, folder);
   for (const std::string& name : outcome.conflicts)
-    say(stderr, fmt::format("{}: its repetition has another result\n", name));
+    say(stderr, fmt::format("{}: the results of its repetitions differ\n", name));
   for (const std::string& remark : outcome.remarks) say(stderr, remark + "\n");
   if (!outcome.missing.empty())
-    say(stderr, fmt::format("{} of {} vanished during the run, the first that of {}; the same "
-                            "command runs what is missing\n",
+    say(stderr, fmt::format("{} of {} disappeared during the run, the first is that of {}; "
+                            "the same command runs the missing cells\n",
                             reports::counted(outcome.missing.size(), "record"), outcome.planned,
                             outcome.missing.front()));
   if (outcome.reused_from_other_builds > 0)
-    say(stderr,
-        fmt::format("{} of {} reused were run by another build\n", outcome.reused_from_other_builds,
-                    reports::counted(std::size_t(outcome.reused), "cell")));
+    say(stderr, fmt::format("{} of {} reused: another build computed them\n",
+                            outcome.reused_from_other_builds,
+                            reports::counted(std::size_t(outcome.reused), "cell")));
   if (quiet) return;
   std::string counts;
   for (const auto& [status, count] : outcome.statuses)
@@ -95,12 +95,14 @@ void print_outcome(const Outcome& outcome, const std::filesystem::path& folder, 
 
 int exit_code_of(const Outcome& outcome) {
   if (outcome.is_interrupted) {
-    say(stderr, "interrupted; the same command continues where it stopped\n");
+    say(stderr, "interrupted; the same command continues the run\n");
     return kInterrupted;
   }
   if (outcome.interrupted > 0) {
-    say(stderr, fmt::format("{} killed from outside; the same command runs what is missing\n",
-                            reports::counted(std::size_t(outcome.interrupted), "cell")));
+    say(stderr,
+        fmt::format("{} killed by another program, or edited while running; the same command runs "
+                    "the missing cells\n",
+                    reports::counted(std::size_t(outcome.interrupted), "cell")));
     return kInterrupted;
   }
   const bool is_whole = outcome.missing.empty();

@@ -13,21 +13,21 @@ namespace isoline::benchmarks {
 
 struct Outcome;
 
-// A live line of how far the work is, on a terminal; nothing elsewhere.
+// A live line with the progress, on a terminal only.
 Listener progress_on_terminal(const char* what);
 
-// On standard error, twenty at most; for a crash also how to debug it.
+// Prints at most twenty failures on standard error, and after a crash the commands to debug it.
 void print_failures(const Outcome& outcome, const std::filesystem::path& folder);
 
 // Failures and conflicts on standard error; the number of cells by status and the time, unless
 // quiet.
 void print_outcome(const Outcome& outcome, const std::filesystem::path& folder, bool quiet);
 
-// The exit code of the runs alone: interrupted, which is printed; worse where any failed; good.
+// The exit code of the runs: interrupted, with a message; worse if a run failed; good.
 int exit_code_of(const Outcome& outcome);
 
-// A study reported: every format in a folder, with the claims that its runs decide; the main table
-// on the terminal, unless quiet.
+// Writes a report of a study in every format, with the claims that its runs decide, and prints the
+// main table unless quiet.
 struct Reporting {
   bool is_quiet = false;
   reports::Yardstick yardstick = {};

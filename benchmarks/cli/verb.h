@@ -21,8 +21,8 @@ namespace isoline::benchmarks {
 
 struct Catalog;
 
-// The state that verbs share: the catalog, made when first needed, with what the libraries of
-// --plugin bring, and the command that records name.
+// The state that verbs share: the catalog, which is made at its first use and includes the
+// libraries of --plugin, and the command for the records.
 class Session {
  public:
   Session(std::string command, std::function<Catalog()> make);
@@ -37,7 +37,7 @@ class Session {
   std::shared_ptr<const Catalog> catalog_;
 };
 
-// One argument; each function returns it again, with one property more.
+// One argument. Each function adds a property and returns the argument.
 class Argument {
  public:
   explicit Argument(CLI::Option& option) : option_(&option) {}
@@ -46,8 +46,8 @@ class Argument {
   Argument shown(const std::string& standard) const;
   Argument one_of(const std::vector<std::string>& names) const;
   Argument between_commas() const;
-  Argument one_each() const;  // value, each time that it is given
-  Argument joined() const;    // by commas, where it is given more than once
+  Argument one_each() const;  // the option may occur more than once, with one value each
+  Argument joined() const;    // joined by commas, if it occurs more than once
   Argument needs(const Argument& other) const;
   Argument excludes(const Argument& other) const;
 
@@ -60,14 +60,14 @@ struct WholeRange {
 };
 inline constexpr WholeRange kJobs{1, 1024}, kThreads{1, 256}, kShards{1, 100'000};
 
-// The arguments of one verb. A name without dashes is that of a place.
+// The arguments of one verb. A name without dashes is a positional argument.
 class VerbArguments {
  public:
   VerbArguments(CLI::App& verb, Session& session) : verb_(verb), session_(session) {}
   Argument text(const char* name, std::string& value, const char* about);
   Argument texts(const char* name, std::vector<std::string>& values, const char* about);
   Argument flag(const char* name, bool& value, const char* about);
-  // A default within the range stands in the help.
+  // The help shows a default that lies within the range.
   void whole(const char* name, int& value, const char* about, WholeRange range = {});
   void whole(const char* name, std::int64_t& value, const char* about, WholeRange range = {});
   Argument real(const char* name, double& value, const Range& range, const char* about);
@@ -107,11 +107,11 @@ void register_verbs(VerbRegistry& registry);  // generated: one call per file
 // All verbs, in the order of the help; `help` and `version` are the last.
 std::vector<Verb> all_verbs();
 
-// Runs the verb that the arguments name and returns its exit code; UsageError where they are wrong.
-// `program` is what the user called.
+// Runs the verb of the arguments and returns its exit code; UsageError if the arguments are wrong.
+// `program` is the name that the user called.
 int parse_and_run(const std::string& program, int count, char** arguments, Session& session);
 
-// The same without running it.
+// Parses the arguments without running the verb.
 void parse_only(const std::string& program, int count, char** arguments);
 
 std::string program_examples();

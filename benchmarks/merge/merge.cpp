@@ -100,10 +100,10 @@ std::string fields_violation(const Json& record, const std::filesystem::path& fi
     require_sound({.iterations = fields.at("iterations"), .shape = fields.at("shape")});
     const std::string bytes = read_text(field_path(file), kMostRecordBytes);
     if (fields.at("digest") == digest(bytes)) return "";
-    return fmt::format("{} beside it is not the file of fields that it names",
+    return fmt::format("{} is not the file of fields that the record states",
                        field_path(file).filename().string());
   } catch (const UsageError& error) {
-    return fmt::format("its fields cannot be read: {}", error.what());
+    return fmt::format("the file of its fields cannot be read: {}", error.what());
   }
 }
 
@@ -275,7 +275,7 @@ class Merge {
       for (const Json& audited : audit.at("optimizers")) {
         const auto [known, is_new] = by_name.try_emplace(audited.at("name"), audited);
         if (!is_new && known->second != audited)
-          dispute({known->first, "its audit: the folders measured different things"});
+          dispute({known->first, "the audits of the folders differ"});
       }
     Json all = audit_to_json({});
     for (const auto& [name, audited] : by_name) all["optimizers"].push_back(audited);
@@ -311,7 +311,7 @@ MergeOutcome merge_folders(const std::vector<fs::path>& given, const fs::path& o
     require(fs::is_directory(folder, unknown),
             [&] { return fmt::format("{}: no such result folder", folder.string()); });
   require(!is_there(out) || (fs::is_directory(out, unknown) && names_in(out).empty()),
-          [&] { return fmt::format("{} exists already: merge into a new folder", out.string()); });
+          [&] { return fmt::format("{} already exists: pass a new folder", out.string()); });
   const fs::path place = fs::weakly_canonical(out), unfinished = temporary_of(place);
   const InterruptGuard guard;  // what is half made is removed before the program ends
   try {

@@ -1,4 +1,4 @@
-// Unites records and result folders: what comes out does not depend on their order or number.
+// Merges records and result folders. The result does not depend on their order or number.
 #pragma once
 
 #include <filesystem>
@@ -22,9 +22,9 @@ struct Conflict {
 struct MergeOutcome {
   std::size_t records = 0;              // written
   std::size_t united = 0;               // of them, found in several folders with other timings
-  std::vector<Conflict> conflicts;      // where there are any, nothing is written
-  std::vector<std::string> unreadable;  // a sentence a damaged file; it is left out
-  bool is_interrupted = false;          // on request of the user: nothing is written
+  std::vector<Conflict> conflicts;      // if there are any, merge does not write anything
+  std::vector<std::string> unreadable;  // one sentence per damaged file, which merge omits
+  bool is_interrupted = false;          // the user stopped merge: it does not write anything
 };
 
 // Writes `out` completely or not at all; a UsageError if it has results already. Copies a file that
@@ -35,7 +35,8 @@ struct MergeOutcome {
 MergeOutcome merge_folders(const std::vector<std::filesystem::path>& folders,
                            const std::filesystem::path& out, const Listener& listener = {});
 
-// "adam: 12 conflicts" and the first of its sentences, the optimizer with most conflicts first.
+// "adam: 12 conflicts" and the first sentence of each optimizer; the optimizer with the most
+// conflicts comes first.
 std::string conflicts_text(const std::vector<Conflict>& conflicts);
 
 // Makes `record` the union with another record of its cell and build: the timings of both, each
@@ -45,7 +46,7 @@ std::string conflicts_text(const std::vector<Conflict>& conflicts);
 // 2)", and changes nothing.
 std::string unite_records(Json& record, const Json& other);
 
-// The error in the file of fields that a record names; otherwise empty.
+// The error in the file of fields of a record; empty if the file is valid.
 std::string fields_violation(const Json& record, const std::filesystem::path& file);
 
 }  // namespace isoline::benchmarks

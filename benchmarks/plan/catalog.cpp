@@ -1,5 +1,5 @@
-// The built-in catalog, components completed from their names and options, and the digests of what
-// computes them.
+// The built-in catalog, the completion of component names and options, and the digests of the
+// sources of components.
 #include "benchmarks/plan/catalog.h"
 
 #include <fmt/format.h>
@@ -136,6 +136,18 @@ void require_learnable(const Catalog& catalog, const ProblemEntry& entry) {
   throw UsageError(fmt::format("{} cannot be learned; these can: {}", entry.name, learnable));
 }
 
+// The direct problem ignores these options: its settings would be equal under several names.
+void require_no_learning(const ProblemEntry& entry, const OptionValues& options) {
+  const auto mode = std::ranges::find(entry.options, kModeOption, &OptionField::name);
+  require(mode->standard == OptionValue(std::string(kDirectMode)),
+          [&] { return entry.name + " can only be learned: mode=direct does not apply"; });
+  for (const OptionField& field : entry.options)
+    if (std::ranges::find(kLearningOptions, field.name) != kLearningOptions.end() &&
+        options.at(field.name) != field.standard)
+      throw UsageError(fmt::format("{}: {}={} needs mode=learn", entry.name, field.name,
+                                   option_text(options.at(field.name))));
+}
+
 }  // namespace
 
 Catalog builtin_catalog() {
@@ -161,11 +173,12 @@ Component complete_problem(const Catalog& catalog, const std::string& name,
   const ProblemEntry& entry = catalog.problems.at(name);
   if (asks_to_learn(options)) require_learnable(catalog, entry);
   Component problem = complete(entry, options);
+  if (can_learn(entry) && !problem.is_learned) require_no_learning(entry, problem.options);
   if (problem.is_learned) {
     const std::string network = parse_spec(problem.options.text(kNetworkOption)).name;
     problem.learning_sources = source_digest(networks::network_registry().at(network).file);
   }
-  const std::string best = BestLosses::builtin().losses_text(problem);
+  const std::string best = BestLosses::known().losses_text(problem);
   if (!best.empty()) problem.sources = digest(problem.sources + best);
   return problem;
 }
@@ -193,7 +206,7 @@ Component complete_optimizer(const Catalog& catalog, const Spec& spec) {
 Problem make_problem(const Catalog& catalog, const Component& problem, std::uint64_t seed) {
   const ProblemEntry& entry = catalog.problems.at(problem.name);
   Problem made = entry.make(problem.options, Draw(seed, problem.name));
-  const std::optional<Real> best = BestLosses::builtin().find(problem, seed);
+  const std::optional<Real> best = BestLosses::known().find(problem, seed);
   if (best && !made.minimum()) made.set_minimum(*best);
   return made;
 }

@@ -8,9 +8,9 @@
 #include <set>
 
 #include "benchmarks/plan/catalog.h"
+#include "benchmarks/plan/suite.h"
 #include "core/errors.h"
 #include "core/json.h"
-#include "core/records/json_view.h"
 #include "core/text.h"
 
 namespace isoline::benchmarks {
@@ -23,7 +23,7 @@ struct Expansion {
 };
 
 std::vector<Request> expanded(const Expansion& from, Json block) {
-  constexpr std::uint64_t kMost = 10'000;  // cells that one claim is decided by
+  constexpr std::uint64_t kMost = 10'000;  // cells that decide one claim
   for (const char* own : {"long", "deviation"}) block.erase(own);
   const Json suite{{"schema", "isoline.suite/1"}, {"name", "claims"}, {"matrix", {block}}};
   const std::string origin = "the claim " + from.claim;
@@ -34,7 +34,7 @@ std::vector<Request> expanded(const Expansion& from, Json block) {
 std::string problem_of(const Expansion& from, const Json& term, const Json& block) {
   if (term.contains("problem")) return term["problem"];
   require(block.at("problems").size() == 1, [&] {
-    return fmt::format("the claim {} must name the problem of each term", from.claim);
+    return fmt::format("the claim {} must state the problem of each term", from.claim);
   });
   return block["problems"][0];
 }
@@ -98,10 +98,7 @@ Claim claim_from(const Catalog& catalog, const Rates& rates, const Json& json,
 
 std::vector<Claim> claims_from_json(const Catalog& catalog, const Rates& rates, const Json& file,
                                     const std::string& origin) {
-  const Json schema = parse_json(std::string(builtin_schemas().at("claims")), "claims schema");
-  const auto violations = schema_violations(file, schema);
-  require(violations.empty(),
-          [&] { return fmt::format("{} is not a file of claims: {}", origin, violations[0]); });
+  require_valid(file, "claims", origin);
   std::vector<Claim> claims;
   for (const Json& json : file.at("claims"))
     claims.push_back(claim_from(catalog, rates, json, file.at("name")));
@@ -119,7 +116,8 @@ std::vector<Claim> builtin_claims_of(const Catalog& catalog) {
 
 namespace {
 
-// There are too many to list: those that were most probably meant, by the words they share.
+// There are too many names to list. The suggestions are those that share the most words with the
+// given one.
 std::string unknown_claim(const std::string& wrong, const std::vector<std::string>& known) {
   constexpr std::size_t kMost = 5;
   std::vector<std::string> words;

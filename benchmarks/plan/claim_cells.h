@@ -1,5 +1,6 @@
-// Claims of papers: sentences with a published figure, the cells that decide them, and what is to
-// be read off these cells. Reports judge them; here they are read and their cells made findable.
+// Claims of papers: sentences with a published value, the cells that decide them, and the values
+// that are read from these cells. Reports judge the claims; this module reads them and finds their
+// cells.
 #pragma once
 
 #include <memory>

@@ -9,10 +9,10 @@
 #include <nlohmann/json.hpp>
 
 #include "benchmarks/plan/catalog.h"
+#include "benchmarks/plan/suite.h"
 #include "core/errors.h"
 #include "core/json.h"
 #include "core/options.h"
-#include "core/records/json_view.h"
 #include "core/seeds.h"
 #include "core/spec.h"
 
@@ -53,7 +53,9 @@ Rates Rates::builtin() {
 Rates Rates::named(const std::string& given) {
   if (given == "builtin") return builtin();
   if (given == "none") return {};
-  return from_json(read_json(given), given);
+  const Json json = read_json(given);
+  require_valid(json, "rates", given);
+  return from_json(json, given);
 }
 
 Rates Rates::from_json(const Json& json, const std::string& origin) {
@@ -62,7 +64,7 @@ Rates Rates::from_json(const Json& json, const std::string& origin) {
     for (const Json& row : json.at("rows")) {
       const Spec problem = parse_spec(row.at("problem").get<std::string>());
       rates.rows_[{problem.name, row.at("optimizer")}].push_back(
-          {options_of(problem), option_values_from(row.at("options")), origin,
+          {options_of(problem), option_values_from(row.at("options")), row.at("problem"), origin,
            json_text(row.value("source", Json::object())),
            row.contains("source") && row["source"].contains("grid")});
     }
@@ -70,6 +72,12 @@ Rates Rates::from_json(const Json& json, const std::string& origin) {
     throw UsageError(fmt::format("{} is not a table of rates: {}", origin, error.what()));
   }
   return rates;
+}
+
+bool Rates::Row::names_all_of(const Component& asked) const {
+  return std::ranges::all_of(options_of(parse_spec(asked.spec)), [&](const NamedOption& option) {
+    return problem.contains(option.name);
+  });
 }
 
 const Rates::Row* Rates::find(const Component& problem, const std::string& optimizer,
@@ -94,17 +102,37 @@ void Rates::add(const Rates& other) {
 
 // Best losses: read, looked up, renewed.
 
-const BestLosses& BestLosses::builtin() {
-  static const BestLosses all =
-      from_json(parse_json(std::string(embedded_best()), "best.json"), "best.json");
+namespace {
+
+BestLosses& known_losses() {
+  static BestLosses all =
+      BestLosses::from_json(parse_json(std::string(embedded_best()), "best.json"), "best.json");
   return all;
 }
 
+}  // namespace
+
+const BestLosses& BestLosses::known() { return known_losses(); }
+
+void BestLosses::add_known(const std::string& path) {
+  std::vector<Row>& rows = known_losses().rows_;
+  const BestLosses table = from_json(read_json(path), path);
+  for (const Row& added : table.rows_) {
+    const auto row = std::ranges::find_if(rows, [&](const Row& each) {
+      return each.problem == added.problem && each.options == added.options;
+    });
+    if (row == rows.end())
+      rows.push_back(added);
+    else
+      for (const auto& [seed, loss] : added.losses)
+        if (const auto [at, is_new] = row->losses.try_emplace(seed, loss);
+            !is_new && loss.loss < at->second.loss)
+          at->second = loss;
+  }
+}
+
 BestLosses BestLosses::from_json(const Json& json, const std::string& origin) {
-  const Json schema = parse_json(std::string(builtin_schemas().at("best")), "best schema");
-  const auto violations = schema_violations(json, schema);
-  require(violations.empty(),
-          [&] { return origin + " is not a table of best losses: " + violations[0]; });
+  require_valid(json, "best", origin);
   BestLosses best;
   for (const Json& row : json.at("rows")) {
     Row& read = best.rows_.emplace_back();

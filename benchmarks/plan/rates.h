@@ -1,4 +1,5 @@
-// Tables that belong neither to a problem nor to an optimizer: rates and the best losses known.
+// Tables of rates and of the lowest known losses, which belong neither to a problem nor to an
+// optimizer.
 #pragma once
 
 #include <map>
@@ -25,9 +26,13 @@ class Rates {
   struct Row {
     OptionValues problem;  // the options that it is for, as text
     OptionValues options;  // to fill in
+    std::string setting;   // the problem's spec, as the table has it
     std::string origin;    // file that says so
     std::string source;    // the paper or the grid that each value is from, as JSON text
     bool is_from_grid = false;
+
+    // Whether it is for this very setting, not for all that share the options which it names.
+    bool names_all_of(const Component& asked) const;
   };
   // The row for a problem and an optimizer's name, or nullptr. A row is for the problems that have
   // the options it names, in their default mode unless it names the mode; the row that names most
@@ -42,12 +47,13 @@ class Rates {
 };
 
 // The best known losses: f_L of problems that declare no f_L or an unattained bound, by problem,
-// options and seed, in benchmarks/best.json. Runs read it when they create their problem; reports
-// do not change it.
+// options and seed, in benchmarks/best.json and in a table of --best. Runs read them when they
+// create their problem; reports do not change it.
 
 class BestLosses {
  public:
-  static const BestLosses& builtin();
+  static const BestLosses& known();  // those of the build, and of tables that were added
+  static void add_known(const std::string& path);  // before any problem is completed
   static BestLosses from_json(const Json& json, const std::string& origin);
   Json to_json() const;
 

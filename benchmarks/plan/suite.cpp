@@ -24,7 +24,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The schema knows that it is a whole number from 1 on, and not where its type ends.
+// The schema requires a whole number from 1 on, but does not know the largest number of the type.
 std::int64_t amount_in(const Json& json, const char* name, std::int64_t standard) {
   if (!json.contains(name)) return standard;
   const auto amount = json[name].get<std::uint64_t>();
@@ -47,7 +47,7 @@ Budget budget_from(const Json& json) {
 std::vector<std::uint64_t> seeds_from(const Json& json) {
   if (!json.contains("instances") && !json.contains("starts"))
     return parse_seeds(json.value("seeds", "=0"));
-  require(!json.contains("seeds"), "a block has either seeds, or instances and starts");
+  require(!json.contains("seeds"), "a block must have either seeds, or instances and starts");
   return crossed_seeds(json.value("instances", ""), json.value("starts", ""));
 }
 
@@ -66,22 +66,42 @@ MatrixBlock block_from(const Json& json) {
 
 bool is_selector(const std::string& text) { return text == "*" || text.starts_with('@'); }
 
+// A list such as "gd,@factorizing" in parts; its selectors stand first or last.
+std::vector<std::string> parts_of(std::string text) {
+  std::vector<std::string> parts;
+  for (auto at = text.find(','); at != text.npos && is_selector(text.substr(0, at));
+       at = text.find(',')) {
+    parts.push_back(text.substr(0, at));
+    text.erase(0, at + 1);
+  }
+  for (auto at = text.rfind(','); at != text.npos && is_selector(text.substr(at + 1));
+       at = text.rfind(',')) {
+    parts.push_back(text.substr(at + 1));
+    text.erase(at);
+  }
+  parts.push_back(std::move(text));
+  return parts;
+}
+
 // The names in a block, with selectors replaced by the names that they match.
 template <class Registered>
 std::vector<std::string> named_specs(const Registered& registry,
                                      const std::vector<std::string>& texts,
                                      const std::vector<std::string>& excepted) {
   std::vector<std::string> specs;
-  for (const std::string& text : texts) {
-    if (!is_selector(text)) {
-      specs.push_back(text);
-      continue;
+  for (const std::string& whole : texts)
+    for (const std::string& text : parts_of(whole)) {
+      if (!is_selector(text)) {
+        specs.push_back(text);
+        continue;
+      }
+      const std::size_t before = specs.size();
+      for (const auto& [name, entry] : registry)
+        if (entry.in_all && is_selected(entry, text) &&
+            std::ranges::find(excepted, name) == excepted.end())
+          specs.push_back(name);
+      require(specs.size() > before, [&] { return fmt::format("'{}' selects nothing", text); });
     }
-    for (const auto& [name, entry] : registry)
-      if (entry.in_all && is_selected(entry, text) &&
-          std::ranges::find(excepted, name) == excepted.end())
-        specs.push_back(name);
-  }
   return specs;
 }
 
@@ -90,10 +110,6 @@ std::vector<std::string> problem_specs(const Catalog& catalog, const MatrixBlock
 }
 
 std::vector<std::string> optimizer_specs(const Catalog& catalog, const MatrixBlock& block) {
-  for (const std::string& text : block.optimizers)
-    require(!is_selector(text) ||
-                !named_specs(catalog.optimizers, {text}, block.except_optimizers).empty(),
-            [&] { return fmt::format("'{}' selects no optimizer", text); });
   return named_specs(catalog.optimizers, block.optimizers, block.except_optimizers);
 }
 
@@ -114,25 +130,37 @@ Component with_rates(const Catalog& catalog, const Spec& spec, const Rates::Row*
   return optimizer;
 }
 
+static Suite builtin_suite(const std::string& name) {
+  const auto& builtin = builtin_suites();
+  if (const auto found = builtin.find(name); found != builtin.end())
+    return suite_from_json(parse_json(std::string(found->second), name), name);
+  std::vector<std::string> names;
+  for (const auto& [known, text] : builtin) names.push_back(known);
+  throw UsageError(unknown_name("suite", name, names));
+}
+
+void require_valid(const Json& json, const std::string& schema, const std::string& origin) {
+  const std::string text(builtin_schemas().at(schema));
+  const auto violations = schema_violations(json, parse_json(text, schema));
+  require(violations.empty(), [&] {
+    return fmt::format("{} violates the schema '{}': {}", origin, schema, violations[0]);
+  });
+}
+
 Suite suite_from_json(const Json& json, const std::string& origin) {
-  const Json schema = parse_json(std::string(builtin_schemas().at("suite")), "suite schema");
-  const auto violations = schema_violations(json, schema);
-  require(violations.empty(),
-          [&] { return fmt::format("{} is not a suite: {}", origin, violations[0]); });
+  require_valid(json, "suite", origin);
   Suite suite{.name = json.at("name"), .title = json.value("title", ""), .blocks = {}};
-  for (const Json& block : json.at("matrix")) suite.blocks.push_back(block_from(block));
+  if (json.contains("cells_of")) suite.blocks = builtin_suite(json["cells_of"]).blocks;
+  for (const Json& block : json.value("matrix", Json::array()))
+    suite.blocks.push_back(block_from(block));
+  for (MatrixBlock& block : suite.blocks) block.rates = json.value("rates", block.rates);
   return suite;
 }
 
 Suite read_suite(const std::string& name_or_path) {
-  const auto& builtin = builtin_suites();
-  const auto found = builtin.find(name_or_path);
-  if (found != builtin.end())
-    return suite_from_json(parse_json(std::string(found->second), name_or_path), name_or_path);
-  if (fs::exists(name_or_path)) return suite_from_json(read_json(name_or_path), name_or_path);
-  std::vector<std::string> names;
-  for (const auto& [name, text] : builtin) names.push_back(name);
-  throw UsageError(unknown_name("suite", name_or_path, names));
+  if (!builtin_suites().contains(name_or_path) && fs::exists(name_or_path))
+    return suite_from_json(read_json(name_or_path), name_or_path);
+  return builtin_suite(name_or_path);
 }
 
 std::vector<Request> expand(const Catalog& catalog, const Suite& suite, const Rates& rates,
@@ -143,7 +171,7 @@ std::vector<Request> expand(const Catalog& catalog, const Suite& suite, const Ra
   std::unordered_set<std::string> known;
   for (const MatrixBlock& block : suite.blocks) {
     const std::vector<Spec> specs = parsed_specs(optimizer_specs(catalog, block), most);
-    // One component serves all problems that share its row of rates.
+    // All problems that share a row of rates use one component.
     std::map<std::pair<const Spec*, const Rates::Row*>, Component> optimizers;
     for (const Spec& problem_spec : parsed_specs(problem_specs(catalog, block), most)) {
       const Component problem = complete_problem(catalog, problem_spec);
@@ -185,7 +213,7 @@ std::string_view cost_class(const OptimizerEntry& entry) {
   return is_limited ? "factorizing" : "matrix-free";
 }
 
-// A spec with its options as its component would have them.
+// A spec with the options of its component.
 struct Wanted {
   std::string name;
   OptionValues options;
@@ -249,7 +277,7 @@ std::vector<Request> filtered(const Catalog& catalog, std::vector<Request> reque
 
 namespace {
 
-// Components with the settings of each.
+// Components with their settings.
 class Settings {
  public:
   explicit Settings(const std::vector<std::string>& specs) {

@@ -1,5 +1,5 @@
-// A suite or a matrix of one's own: which problems meet which optimizers, on which seeds, with what
-// budget. Its selectors, its expansion into requests, and its size.
+// A suite or a user's own study: problems, optimizers, seeds and budgets. Its selectors, its
+// expansion into requests, and its size.
 #pragma once
 
 #include <cstdint>
@@ -39,6 +39,9 @@ Component with_rates(const Catalog& catalog, const Spec& spec, const Rates::Row*
 
 // The name of a suite in the tree, or the path of a file.
 Suite read_suite(const std::string& name_or_path);
+// UsageError with the file and the place where its JSON violates the schema of that name.
+void require_valid(const Json& json, const std::string& schema, const std::string& origin);
+
 Suite suite_from_json(const Json& json, const std::string& origin);
 
 inline constexpr std::uint64_t kMostCells = 1'000'000;

@@ -1,5 +1,5 @@
-// The run loop, its checkpoints, which are written whole and read only by the cell and build that
-// wrote them, and the record of what it left in its trace.
+// The run loop; its checkpoints, which are written whole and read only by the same cell and build;
+// and the record of the data in its trace.
 #include "benchmarks/run/execute.h"
 
 #include <fmt/format.h>
@@ -19,6 +19,7 @@
 #include "core/clock.h"
 #include "core/errors.h"
 #include "core/files.h"
+#include "core/foreign/handshake.h"
 #include "core/foreign/line.h"
 #include "core/frames.h"
 #include "core/random.h"
@@ -39,6 +40,8 @@ void run(const Catalog& catalog, const Request& request, Trace& trace, Checkpoin
   const std::string reason = why_inapplicable(entry, request.optimizer.options, problem);
   if (!reason.empty()) throw NotApplicable(reason);
   const auto method = entry.make(request.optimizer.options, catalog.optimizers);
+  require_unedited(request.problem.foreign);
+  require_unedited(request.optimizer.foreign);
   const OracleSet granted = needs_of(entry, request.optimizer.options, problem);
   const auto privileges = optimizers::privileges_of(granted, problem.inverse_kind());
   set_text(trace.privileges, fmt::format("{}", fmt::join(privileges, "\n")));
@@ -180,14 +183,14 @@ Summary summary_of(const Trace& trace) {
           .peak_memory_bytes = trace.peak_memory_bytes};
 }
 
-// The criterion of the run, and its result: f ≤ f_L + τ s, and the error in x, at the returned
-// point. A run that broke off returned none.
+// The success criterion of the run, and its result at the returned point: f ≤ f_L + τ s, or the
+// error in x. A run that broke off did not return a point.
 void add_verdicts(const Trace& trace, Record& record) {
   const auto known = [](Real value) {
     return std::isnan(value) ? std::nullopt : std::optional(value);
   };
   const bool has_returned = !is_failure(trace.status) && trace.points > 0;
-  const auto meets = [&](Real value, Real goal) {  // infinity at most infinity says nothing
+  const auto meets = [&](Real value, Real goal) {  // infinity ≤ infinity is not a success
     return has_returned && std::isfinite(value) && std::isfinite(goal) && value <= goal;
   };
   record.aim = trace.aim;
@@ -232,9 +235,9 @@ bool Checkpoint::restore(Optimizer& method, Meter& meter, Vector& theta) {
     method.start(meter, theta);
     archive(theta);
     require(theta.size() == meter.unknowns(), "it has another number of unknowns");
-    require(method.persist(archive), "the method stores no state");
+    require(method.persist(archive), "the method does not store its state");
     meter.persist(archive);
-    require(archive.bytes_left() == 0, "it holds more than the state of this run");
+    require(archive.bytes_left() == 0, "it contains more than the state of this run");
   } catch (const std::exception& cause) {
     std::error_code error;
     std::filesystem::rename(path_, path_.string() + ".damaged", error);
@@ -256,7 +259,7 @@ bool Checkpoint::save_if_due(Optimizer& method, Meter& meter, Vector& theta) {
   meter.persist(archive);
   try {
     write_text(path_, identity_ + digest(archive.bytes()) + archive.bytes());
-  } catch (const std::exception&) {  // a full disk costs the checkpoint, not the run
+  } catch (const std::exception&) {  // if the disk is full, the run continues without a checkpoint
   }
   return stop_requested != 0;
 }
@@ -311,16 +314,16 @@ void execute(const Catalog& catalog, const Request& request, Trace& trace, Check
   try {
     try {
       run(catalog, request, trace, checkpoint, returned, perturbation);
-    } catch (const DamagedCheckpoint&) {  // which is set aside: from the beginning, then
+    } catch (const DamagedCheckpoint&) {  // the checkpoint is set aside, and the run starts again
       new (&trace) Trace;
       run(catalog, request, trace, checkpoint, returned, perturbation);
     }
     if (trace.status == Status::running)
-      conclude(Status::interrupted, "it was stopped, and saved its state");
+      conclude(Status::interrupted, "the run was stopped, and saved its state");
   } catch (const NotApplicable& reason) {
     conclude(Status::inapplicable, reason.what());
   } catch (const std::bad_alloc&) {
-    conclude(Status::memory, "out of its memory limit");
+    conclude(Status::memory, "the cell exceeded its memory limit");
   } catch (const KilledProgram& error) {
     conclude(Status::interrupted, error.what());
   } catch (const std::exception& error) {
@@ -333,7 +336,7 @@ void execute(const Catalog& catalog, const Request& request, Trace& trace, Check
 Record record_of(const Request& request, const Trace& trace) {
   Record record;
   record.request = request;
-  require(!request.cell.empty(), "a request is run without the name of its cell");
+  require(!request.cell.empty(), "the request does not state the ID of its cell");
   record.cell = request.cell;
   record.build = build_digest(request);
   record.build_parts = build_parts(request);
@@ -343,7 +346,7 @@ Record record_of(const Request& request, const Trace& trace) {
   add_verdicts(trace, record);
   record.counts = trace.last.counts;
   record.prices = trace.prices;
-  const std::optional<Real> best = BestLosses::builtin().find(request.problem, request.seed);
+  const std::optional<Real> best = BestLosses::known().find(request.problem, request.seed);
   record.is_best_known = best && best == record.minimum;
   record.criterion = digest_of(criterion_of(record));
   record.summary = summary_of(trace);

@@ -1,5 +1,5 @@
-// One run, in this process: the loop that every method runs in, and its state kept on disk, so that
-// a run that was stopped goes on where it was.
+// One run in this process: the loop that every method runs in, and its state on disk, from which a
+// stopped run continues.
 #pragma once
 
 #include <filesystem>

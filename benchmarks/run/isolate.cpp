@@ -1,4 +1,5 @@
-// Child processes: what they share with their parent, their output, their limits, their end.
+// Child processes: the memory that they share with their parent, their output, their limits and
+// their end.
 #include "benchmarks/run/isolate.h"
 
 #include <fcntl.h>
@@ -122,20 +123,20 @@ std::optional<LimitWatch::Breach> LimitWatch::check(const ProcessGroup::Usage& u
   const Mark now{awake_, usage.processor_seconds / threads_};
   if (usage.resident_bytes > limits_.memory_bytes)
     return Breach{Status::memory,
-                  fmt::format("killed: more than {} MiB resident; --memory allows more",
+                  fmt::format("killed: it used more than {} MiB; --memory sets another limit",
                               limits_.memory_bytes >> 20)};
   if (has_asked_oracle && !std::exchange(has_begun_, true)) begun_ = now;
   const double most = has_begun_ ? limits_.hard_seconds : limits_.startup_seconds;
   const char* const until = has_begun_ ? "" : " without an oracle call";
   if (now.processor - begun_.processor > most)
     return Breach{Status::timeout,
-                  fmt::format("killed after {} s of processor time{}; a longer --time allows more",
+                  fmt::format("killed after {} s of processor time{}; --time sets another limit",
                               most, until)};
   if (now.awake - begun_.awake > Limits::kWallFactor * most)
     return Breach{
         Status::timeout,
         fmt::format("killed after {} s of wall time, {} times its limit of {} s of processor "
-                    "time{}; a longer --time allows more",
+                    "time{}; --time sets another limit",
                     Limits::kWallFactor * most, Limits::kWallFactor, most, until)};
   const bool is_active =
       (limits_.waits_for_others && usage.processes > 1) ||
@@ -246,7 +247,7 @@ void Worker::do_in_child(const std::function<void(Trace&)>& work, int threads) {
   try {
     work(shared_->trace);
   } catch (const std::bad_alloc&) {
-    conclude(Status::memory, "out of its memory limit");
+    conclude(Status::memory, "the cell exceeded its memory limit");
   } catch (const std::exception& error) {
     conclude(Status::failed, error.what());
   } catch (...) {
@@ -321,8 +322,9 @@ void Worker::finish(const ProcessGroup::End& end) {
   } else if (signal != 0 || !trace.is_finished) {
     conclude(Status::crashed, end_of_process(end.wait_status));
   } else if (trace.status == Status::memory) {
-    conclude(Status::memory, fmt::format("out of its memory limit of {} MiB; --memory allows more",
-                                         watch_.limits().memory_bytes >> 20));
+    conclude(Status::memory,
+             fmt::format("the cell exceeded its memory limit of {} MiB; --memory sets another one",
+                         watch_.limits().memory_bytes >> 20));
   }
 }
 

@@ -1,5 +1,5 @@
-// One run in a process of its own: whatever it does to itself, this process goes on. It is ended by
-// its processor time, its wall time, its idleness and its memory.
+// One run in its own process, which cannot harm this one. Limits of processor time, wall time, idle
+// time and memory end it.
 #pragma once
 
 #include <algorithm>

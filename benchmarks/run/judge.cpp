@@ -1,4 +1,4 @@
-// Verifiers: requests go over a socket, the points themselves are in shared memory.
+// Verifiers: requests use a socket, and the points themselves shared memory.
 #include "benchmarks/run/judge.h"
 
 #include <fcntl.h>

@@ -1,5 +1,5 @@
-// A preview of a plan: looked up in the store, and probed. Records are read through a view, which
-// extracts the requested values only.
+// Looks up the cells of a plan in the store, and probes the others. A view of a record extracts
+// only the requested values.
 #include "benchmarks/run/preview.h"
 
 #include <fmt/format.h>
@@ -37,7 +37,7 @@ std::optional<RecordOutline> outline_of(const fs::path& file) {
     seen.budget = budget_from(request.at("budget"));
     seen.threads = request.at("threads");
     const std::optional<Status> status = status_of(json.at("status").get<std::string>());
-    require(status.has_value(), "it has no known status");
+    require(status.has_value(), "its status is unknown");
     seen.status = *status;
     seen.wall_seconds = real_of(json.at("summary").at("wall_seconds"));
     const JsonView provenance = json.at("provenance");

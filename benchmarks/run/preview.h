@@ -1,5 +1,5 @@
-// A preview of a plan: which cells are cached, which cannot exist and why, and how long the rest
-// may take by what earlier runs took.
+// A preview of a plan: the cells that are cached, the cells that cannot exist and the reasons, and
+// the predicted time of the others from earlier runs.
 #pragma once
 
 #include <filesystem>
@@ -16,7 +16,7 @@
 
 namespace isoline::benchmarks {
 
-// The few values that are read from records by the hundred thousand.
+// The values that a preview reads from a record; there may be hundreds of thousands of records.
 struct RecordOutline {
   std::string cell;
   std::string problem, optimizer;  // specs
@@ -27,8 +27,7 @@ struct RecordOutline {
   std::string started;  // "2026-01-31T12:00:00Z"
 };
 
-// One a record of these result folders. Files that cannot be read as records are passed over, and
-// so are folders that are not there.
+// One per record of these result folders. Unreadable files and missing folders are ignored.
 std::vector<RecordOutline> record_outlines(const std::vector<std::filesystem::path>& folders,
                                            const Listener& listener = {});
 
@@ -49,16 +48,17 @@ class EarlierTimes {
 struct PreviewedCell {
   const Request* request;
   bool is_cached = false;
-  std::string why_inapplicable;        // empty: it can run
-  std::optional<double> seconds = {};  // what earlier runs of it, or of its like, took
+  std::string why_inapplicable;  // empty: it can run
+  std::optional<double> seconds =
+      {};  // time of earlier runs of this cell, or of it with other seeds
 
   bool is_missing() const { return !is_cached && why_inapplicable.empty(); }
 };
 
 struct Preview {
-  std::vector<PreviewedCell> cells;  // one a request, in order
-  std::size_t likened = 0;           // settings of problems that were taken to be like another one
-  std::size_t timed = 0;             // cells predicted by what earlier runs took
+  std::vector<PreviewedCell> cells;  // one per request, in order
+  std::size_t likened = 0;  // settings of problems that were assumed to be like another one
+  std::size_t timed = 0;    // cells with a prediction from earlier runs
 };
 
 // The counts of a plan, or of a part of it.
@@ -76,16 +76,16 @@ struct PreviewCounts {
 };
 PreviewCounts counts_of(const std::vector<PreviewedCell>& cells);
 
-// Which records count as done.
+// The records that count as done.
 struct PreviewOptions {
   bool force = false;           // none
   bool reuse = false;           // also those of another build
-  std::set<Status> retry = {};  // but those that ended so
+  std::set<Status> retry = {};  // except those with these statuses
 };
 
-// Looks into result folders without touching them: a cell is cached where one of them has it. Of a
-// sweep over more settings of problems than can be made in a second, the rest are likened to the
-// first.
+// Reads result folders without changing them. A cell is cached if one of them has it. If a sweep
+// has more settings of problems than can be created in a second, the rest are assumed to be like
+// the first.
 Preview preview(const Catalog& catalog, const std::vector<Request>& requests,
                 const std::vector<std::filesystem::path>& folders, const EarlierTimes& earlier = {},
                 const PreviewOptions& options = {});

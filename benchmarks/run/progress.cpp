@@ -1,4 +1,4 @@
-// The pace of what has ended, over what is to come, and the line that shows it.
+// Predicts the time left from the cells that have ended, and prints the progress line.
 #include "benchmarks/run/progress.h"
 
 #include <fmt/format.h>

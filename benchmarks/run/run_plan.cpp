@@ -1,4 +1,4 @@
-// A plan checked, stored, described and run; and what its folder is called.
+// Checks, stores, describes and runs a plan, and chooses the name of its folder.
 #include "benchmarks/run/run_plan.h"
 
 #include <fmt/format.h>
@@ -13,6 +13,7 @@
 #include "core/errors.h"
 #include "core/files.h"
 #include "core/json.h"
+#include "core/output.h"
 #include "optimizers/optimizer.h"
 #include "problems/conformance.h"
 #include "problems/problem.h"
@@ -32,18 +33,20 @@ std::string broken_property_of(const Catalog& catalog, const Request& request) {
 }
 
 // UsageError with the first violated property of a problem of another program, and the measured
-// value, or with the reason if a problem cannot be checked, since it fails or does not answer.
-// Checks only problems without records in the store, each at the first of its seeds, in its own
-// process.
-void require_certified(const Catalog& catalog, const std::vector<Request>& requests,
-                       const Store& store, Progress::Style style) {
+// value, or with the reason if a problem cannot be checked, since it fails or does not answer; with
+// --uncertified, the label of such a problem says so instead, in each table.
+// Checks only problems with cells to run, each at the first of its seeds, in its own process.
+void require_certified(const Catalog& catalog, std::vector<Request>& requests, const Store& store,
+                       const RunOptions& options) {
   constexpr double kCertificateSeconds = 120;
   std::set<std::string> seen;
   std::vector<const Request*> firsts;
   for (const Request& request : requests)
-    if (request.problem.foreign && !store.has(request) && seen.insert(request.problem.spec).second)
+    if (request.problem.foreign && (options.force || !store.has(request)) &&
+        seen.insert(request.problem.spec).second)
       firsts.push_back(&request);
-  Progress progress(style, "certified", static_cast<std::int64_t>(firsts.size()), 0);
+  std::set<std::string> uncertified;
+  Progress progress(options.progress, "certified", static_cast<std::int64_t>(firsts.size()), 0);
   for (const Request* request : firsts) {
     progress.started(request->problem.spec);
     const auto [broken, failure] =
@@ -51,12 +54,20 @@ void require_certified(const Catalog& catalog, const std::vector<Request>& reque
                       Limits{}.memory_bytes, [&] { progress.show(); });
     if (asked_to_end() != Asked::nothing) return;
     const std::string reason = broken.value_or("it cannot be checked: " + failure);
-    require(reason.empty(), [&] {
-      return fmt::format("{} fails its checks and does not run: {}; `isoline check` lists all",
-                         request->problem.spec, reason);
+    require(reason.empty() || options.uncertified, [&] {
+      return fmt::format(
+          "{} fails its checks and does not run: {}; `isoline check` lists all, and --uncertified "
+          "runs it with a mark",
+          request->problem.spec, reason);
     });
+    if (!reason.empty()) uncertified.insert(request->problem.spec);
     progress.finished({});
   }
+  for (Request& request : requests)
+    if (uncertified.contains(request.problem.spec)) {
+      std::string& label = request.problem.foreign->label;
+      label = (label.empty() ? request.problem.spec : label) + " (uncertified)";
+    }
 }
 
 }  // namespace
@@ -91,6 +102,8 @@ void write_used_rates(const Rates& rates, const std::vector<Request>& requests, 
   if (is_there(file)) try {
       const Json table = read_json(file);
       for (const Json& row : table.at("rows")) add(row);
+    } catch (const AccessError&) {
+      throw;
     } catch (const std::exception& error) {
       rows.clear();
       store.set_aside(file, error.what());
@@ -102,11 +115,15 @@ void write_used_rates(const Rates& rates, const std::vector<Request>& requests, 
     // "direct" of "direct.json": what a search in that table alone calls it.
     const std::string table = request.rates.substr(0, request.rates.rfind(".json"));
     const auto add_found = [&](const Rates::Row& row) {
-      add({{"problem", problem.spec},
-           {"optimizer", optimizer},
-           {"options", to_json(row.options)},
-           {"file", row.origin},
-           {"source", parse_json(row.source, row.origin)}});
+      const Json source = parse_json(row.source, row.origin);
+      Json found{{"problem", problem.spec},
+                 {"optimizer", optimizer},
+                 {"options", to_json(row.options)},
+                 {"file", row.origin},
+                 {"source", source}};
+      if (row.is_from_grid && !source.contains("families") && !row.names_all_of(problem))
+        found["setting"] = row.setting;
+      add(found);
     };
     const Rates::Row* row = rates.find(problem, optimizer, table);
     if (!row) continue;
@@ -129,15 +146,14 @@ std::vector<PlannedCell> planned_cells(const std::vector<Request>& requests) {
   return cells;
 }
 
-Outcome run_plan(const Catalog& catalog, const WholePlan& whole,
-                 const std::vector<Request>& requests, const std::filesystem::path& folder,
-                 const RunOptions& options) {
+Outcome run_plan(const Catalog& catalog, const WholePlan& whole, std::vector<Request> requests,
+                 const std::filesystem::path& folder, const RunOptions& options) {
   const std::int64_t begun = monotonic_nanoseconds();
   const InterruptGuard guard;
   Outcome outcome{.planned = static_cast<std::int64_t>(requests.size()), .is_interrupted = true};
   require_sound(catalog, requests);
   Store store(folder);
-  require_certified(catalog, requests, store, options.progress);
+  require_certified(catalog, requests, store, options);
   if (asked_to_end() != Asked::nothing) return outcome;
   store.plan(whole.name, whole.cells);
   write_used_rates(whole.rates, requests, store);

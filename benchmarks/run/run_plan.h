@@ -1,5 +1,5 @@
-// A plan from its first file to its last record: what `run`, `claims` and `tune` have in common,
-// and the checks of its components before they run.
+// The execution of a plan, which `run`, `claims` and `tune` share, and the checks of its components
+// before they run.
 #pragma once
 
 #include <filesystem>
@@ -30,13 +30,12 @@ struct WholePlan {
 };
 
 // UsageError, and nothing written, if a component of the plan cannot be created, or a problem of
-// another program fails the tests of this tree. Otherwise stores the plan before anything runs, so
-// that a part never passes for the complete plan; then the rates that it uses and the component
-// metadata; then runs the cells. Stores the plan again if records have disappeared meanwhile: the
-// folder may have been emptied.
-Outcome run_plan(const Catalog& catalog, const WholePlan& whole,
-                 const std::vector<Request>& requests, const std::filesystem::path& folder,
-                 const RunOptions& options);
+// another program fails the tests of this tree (unless it may, and is then marked). Otherwise
+// stores the plan before anything runs, so that a part never passes for the complete plan; then the
+// rates that it uses and the component metadata; then runs the cells. Stores the plan again if
+// records have disappeared meanwhile: the folder may have been emptied.
+Outcome run_plan(const Catalog& catalog, const WholePlan& whole, std::vector<Request> requests,
+                 const std::filesystem::path& folder, const RunOptions& options);
 Outcome run_plan(const Catalog& catalog, const std::string& name,
                  const std::vector<Request>& requests, const std::filesystem::path& folder,
                  const RunOptions& options, const Rates& rates = {});

@@ -1,4 +1,4 @@
-// The run of a whole plan: workers filled, watched, collected and stored.
+// Runs a whole plan: starts workers, watches them, and collects and stores their results.
 #include "benchmarks/run/runner.h"
 
 #include <fmt/format.h>
@@ -17,6 +17,7 @@
 #include "core/clock.h"
 #include "core/errors.h"
 #include "core/files.h"
+#include "core/foreign/handshake.h"
 #include "core/records/provenance.h"
 #include "core/seeds.h"
 #include "core/text.h"
@@ -34,6 +35,19 @@ void Outcome::count(const Record& record) {
   if (record.status == Status::interrupted) ++interrupted;
 }
 
+void require_trust(bool is_given, const Record& record) {
+  if (is_given) return;
+  for (const Component* part : {&record.request.problem, &record.request.optimizer})
+    for (const NamedOption& option : part->options)
+      require(option.name != "command" &&
+                  option_text(option.value).find("command") == std::string::npos,
+              [&] {
+                return fmt::format(
+                    "{} would start a program: {}; if you trust the records, add --trust",
+                    title_of(record.request), part->spec);
+              });
+}
+
 std::string title_of(const Request& request) {
   return fmt::format("{} × {}, seed {}", request.problem.spec, request.optimizer.spec,
                      seed_text(request.seed));
@@ -47,30 +61,32 @@ bool RunOptions::redoes(const std::optional<Record>& done) const {
 
 namespace {
 
-// The runs of a plan that are still wanted, each given to one run of the folder alone.
+// The remaining runs of a plan. Each is given to one process of those that share the folder.
 class Pending {
  public:
-  // Counts the cells that are done already.
+  // Counts the cells that are already done.
   Pending(const std::vector<Request>& requests, Store& store, const RunOptions& options,
           Outcome& outcome)
       : store_(store), options_(options), outcome_(outcome), holds_(store.folder()) {
     std::vector<std::pair<std::size_t, const Request*>> rounds;
-    std::optional<RecordsOfAnyBuild> earlier;  // times of two builds make no list
+    std::optional<RecordsOfAnyBuild> earlier;  // times of two builds are not comparable
     if (options.reuse && !options.force && options.repeat == 1) earlier.emplace(store.folder());
     for (const Request& request : requests) {
       if (earlier && is_reused(request, *earlier)) continue;
       const std::size_t wanted = runs_wanted(request);
       for (std::size_t i = 0; i < wanted; ++i) rounds.emplace_back(i, &request);
     }
-    // Repetitions go round all cells, so that those of one cell see how the machine drifts.
+    // Repetitions alternate between all cells, so that a drift of the machine affects the
+    // repetitions of each cell.
     std::ranges::stable_sort(rounds, {}, [](const auto& entry) { return entry.first; });
     for (const auto& [round, request] : rounds) queue_.push_back(request);
   }
 
-  // The next run, held against other processes until it is released. None where all are given out,
-  // or where others are doing all that are left: these are done elsewhere, or come back.
+  // The next run, locked against other processes until it is released. Nothing if all runs are
+  // given out, or if other processes run the remaining ones, which may come back.
   const Request* next() {
-    constexpr std::int64_t kPatience = 200'000'000;  // nanoseconds between looks at others' cells
+    constexpr std::int64_t kPatience =
+        200'000'000;  // nanoseconds between checks of other processes' cells
     if (monotonic_nanoseconds() < look_again_) return nullptr;
     for (std::size_t left = queue_.size(); left > 0; --left) {
       const Request& request = *queue_.front();
@@ -80,7 +96,7 @@ class Pending {
         continue;
       }
       if (options_.force || runs_wanted(request) > 0) return &request;
-      release(request);  // it was done elsewhere meanwhile
+      release(request);  // another process has done it in the meantime
     }
     if (!queue_.empty()) look_again_ = monotonic_nanoseconds() + kPatience;
     return nullptr;
@@ -89,7 +105,7 @@ class Pending {
   const std::deque<const Request*>& queued() const { return queue_; }
 
  private:
-  // How often it is still to be run; one that is done is counted.
+  // The number of remaining repetitions of a cell. A cell that is done is counted.
   std::size_t runs_wanted(const Request& request) {
     std::optional<Record> done = store_.find(request);
     if (options_.redoes(done)) done.reset();
@@ -116,7 +132,7 @@ class Pending {
   const RunOptions& options_;
   Outcome& outcome_;
   Holds holds_;
-  std::deque<const Request*> queue_;  // a cell that needs several timings is queued as often
+  std::deque<const Request*> queue_;  // a cell is queued once for each of its timings
   std::int64_t look_again_ = 0;       // monotonic nanoseconds
 };
 
@@ -144,7 +160,7 @@ class Runner {
     if (options_.progress != Progress::Style::silent && !pending_.queued().empty())
       earlier_ = EarlierTimes(record_outlines({store_.folder()}));
     for (const Request* request : pending_.queued()) progress_.expect(earlier_.of(*request));
-    malloc_trim(0);  // what planning freed: a fork copies the tables of all pages that are held
+    malloc_trim(0);  // return the memory that planning used: a fork copies the tables of all pages
     while (asked_to_end() != Asked::stop) {
       if (asked_to_end() == Asked::nothing) start_some();
       keep_judged();
@@ -173,9 +189,10 @@ class Runner {
     return std::ranges::count_if(tasks_, [](const Task& task) { return task.request; });
   }
 
-  // There is one worker more than may run: what it did is judged and stored while the others run.
+  // There is one more worker than the number of running cells, so that the result of one is judged
+  // and stored while the others run.
   void start_some() {
-    constexpr double kCheckpointSeconds = 120;  // how often a long run is kept on disk
+    constexpr double kCheckpointSeconds = 120;  // interval between checkpoints of a long run
     auto running = std::ranges::count_if(workers_, &Worker::is_running);
     for (std::size_t i = 0; i < workers_.size() && running < jobs_; ++i) {
       if (tasks_[i].request) continue;
@@ -221,7 +238,7 @@ class Runner {
     ::poll(waiting.data(), waiting.size(), kLookMilliseconds);
   }
 
-  // Cells that have ended go to a judge where they claim a point, and are kept once it has spoken.
+  // If a cell returns a point, a verifier evaluates it before the record is stored.
   void collect() {
     for (std::size_t i = 0; i < workers_.size(); ++i) {
       Task& task = tasks_[i];
@@ -241,7 +258,7 @@ class Runner {
       Worker& worker = workers_[verdict.slot];
       if (!verdict.judged)
         worker.conclude(verdict.is_interrupted ? Status::interrupted : Status::failed,
-                        "its point could not be verified: " + verdict.failure);
+                        "the returned point could not be verified: " + verdict.failure);
       else if (const auto found = contradiction(told_by(worker.trace()), *verdict.judged);
                !found.empty())
         worker.conclude(Status::failed, found);
@@ -249,7 +266,8 @@ class Runner {
     }
   }
 
-  // Cells that run keep their state and end; a point that no judge has seen by then is found again.
+  // Running cells save their state and end. If a point has not been verified by then, its cell runs
+  // again.
   void stop() {
     constexpr std::int64_t kGrace = 3'000'000'000;  // nanoseconds
     outcome_.is_interrupted = true;
@@ -262,7 +280,13 @@ class Runner {
 
   void keep(std::size_t slot) {
     const Request& request = *tasks_[slot].request;
-    const Worker& worker = workers_[slot];
+    Worker& worker = workers_[slot];
+    try {
+      require_unedited(request.problem.foreign);
+      require_unedited(request.optimizer.foreign);
+    } catch (const KilledProgram& edited) {
+      worker.conclude(Status::interrupted, edited.what());
+    }
     Record record = record_of(request, worker.trace());
     record.provenance.run = tasks_[slot].run;
     if (request.seed > 0 && !options_.keeps_fields) record.fields.reset();
@@ -338,6 +362,8 @@ Request request_again(const Catalog& catalog, const Record& record, double hard_
   request.problem.asked = problem.asked;
   request.optimizer.asked = optimizer.asked;
   request.hard_seconds = hard_seconds;
+  if (request.problem.foreign && record.foreign.problem)  // it may say "(uncertified)"
+    request.problem.foreign->label = record.foreign.problem->label;
   return named(std::move(request));
 }
 

@@ -39,11 +39,17 @@ struct Outcome {
   void count(const Record& record);
 };
 
+// Records may come from others. UsageError, with the command, before one that a record names
+// starts.
+void require_trust(bool is_given, const Record& record);
+inline constexpr const char* kTrust = "Start the commands of external components in the records";
+
 std::string title_of(const Request& request);  // "problem × optimizer, seed 0"
 
 struct RunOptions {
   int jobs = 1;
   bool force = false;           // repeat cells that are done
+  bool uncertified = false;     // run problems that fail their checks, and mark them
   bool reuse = false;           // a cell that another build has done counts as done
   std::set<Status> retry = {};  // cells that ended so are repeated
   bool exclusive = false;       // one at a time, for tables of wall time

@@ -320,8 +320,7 @@ class SheetWriter {
       sheet = std::move(*made);
       return true;
     }
-    store_.remark(fmt::format("the metadata of {} contain only what the registry knows: {}",
-                              sheet.spec, reason));
+    store_.remark(fmt::format("the metadata of {} are incomplete: {}", sheet.spec, reason));
     return false;
   }
 

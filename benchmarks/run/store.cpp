@@ -19,6 +19,7 @@
 #include "core/errors.h"
 #include "core/files.h"
 #include "core/json.h"
+#include "core/output.h"
 #include "core/records/request.h"
 #include "core/text.h"
 
@@ -205,6 +206,8 @@ void Store::plan(const std::string& suite, const std::vector<PlannedCell>& cells
   const fs::path path = folder_ / "plan.json";
   if (is_there(path)) try {
       plan = plan_from_text(read_text(path), path.string());
+    } catch (const AccessError&) {
+      throw;
     } catch (const std::exception& error) {
       plan = {};
       set_aside(path, fmt::format("{} (of the cells planned by earlier runs, only those with a "
@@ -223,6 +226,8 @@ std::optional<Record> Store::find(const Request& request) {
   const fs::path path = run_path(folder_, name_of(request));
   try {
     return stored_record(path, request);
+  } catch (const AccessError&) {  // it may be sound
+    throw;
   } catch (const std::exception& error) {
     set_aside(path, error.what());
     return std::nullopt;

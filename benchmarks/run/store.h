@@ -1,4 +1,5 @@
-// A result folder: what was planned, what is done, what is being done, and one whole file a record.
+// A result folder: the planned cells, the finished ones, the running ones, and one complete file
+// per record.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// Trained networks: written, read, applied.
+// Writes, reads and applies trained networks.
 #include "benchmarks/run/trained.h"
 
 #include <fmt/format.h>
@@ -14,6 +14,7 @@
 #include "core/files.h"
 #include "core/json.h"
 #include "core/options.h"
+#include "core/output.h"
 #include "core/records/json_view.h"
 #include "core/text.h"
 
@@ -83,7 +84,7 @@ Matrix samples_of(const NumberArray& input, Index inputs, const std::string& ori
 }  // namespace
 
 void write_network(const TrainedNetwork& network, const std::filesystem::path& path) {
-  const Json json{{"schema", "isoline.network/1"},
+  const Json json{{"schema", kNetworkSchema},
                   {"problem", component_json(network.problem)},
                   {"optimizer", component_json(network.optimizer)},
                   {"seed", network.seed},
@@ -94,7 +95,7 @@ void write_network(const TrainedNetwork& network, const std::filesystem::path& p
                   {"statistics", network.statistics.size()},
                   {"theta", values_of(network.theta)},
                   {"mean_statistics", values_of(network.statistics)}};
-  write_text(path, json_text(json) + "\n");
+  write_output(path, json_text(json) + "\n", kNetworkSchema);
 }
 
 TrainedNetwork network_from_text(const std::string& text) {

@@ -1,5 +1,5 @@
-// A trained network on disk, schema isoline.network/1: what it was trained on and how, its θ, and
-// the averaged statistics that it infers with.
+// A trained network on disk, schema isoline.network/1: the problem, the training, θ, and the
+// averaged statistics that inference uses.
 #pragma once
 
 #include <filesystem>
@@ -9,6 +9,8 @@
 #include "problems/problem.h"
 
 namespace isoline::benchmarks {
+
+inline constexpr const char* kNetworkSchema = "isoline.network/1";
 
 struct TrainedNetwork {
   Component problem, optimizer;

@@ -1,4 +1,4 @@
-// The option of a method that is tuned, its values and their unit, their scores, and the choice.
+// The tuned option of a method: its values and their unit, their scores, and the choice.
 #include "benchmarks/run/tune.h"
 
 #include <fmt/format.h>
@@ -13,6 +13,7 @@
 #include "benchmarks/run/isolate.h"
 #include "core/json.h"
 #include "core/options.h"
+#include "core/results/decisions.h"
 #include "core/status.h"
 #include "optimizers/optimizer.h"
 #include "problems/problem.h"
@@ -49,7 +50,7 @@ Knob knob_inside(const Catalog& catalog, const OptimizerEntry& outer, const Comp
   const std::string rule = !is_automatic ? inner.name : problem.is_learned ? "adam" : "gd";
   const OptimizerEntry& entry = catalog.optimizers.at(rule);
   const OptionField* field = field_of(entry, "rate");
-  require(field != nullptr, [&] { return fmt::format("{} has no rate to tune", rule); });
+  require(field != nullptr, [&] { return fmt::format("{} does not have a rate to tune", rule); });
   Knob knob = knob_of_field(entry, *field);
   knob.rule = rule;
   const OptionValues options = options_of(inner);
@@ -70,7 +71,9 @@ Knob knob_named(const Catalog& catalog, const std::string& optimizer, const Comp
     return knob_inside(catalog, entry, problem, given);
   const bool is_number = field && !std::holds_alternative<bool>(field->standard) &&
                          !std::holds_alternative<std::string>(field->standard);
-  require(is_number, [&] { return fmt::format("{} has no number {} to tune", optimizer, option); });
+  require(is_number, [&] {
+    return fmt::format("{} does not have an option {} that is a number", optimizer, option);
+  });
   Knob knob = knob_of_field(entry, *field);
   knob.standard = given.number(option, knob.standard);
   return knob;
@@ -168,7 +171,7 @@ Candidate candidate_of(const Catalog& catalog, const TunedPair& pair, const Tuni
       values.push_back(knob->is_whole ? std::round(unit * each) : three_digits(unit * each));
   } else {
     knob = knob_of(catalog, pair.optimizer, pair.problem, pair.options);
-    require(knob.has_value(), [&] { return pair.optimizer + " has nothing to tune"; });
+    require(knob.has_value(), [&] { return pair.optimizer + " does not have an option to tune"; });
     const bool in_cauchy_steps = knob->tunable.unit == Tunable::Unit::cauchy && !plan.is_common;
     values = plan.is_common    ? common_grid_of(*knob)
              : in_cauchy_steps ? grid_of(*knob, cauchy_step(catalog, pair.problem))
@@ -286,13 +289,11 @@ Json left_out_rows(const std::vector<Candidate>& candidates,
 
 // The score of each value of a grid on its setting; all 0 where none solves it.
 std::vector<Real> setting_scores(const TunedOption& tuned) {
-  constexpr Real kDoublings = 6;  // log2 64, where a score ends
-  const Real least = std::max(Real(1), std::ranges::min(tuned.scores, {}, &TuningScore::work).work);
+  std::vector<std::optional<Real>> work;
+  for (const TuningScore& score : tuned.scores) work.emplace_back(score.work);
   std::vector<Real> scores;
-  for (const TuningScore& score : tuned.scores) {
-    const Real slower = std::log2(std::max(Real(1), score.work) / least);
-    scores.push_back(std::isfinite(score.work) ? std::max(Real(0), 1 - slower / kDoublings) : 0);
-  }
+  for (const auto& ratio : results::cost_ratios(work))
+    scores.push_back(results::score_of(*ratio, results::kProfileEnd));
   return scores;
 }
 

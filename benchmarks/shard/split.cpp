@@ -45,7 +45,7 @@ std::unordered_map<std::string, double> predictions_for(const std::vector<const 
       requests, [&](const Request* request) { return seconds.contains(request->cell); }));
   require(known == requests.size(), [&] {
     return fmt::format(
-        "{} predicts another plan: it has {} of this plan's {} cells; use another --out",
+        "{} belongs to another plan: it contains {} of this plan's {} cells; use another --out",
         predicted_file(folder).string(), known, requests.size());
   });
   return seconds;
@@ -70,7 +70,8 @@ std::vector<PredictedCell> predicted_from_text(const std::string& text, const st
   JsonReader reader;
   const JsonView json = reader.parse(text, origin);
   try {
-    require(json.at("schema").get<std::string>() == kPredictedSchema, "it has another schema");
+    require(json.at("schema").get<std::string>() == kPredictedSchema,
+            "its schema is not supported");
     std::vector<PredictedCell> cells;
     for (const JsonView& one : json.at("cells").values()) {
       const JsonView seconds = one.at("seconds");

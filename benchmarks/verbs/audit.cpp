@@ -1,4 +1,4 @@
-// isoline audit [OPTIMIZER...]: what its properties are, measured instead of asserted.
+// isoline audit [OPTIMIZER...]: measures properties of optimizers.
 #include "benchmarks/audit/audit.h"
 
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-// isoline baseline RESULTS: what later results are compared with, as one small file.
+// isoline baseline RESULTS: writes one small file with which later results are compared.
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -7,7 +7,7 @@
 #include "benchmarks/cli/verb.h"
 #include "benchmarks/run/runner.h"
 #include "core/errors.h"
-#include "core/files.h"
+#include "core/output.h"
 #include "core/results/study.h"
 #include "core/text.h"
 #include "reports/compare/gate.h"
@@ -20,6 +20,7 @@ struct BaselineArguments {
   std::vector<std::string> folders;
   std::string out;
   int perturbations = 2, jobs = 0;
+  bool trust = false;
 };
 
 void declare(VerbArguments& verb, BaselineArguments& given) {
@@ -27,7 +28,8 @@ void declare(VerbArguments& verb, BaselineArguments& given) {
   verb.text("--out", given.out, "The file (default: standard output)");
   verb.whole("--perturbations", given.perturbations,
              "Runs of each cell from a start that differs in the last bit", {0, 100});
-  verb.whole("--jobs", given.jobs, "Cells at a time (default: one per core)", kJobs);
+  verb.whole("--jobs", given.jobs, "Number of cells at a time (default: one per core)", kJobs);
+  verb.flag("--trust", given.trust, kTrust);
   verb.plugins();
 }
 
@@ -50,6 +52,9 @@ int run(const BaselineArguments& given, Session& session) {
   reports::Study study = reports::read_study({given.folders.begin(), given.folders.end()});
   std::erase_if(study.runs, [](const Record& run) { return run.imported.has_value(); });
   require(!study.runs.empty(), "there are no records to remember");
+  if (!given.out.empty()) require_ours(given.out, reports::kBaselineSchema);
+  if (given.perturbations > 0)
+    for (const Record& run : study.runs) require_trust(given.trust, run);
   const std::vector<reports::Study> perturbed = perturbed_studies(given, session, study);
   if (perturbed.size() < static_cast<std::size_t>(given.perturbations)) {
     say(stderr, "interrupted; no baseline was written\n");
@@ -62,7 +67,7 @@ int run(const BaselineArguments& given, Session& session) {
   }
   const std::filesystem::path folder = std::filesystem::path(given.out).parent_path();
   if (!folder.empty()) std::filesystem::create_directories(folder);
-  write_text(given.out, text);
+  write_output(given.out, text, reports::kBaselineSchema);
   say(stdout, fmt::format("{}: {}\n", given.out, reports::counted(study.runs.size(), "cell")));
   return kGood;
 }
@@ -77,15 +82,13 @@ void register_baseline(VerbRegistry& registry) {
        .examples = "  isoline baseline results/quick --out baseline.json\n"
                    "  isoline compare baseline.json results/quick",
        .notes =
-           "The file has one line per cell: status, digest of the trace, final values, work to "
-           "1e-1, 1e-3 and\n1e-6.\n"
-           "Each cell runs again from starts that differ in the last bit. A cell is chaotic if "
-           "its values then\n"
-           "move by more than a tenth of a comparison's tolerance. `compare` compares such cells "
-           "by status and\n"
-           "by the targets 1e-1, 1e-3 and 1e-6 that they reach, so that rounding alone is not a "
-           "regression.\n"
-           "Runs of the portable preset (ISOLINE_PRESET=portable) give the same baseline on every\n"
+           "The file has one line per cell: status, digest of the trace, final values, work to 1e-1, "
+           "1e-3 and 1e-6.\n"
+           "Each cell runs again from starts that differ in the last bit. A cell is chaotic if its "
+           "values then change by more than a tenth of a comparison's tolerance. `compare` compares "
+           "such cells by status and by the targets 1e-1, 1e-3 and 1e-6 that they reach, so rounding "
+           "alone is not a regression.\n"
+           "Runs of the portable preset (ISOLINE_PRESET=portable) give the same baseline on every "
            "x86-64-v3 machine."},
       declare, run));
 }

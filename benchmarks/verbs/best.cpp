@@ -1,4 +1,5 @@
-// isoline best DIR... --out FILE: the best losses of runs, where no least loss is declared.
+// isoline best DIR... --out FILE: writes the lowest losses for problems that do not declare a least
+// loss.
 #include <fmt/format.h>
 
 #include <filesystem>
@@ -56,7 +57,7 @@ int run(const BestArguments& given, Session& session) {
     const Component& problem = record.request.problem;
     if (!session.catalog().problems.contains(problem.name)) continue;
     const auto [known, is_new] = declares.try_emplace(problem.spec, false);
-    if (is_new) known->second = declares_minimum(session.catalog(), problem, record.request.seed);
+    if (is_new) known->second = record.minimum && !record.is_best_known;  // nothing is started
     if (!known->second) improved += best.add(record);
   }
   write_text(given.out, best_losses_text(best.to_json()));
@@ -70,12 +71,12 @@ void register_best(VerbRegistry& registry) {
   registry.add(verb_of(
       {.name = "best",
        .help_position = 100,
-       .summary = "Write the lowest losses of runs, for problems that declare no least loss",
+       .summary = "Write the lowest losses of runs, for problems that do not declare a least loss",
        .examples = "  isoline best results/quick --out benchmarks/best.json",
        .notes =
-           "If a problem declares no least loss, targets are relative to the lowest known loss. "
-           "This table is\n"
-           "compiled into the program, and part of the build that a record names."},
+           "If a problem does not declare its least loss, targets are relative to the lowest known "
+           "loss. This table is compiled into the program, and belongs to the build that a record "
+           "states."},
       declare, run));
 }
 

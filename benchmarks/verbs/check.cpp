@@ -1,4 +1,4 @@
-// isoline check [SPEC]: are a problem's derivatives, adjoint, inverse and solution what they claim?
+// isoline check [SPEC]: checks a problem's derivatives, adjoint, inverse and solution.
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
@@ -104,7 +104,7 @@ void register_check(VerbRegistry& registry) {
   registry.add(verb_of(
       {.name = "check",
        .help_position = 160,
-       .summary = "Check a problem's derivatives, adjoint and inverse against each other",
+       .summary = "Check that a problem's derivatives, adjoint and inverse agree with each other",
        .examples = "  isoline check rosenbrock\n  isoline check 'poisson[N=8|16]' --seed 3"},
       declare, run));
 }

@@ -1,4 +1,4 @@
-// isoline claims [ID...]: runs what published claims need, and judges them.
+// isoline claims [ID...]: runs the cells of published claims, and judges the claims.
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -28,14 +28,15 @@ struct ClaimArguments {
 
 void declare(VerbArguments& verb, ClaimArguments& given) {
   verb.texts("ID", given.names, "Claims, or groups of them (default: all)");
-  verb.text("--out", given.out, "Result folder that holds the runs").shown();
-  verb.whole("--jobs", given.jobs, "Cells at a time (default: one per core)", kJobs);
+  verb.text("--out", given.out, "Result folder of the runs").shown();
+  verb.whole("--jobs", given.jobs, "Number of cells at a time (default: one per core)", kJobs);
   verb.flag("--list", given.is_list, "List the claims, and run nothing");
   verb.flag("--all", given.lists_all, "List every claim, not the first 20");
   verb.flag("--json", given.as_json, "Print JSON");
-  verb.flag("--papers", given.as_papers, "Print a table a paper, in Markdown: docs/papers.md");
-  verb.flag("--no-run", given.no_run, "Judge by the runs that are there");
-  verb.flag("--long", given.with_long, "Run also what takes hours");
+  verb.flag("--papers", given.as_papers,
+            "Print one Markdown table per paper, as in docs/papers.md");
+  verb.flag("--no-run", given.no_run, "Judge by existing runs only");
+  verb.flag("--long", given.with_long, "Also run the cells that take hours");
 }
 
 std::string listed_by_groups(const std::vector<Claim>& claims, std::size_t most) {
@@ -81,7 +82,7 @@ Outcome run_missing(const ClaimArguments& given, const std::vector<Claim>& claim
   return outcome;
 }
 
-// One claim with all that decides it; of several the verdicts.
+// The evidence of a single claim, or the verdicts of several.
 std::string terminal_text_of(const std::vector<reports::Judgement>& judgements, bool lists_all) {
   if (judgements.size() == 1) return reports::terminal_claim(reports::claim_section(judgements[0]));
   const std::string text =
@@ -91,10 +92,10 @@ std::string terminal_text_of(const std::vector<reports::Judgement>& judgements, 
 }
 
 std::string papers_page(const std::vector<reports::Judgement>& judgements) {
-  return "# What do the papers say, and what comes of it here?\n\n"
-         "`./isoline claims --no-run --papers --out results/papers` makes this page of the claims in "
-         "`benchmarks/claims` and of the runs in a folder of results: a row a claim, with the "
-         "command that decides it. [Claims](claims.md) says what the verdicts mean.\n" +
+  return "# What do the papers claim, and what do the runs show?\n\n"
+         "`./isoline claims --no-run --papers --out results/papers` writes this page, with one row "
+         "per claim in `benchmarks/claims` and the command that decides it. The runs are those of a "
+         "result folder. [Claims](claims.md) explains the verdicts.\n" +
          reports::markdown_section(reports::papers_section(judgements), reports::kAllRows);
 }
 
@@ -128,15 +129,16 @@ void register_claims(VerbRegistry& registry) {
   registry.add(verb_of(
       {.name = "claims",
        .help_position = 110,
-       .summary = "Check the claims of papers; runs missing cells first",
+       .summary = "Run the missing cells of claims of papers, and judge the claims",
        .examples = R"(  isoline claims --list                        the claims and their sources
   isoline claims exponential                   one group of claims
   isoline claims sip-better-in-x-worse-in-loss     one claim, with its evidence
   isoline claims --no-run --out results/quick      the claims that the runs of a suite decide)",
        .notes =
-           "A claim is reproduced where what is measured lies within the source's own error of reading,\n"
-           "partly where only the direction holds; of fewer than six seeds it is consistent or at odds.\n"
-           "Exit codes: 0 good, 2 a claim is not reproduced or a run failed, 4 none can be compared."},
+           "A claim is reproduced if the measured values agree with the published one within its "
+           "uncertainty, and partly reproduced if only the direction holds. With fewer than six seeds, "
+           "a claim is consistent or at odds.\n"
+           "Exit codes: 0 success, 2 a claim is not reproduced or a run failed, 4 not comparable."},
       declare, run));
 }
 

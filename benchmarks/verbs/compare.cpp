@@ -1,8 +1,12 @@
-// isoline compare BASE NEW: what is worse than before, and what is better.
+// isoline compare BASE NEW: lists what has become worse and better.
 #include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
 
 #include "benchmarks/cli/terminal.h"
 #include "benchmarks/cli/verb.h"
+#include "benchmarks/plan/suite.h"
+#include "core/json.h"
 #include "core/text.h"
 #include "reports/compare/gate.h"
 
@@ -20,14 +24,14 @@ void declare(VerbArguments& verb, CompareArguments& given) {
   verb.text("BASE", given.before, "Result folder or baseline").required();
   verb.text("NEW", given.after, "Result folder").required();
   verb.real("--tolerance", given.tolerance, between(0, 1),
-            "Relative tolerance of values (default: bit for bit)");
+            "Relative tolerance of values (default: values must agree bit for bit)");
   verb.real("--noise", given.noise, between(0, 10),
-            "Least band of noise of times, relative (default: 0.1)");
+            "Least relative difference of times that counts (default: 0.1)");
   verb.text(
       "--allow", given.allowed,
-      "File that lists cells which NEW may lack, or may judge by another criterion of success "
-      "(isoline.allowed/1), with reasons");
-  verb.flag("--common", given.is_common_only, "Let NEW lack any cell of BASE");
+      "File (isoline.allowed/1) that lists, with reasons, cells that NEW may lack or may judge by "
+      "another success criterion");
+  verb.flag("--common", given.is_common_only, "Allow NEW to lack any cell of BASE");
   verb.flag("--all", given.lists_all, "List every difference, not the first 20 lines");
   const Argument json = verb.flag("--json", given.as_json, "Print JSON");
   verb.flag("--markdown", given.as_markdown, "Print Markdown").excludes(json);
@@ -37,7 +41,10 @@ int run(const CompareArguments& given, Session&) {
   reports::GateOptions options{.is_common_only = given.is_common_only};
   if (given.tolerance >= 0) options.tolerance = given.tolerance;
   if (given.noise >= 0) options.least_noise = given.noise;
-  if (!given.allowed.empty()) options.allowed = reports::read_allowed(given.allowed);
+  if (!given.allowed.empty()) {
+    require_valid(read_json(given.allowed), "allowed", given.allowed);
+    options.allowed = reports::read_allowed(given.allowed);
+  }
   options.listener = progress_on_terminal("reading records");
   const reports::GateResult result = reports::compare_results(given.before, given.after, options);
   say(stdout, given.as_json       ? reports::gate_json(result)
@@ -60,14 +67,16 @@ void register_compare(VerbRegistry& registry) {
   isoline compare baseline.json results/quick --tolerance 1e-6 --all
   isoline compare results/old results/new --markdown     for the summary of a job)",
        .notes =
-           "Exit codes: 0 no worse and no better; 2 worse, or NEW lacks a cell of BASE; 3 better only;\n"
-           "4 not comparable: a clock ended a cell, its record contradicts itself, success is judged by\n"
-           "another f_L, scale, floor, aim or cost, or it is of another build and --tolerance is not\n"
-           "given. Cells are paired by what was asked of them, with seed and budget, so that a changed\n"
-           "default is compared, and named.\n"
-           "Time is judged where both sides have 9 repetitions (run --repeat 9): Mann-Whitney with\n"
-           "Benjamini-Hochberg at 0.05, and the whole 95 % interval of the ratio outside the noise that\n"
-           "the repetitions show. The 20 slowest such cells of BASE are judged."},
+           "Exit codes: 0 neither worse nor better; 2 worse, or NEW lacks a cell of BASE; 3 better "
+           "only; 4 not comparable. A cell is not comparable if a clock ended it, if its record "
+           "contradicts itself, if its success criterion, f_L, scale, floor or nominal costs differ, "
+           "or if another build computed it and --tolerance is missing.\n"
+           "Cells are paired by problem, optimizer, seed and budget as requested. If the default of an "
+           "option has changed, they are still compared, and the change is printed.\n"
+           "Times are compared if both sides have 9 repetitions (run --repeat 9), for the 20 slowest "
+           "such cells of BASE. They differ by a Mann-Whitney test with the Benjamini-Hochberg "
+           "correction at 0.05, and only if the whole 95 % interval of their ratio lies outside the "
+           "noise of the repetitions."},
       declare, run));
 }
 

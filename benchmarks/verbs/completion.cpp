@@ -1,4 +1,5 @@
-// isoline completion bash: a script for the shell, with the names of problems and optimizers.
+// isoline completion bash: prints a script for the shell, with the names of problems and
+// optimizers.
 #include <fmt/format.h>
 
 #include <string_view>

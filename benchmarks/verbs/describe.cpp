@@ -1,4 +1,4 @@
-// isoline describe NAME: what a component is, in words.
+// isoline describe NAME: describes a component in words.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -33,7 +33,7 @@ void declare(VerbArguments& verb, DescribeArguments& given) {
 struct Described {
   Sheet sheet;
   OptionTable table;
-  OptionValues options;  // as given, the rest at their defaults
+  OptionValues options;  // the given values, and defaults for the others
 };
 
 Described described_as_problem(const Catalog& catalog, const Spec& spec) {
@@ -51,7 +51,7 @@ Described described(const Catalog& catalog, const Spec& spec) {
   const bool is_problem = catalog.problems.contains(spec.name);
   const bool is_optimizer = catalog.optimizers.contains(spec.name);
   if (is_problem && is_optimizer)
-    try {  // an adapter has one name for both; the external program knows its role
+    try {  // an adapter has the same name for both roles; the external program states its role
       return described_as_optimizer(catalog, spec);
     } catch (const UsageError&) {
       return described_as_problem(catalog, spec);
@@ -63,14 +63,14 @@ Described described(const Catalog& catalog, const Spec& spec) {
     known.insert(known.end(), names.begin(), names.end());
   const std::string nearest = nearest_name(spec.name, known);
   throw UsageError(fmt::format("no problem, optimizer or network '{}'; {}", spec.name,
-                               nearest.empty() ? "`isoline list` names them all"
+                               nearest.empty() ? "`isoline list` prints all names"
                                                : fmt::format("did you mean '{}'?", nearest)));
 }
 
 std::string allowed_values(const OptionField& field) {
   if (!field.choices.empty()) {
     Choices named = field.choices;
-    std::erase(named, "");  // a choice of nothing has no name
+    std::erase(named, "");  // an empty choice does not have a name
     return fmt::format("{}", fmt::join(named, "|"));
   }
   const bool is_number =

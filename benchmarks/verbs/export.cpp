@@ -1,4 +1,5 @@
-// isoline export DIR... --format csv|coco --out PATH: results in the forms of others.
+// isoline export DIR... --format csv|coco --out PATH: writes results in the formats of other
+// programs.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,6 +9,7 @@
 #include "benchmarks/cli/verb.h"
 #include "core/errors.h"
 #include "core/files.h"
+#include "core/output.h"
 #include "core/text.h"
 #include "reports/formats/formats.h"
 #include "reports/sections/words.h"
@@ -36,7 +38,7 @@ void declare(VerbArguments& verb, ExportArguments& given) {
 
 void write_file(const fs::path& out, const std::string& text) {
   if (out.has_parent_path()) fs::create_directories(out.parent_path());
-  write_text(out, text);
+  write_output(out, text, text.substr(0, text.find('\n')));
 }
 
 int run(const ExportArguments& given, Session&) {

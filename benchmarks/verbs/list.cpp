@@ -1,4 +1,4 @@
-// isoline list: what there is.
+// isoline list: lists problems, networks, optimizers and suites.
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>

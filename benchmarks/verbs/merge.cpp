@@ -1,4 +1,4 @@
-// isoline merge DIR... --out OUT: the union of result folders.
+// isoline merge DIR... --out OUT: merges result folders.
 #include "benchmarks/merge/merge.h"
 
 #include <fmt/format.h>
@@ -53,12 +53,10 @@ void register_merge(VerbRegistry& registry) {
        .summary = "Merge result folders into a new one",
        .examples = "  isoline merge results/a results/b --out results/both",
        .notes =
-           "Records of the same cell and build become one with the timings of all. If they differ "
-           "in anything\n"
-           "but timings and provenance, merge writes nothing, names the cells on standard error, "
-           "the optimizer\n"
-           "with most of them first, and exits with 2. Remove the wrong records, or\n"
-           "--force their runs, and merge again."},
+           "Records of the same cell and build become one record with the times of all. If they differ "
+           "in anything except times and provenance, merge does not write anything, lists the cells on "
+           "standard error, and exits with 2. Remove the wrong records, or run their cells again with "
+           "--force, and merge again."},
       declare, run));
 }
 

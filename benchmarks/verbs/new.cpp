@@ -1,5 +1,5 @@
-// isoline new problem|optimizer NAME: the file that a component of one's own starts from. It builds
-// and passes its checks as it is written.
+// isoline new problem|optimizer NAME: writes a template of a user's own component, which builds and
+// passes its checks.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -158,7 +158,7 @@ void register_new(VerbRegistry& registry) {
   registry.add(verb_of(
       {.name = "new",
        .help_position = 180,
-       .summary = "Write a file to start your own problem or optimizer from",
+       .summary = "Write a template of your own problem or optimizer",
        .examples =
            "  isoline new problem my-chain                 problems/my_chain.cpp, for a program "
            "of your own\n"

@@ -1,4 +1,4 @@
-// isoline plan: what a run would do, how long it may take, and how it divides into shards.
+// isoline plan: prints what a run would do, its predicted time, and its division into shards.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -26,7 +26,7 @@ struct PlanArguments {
 
 void declare(VerbArguments& verb, PlanArguments& given) {
   declare_cells(verb, given.run);
-  verb.whole("--jobs", given.run.jobs, "Cells at a time (default: one per core)", kJobs);
+  verb.whole("--jobs", given.run.jobs, "Number of cells at a time (default: one per core)", kJobs);
   declare_what_is_done(verb, given.run);
   verb.whole("--shards", given.shards,
              "Divide the plan into this many shards of about equal time, and write the predictions "
@@ -81,7 +81,7 @@ std::string weights_text(Weights weights, const PlannedRun& all, std::size_t tim
     case Weights::declared:
       break;
   }
-  return "predictions: none, since shards ran here without; the shards are divided by nominal cost";
+  return "predictions: none, because earlier shards ran without them; nominal costs divide the shards";
 }
 
 void print_shards(const PlannedRun& all, const Preview& shown, const ShardPlan& plan,
@@ -124,18 +124,16 @@ void register_plan(VerbRegistry& registry) {
   registry.add(verb_of(
       {.name = "plan",
        .help_position = 20,
-       .summary = "Show what a run would do, how long it may take, and how it divides into shards",
+       .summary = "Print what a run would do, its predicted time, and its division into shards",
        .examples =
            R"(  isoline plan quick                           cells, finished cells, predicted time
   isoline plan quick --shards 16 --from results/before     sixteen shards of equal time
   isoline plan quick --shards 16 --json        for the matrix of a workflow)",
        .notes =
-           "The prediction of a cell is its time, or that of the same cell with other seeds, in "
-           "records of the\n"
-           "result folder and of --from; other cells have no prediction.\n"
-           "--shards writes the predictions to predicted.json once. `isoline run --shard` divides\n"
-           "the plan by this file only, so that every task finds the same shards whenever it "
-           "begins."},
+           "The predicted time of a cell is its time in records of the result folder and of --from, or "
+           "that of the same cell with other seeds. Other cells have no prediction.\n"
+           "--shards writes the predictions to predicted.json once. `isoline run --shard` divides the "
+           "plan by this file only, so all tasks use the same shards, whenever they start."},
       declare, run));
 }
 

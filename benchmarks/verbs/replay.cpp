@@ -1,4 +1,4 @@
-// isoline replay RECORD...: runs the cells of records again and compares each two bit for bit.
+// isoline replay RECORD...: runs the cells of records again, and compares the results bit for bit.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -25,6 +25,7 @@ struct ReplayArguments {
   std::string sample;             // "1%", "20"; empty: all of the records
   std::uint64_t seed = 0;         // of the sample; 0: another one each time
   std::int64_t memory_bytes = 0;  // 0: as the runner has it
+  bool trust = false;
 };
 
 void declare(VerbArguments& verb, ReplayArguments& given) {
@@ -32,8 +33,9 @@ void declare(VerbArguments& verb, ReplayArguments& given) {
              "Records of `isoline run`: files in runs/; with --sample result folders")
       .required();
   verb.text("--sample", given.sample, "Replay a random sample of the records: 1%, or 20 of them");
-  verb.seed("--seed", given.seed, "Seed of the sample; 0: another one each time, which is printed");
-  verb.memory("--memory", given.memory_bytes, "Most memory of a cell (default: 4GB)");
+  verb.seed("--seed", given.seed, "Seed of the sample; 0: a new one each time, which is printed");
+  verb.memory("--memory", given.memory_bytes, "Memory limit of a cell (default: 4GB)");
+  verb.flag("--trust", given.trust, kTrust);
   verb.plugins();
 }
 
@@ -65,6 +67,7 @@ int replay(const std::string& path, const ReplayArguments& given, Session& sessi
     return fmt::format("{} is a folder: name records, such as those in its runs/", path);
   });
   const Record record = read_unchecked_record(path);
+  require_trust(given.trust, record);
   const std::string title = fmt::format("{}: {}", path, title_of(record.request));
   Request request;
   try {
@@ -141,18 +144,15 @@ void register_replay(VerbRegistry& registry) {
   registry.add(verb_of(
       {.name = "replay",
        .help_position = 60,
-       .summary = "Run the cells of records again, and check each two for equality bit for bit",
+       .summary = "Run the cells of records again, and compare the results bit for bit",
        .examples = "  isoline replay results/quick/runs/03a4d51c22cbf199-821e62446af5cbbe.json\n"
                    "  isoline replay results/quick --sample 1%",
        .notes =
-           "The cell runs in its own process, with the problem, options, seed, budget and threads "
-           "of\n"
-           "the record. Nothing is written. A record that a clock or a kill ended is compared up "
-           "to the last\n"
-           "common iteration. Exit codes: 0 equal; 2 different, with the first difference named;\n"
-           "4 not comparable: another build computed it, with its parts named, or the record's "
-           "component is\n"
-           "not there."},
+           "The cell runs in its own process, with the problem, options, seed, budget and threads of "
+           "the record. `replay` does not write any file. If a clock or a kill ended a run, it is "
+           "compared up to the last common iteration.\n"
+           "Exit codes: 0 equal; 2 different, and the first difference is printed; 4 not comparable: "
+           "another build computed the record (its parts are printed), or a component is missing."},
       declare, run));
 }
 

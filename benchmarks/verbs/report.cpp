@@ -1,4 +1,4 @@
-// isoline report DIR...: tables, plots and statistics from records.
+// isoline report DIR...: writes tables, plots and statistics of records.
 #include "reports/report.h"
 
 #include <fmt/format.h>
@@ -6,6 +6,7 @@
 #include <spawn.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <filesystem>
 #include <set>
@@ -15,6 +16,7 @@
 #include "benchmarks/plan/claim_cells.h"
 #include "core/errors.h"
 #include "core/results/study.h"
+#include "core/spec.h"
 #include "core/text.h"
 #include "reports/sections/words.h"
 
@@ -25,7 +27,7 @@ namespace {
 
 struct ReportArguments {
   std::vector<std::string> folders;
-  std::string out, by = "work";
+  std::string out, problem, by = "work";
   double tolerance = 1e-6;
   bool opens = false;
 };
@@ -33,7 +35,9 @@ struct ReportArguments {
 void declare(VerbArguments& verb, ReportArguments& given) {
   verb.texts("DIR", given.folders, kFolders).required();
   verb.text("--out", given.out, "Output folder (default: report/ in the first DIR)");
-  verb.text("--by", given.by, "Measure of rankings, tables and plots")
+  verb.text("--problem", given.problem,
+            "Problems of the report, by name and options (default: all)");
+  verb.text("--by", given.by, "Metric of rankings, tables and plots")
       .one_of({reports::kMeasureNames.begin(), reports::kMeasureNames.end()})
       .shown();
   verb.real("--tolerance", given.tolerance, between(1e-10, 1),
@@ -52,6 +56,24 @@ reports::Yardstick yardstick_of(const ReportArguments& given) {
     say(stderr, fmt::format("--tolerance {}: rounded to {}, the next stricter one of the 51\n",
                             given.tolerance, taken.name));
   return yardstick;
+}
+
+// Leaves out the runs and the planned cells of other problems. A spec keeps each setting that has
+// its name and all its options.
+void keep_problems(reports::Study& study, const std::string& text) {
+  const std::vector<Spec> kept = parse_specs(text);
+  const auto is_other = [&](const std::string& spec) {
+    const Spec of = parse_spec(spec);
+    return std::ranges::none_of(kept, [&](const Spec& wanted) {
+      return wanted.name == of.name && std::ranges::all_of(wanted.options, [&](const auto& option) {
+               return std::ranges::find(of.options, option) != of.options.end();
+             });
+    });
+  };
+  std::erase_if(study.runs, [&](const Record& run) { return is_other(run.request.problem.spec); });
+  std::erase_if(study.plan.cells, [&](const PlannedCell& cell) { return is_other(cell.problem); });
+  require(!study.runs.empty(),
+          [&] { return fmt::format("--problem {}: no record is of such a problem", text); });
 }
 
 // By the desktop's program, which outlives this one; prints a message if it is missing.
@@ -75,9 +97,10 @@ int run(const ReportArguments& given, Session& session) {
   std::set<std::string> claimed;
   for (const Request& request : cells_of(builtin_claims_of(session.catalog()), true))
     claimed.insert(request.cell);
-  const reports::Study study = reports::read_study(
+  reports::Study study = reports::read_study(
       given.folders, progress_on_terminal("reading records"),
       [&](Record& record) { reports::trim_for_report(record, claimed.contains(record.cell)); });
+  if (!given.problem.empty()) keep_problems(study, given.problem);
   require(!study.runs.empty(), [&] {
     const std::string damaged =
         study.unreadable.empty() ? ""
@@ -102,15 +125,13 @@ void register_report(VerbRegistry& registry) {
        .help_position = 30,
        .summary = "Write " + format_names(),
        .examples = "  isoline report results/quick\n"
+                   "  isoline report results/quick --problem heat --out heat\n"
                    "  isoline report results/a results/b --out report --by cost --tolerance 1e-3",
        .notes =
-           "Results contain 51 tolerances, five per decade from 1 to 1e-10; others are rounded to "
-           "the\n"
-           "next stricter one. Work is oracle calls at nominal cost, equal on every machine; cost "
-           "is\n"
-           "the same calls at measured cost. Times are comparable in runs with --exclusive: "
-           "others are\n"
-           "marked ≈."},
+           "Results contain 51 tolerances, five per decade from 1 to 1e-10; another tolerance is "
+           "replaced by the next stricter one. Work counts oracle calls at nominal cost, which is equal "
+           "on every machine; cost counts the same calls at measured cost. Times are comparable only in "
+           "runs with --exclusive; others are marked ≈."},
       declare, run));
 }
 

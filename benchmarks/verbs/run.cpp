@@ -1,4 +1,4 @@
-// isoline run: the whole matrix, then its report.
+// isoline run: runs a suite or a study, and writes its report.
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -91,6 +91,7 @@ int run(const RunArguments& given, Session& session) {
   if (!given.shard.empty()) keep_shard(shard_of(given.shard), all);
   RunOptions options{.jobs = given.jobs > 0 ? given.jobs : one_a_core(),
                      .force = given.force,
+                     .uncertified = given.uncertified,
                      .reuse = given.reuse,
                      .retry = statuses_of(given.retry),
                      .exclusive = given.exclusive,
@@ -121,7 +122,7 @@ void register_run(VerbRegistry& registry) {
   registry.add(verb_of(
       {.name = "run",
        .help_position = 10,
-       .summary = "Run a suite or your own matrix; finished cells are not repeated",
+       .summary = "Run a suite or your own study; finished cells do not run again",
        .examples =
            R"(  isoline run                                  the suite quick, then its report
   isoline run notebook --seeds 5 --jobs 4      another suite, on five seeds
@@ -131,10 +132,9 @@ void register_run(VerbRegistry& registry) {
   isoline run quick --shard 3/16               one shard; `isoline merge` joins them
   isoline run --problem square --optimizer gd --seeds =3 --in-process     for a debugger)",
        .notes =
-           "The same command continues where it was stopped. A crash ends one cell only: each has "
-           "its "
-           "own\nprocess, except with --in-process.\n"
-           "Exit codes: 0 good, 2 cells failed or records disappeared, 130 interrupted."},
+           "The same command continues a run that was stopped. Each cell has its own process, so a "
+           "crash ends one cell only (not with --in-process).\n"
+           "Exit codes: 0 success, 2 cells failed or records disappeared, 130 interrupted."},
       declare_run, run));
 }
 

@@ -1,4 +1,4 @@
-// isoline status DIR: how far a run is, in shards or not, while it goes on.
+// isoline status DIR: prints the progress of a run, with or without shards.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -185,8 +185,8 @@ void register_status(VerbRegistry& registry) {
                .help_position = 90,
                .summary = "Show the progress of a run",
                .examples = "  isoline status results/quick\n  isoline status results/quick --json",
-               .notes = "Reads the records, the plan and the predictions, and starts nothing.\n"
-                        "Exit codes: 0 good so far, 2 cells failed."},
+               .notes = "Only reads the records, the plan and the predictions.\n"
+                        "Exit codes: 0 no failed cells, 2 failed cells."},
               declare, run));
 }
 

@@ -1,4 +1,4 @@
-// isoline train PROBLEM --out FILE: trains one network and keeps it, for `isoline infer`.
+// isoline train PROBLEM --out FILE: trains one network and stores it for `isoline infer`.
 #include <fmt/format.h>
 #include <poll.h>
 #include <unistd.h>
@@ -16,6 +16,7 @@
 #include "benchmarks/run/runner.h"
 #include "benchmarks/run/trained.h"
 #include "core/options.h"
+#include "core/output.h"
 #include "core/text.h"
 #include "reports/sections/words.h"
 
@@ -70,8 +71,7 @@ bool is_trained(const Trace& trace) {
 void require_writable(const std::string& out) {
   const std::filesystem::path path(out), parent = path.parent_path();
   const std::filesystem::path folder = parent.empty() ? "." : parent;
-  require(!std::filesystem::is_directory(path),
-          [&] { return fmt::format("cannot write {}: it is a folder", out); });
+  require_ours(path, kNetworkSchema);
   require(access(folder.c_str(), W_OK) == 0,
           [&] { return fmt::format("cannot write {}: {}", out, std::strerror(errno)); });
 }

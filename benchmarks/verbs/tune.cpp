@@ -1,4 +1,4 @@
-// isoline tune: a table of rates from a recorded grid.
+// isoline tune: writes a table of rates from a recorded grid.
 #include "benchmarks/run/tune.h"
 
 #include <fmt/format.h>
@@ -43,8 +43,9 @@ void declare(VerbArguments& verb, TuneArguments& given) {
   verb.text("--grid", given.grid,
             "Option and its values, low..high x count (default: the method's tunable option "
             "at seven values around its default, and more at an edge)");
-  verb.text("--unit", given.unit,
-            "Unit of the grid: 1, the problem's Cauchy step, or the published rate")
+  verb.text(
+          "--unit", given.unit,
+          "Unit of the grid: one, cauchy (the problem's Cauchy step) or published (the published rate)")
       .one_of({"one", "cauchy", "published"})
       .shown();
   verb.flag("--leave-one-out", given.leaves_out,
@@ -53,7 +54,7 @@ void declare(VerbArguments& verb, TuneArguments& given) {
   verb.text("--tuning-seeds", given.seeds, "Seeds, different from those of results").shown();
   verb.whole("--work", given.work, "Largest work per run");
   verb.whole("--iterations", given.iterations, "Largest number of iterations per run");
-  verb.whole("--jobs", given.jobs, "Runs at a time (default: one per core)", kJobs);
+  verb.whole("--jobs", given.jobs, "Number of runs at a time (default: one per core)", kJobs);
   verb.text("--out", given.folder, "Folder of the records").shown();
   verb.text("--table", given.table,
             "Table of rates to write or to extend; with --leave-one-out also NAME-tuned.json, of "
@@ -82,7 +83,7 @@ std::vector<Request> cells_of(const Catalog& catalog, const TuneArguments& given
 }
 
 std::vector<Request> cells_named(const Catalog& catalog, const TuneArguments& given) {
-  require(!given.problem.empty(), "tune: name problems, as SPEC or with --problem, or a --suite");
+  require(!given.problem.empty(), "tune: problems are missing: pass SPEC, --problem or --suite");
   const MatrixBlock block{.problems = {given.problem},
                           .optimizers = {given.optimizer.empty() ? "*" : given.optimizer},
                           .budget = {.iterations = given.iterations, .work = given.work}};
@@ -212,8 +213,8 @@ reports::Table left_out_table(const Json& rows) {
       .align = "lllrrrrl",
       .names = 2};
   table.caption =
-      "Value: the best on the other families. Score: its mean over these, 1 is the least work of "
-      "the method's values. Tuning work: nominal work of all trials of the method.";
+      "Value: the best on the other families. Score: its mean over these families; 1 is the least "
+      "work of the method's values. Tuning work: the nominal work of all trials of the method.";
   for (const Json& row : rows) {
     const Json& source = row.at("source");
     const auto grid = source.at("grid").begin();
@@ -241,8 +242,9 @@ std::string tuning_text(const TuningResult& result, bool lists_all) {
       .align = "lllrlrrl",
       .names = 2};
   table.caption =
-      "Grid: one bar per value from low to high, the best is the highest, · failed. Work: median "
-      "to the target, ✗ not reached; left: median loss or error in x at the end.";
+      "Grid: one bar per value, from the lowest value to the highest; the tallest bar marks the "
+      "best, · a failed one. Work: median to the target; ✗: not reached. Left: median loss or error "
+      "in x at the end.";
   for (const TunedOption& tuned : result.tuned) table.rows.push_back(tuning_row(tuned));
   if (!result.left_out_rows->empty()) table = left_out_table(*result.left_out_rows);
   if (!table.rows.empty()) section.tables.push_back(std::move(table));
@@ -279,11 +281,10 @@ void register_tune(VerbRegistry& registry) {
                    "  isoline tune square --optimizer gd --grid rate=1e-3..1x7 --unit cauchy\n"
                    "  isoline tune --suite quick --optimizer adam --json\n"
                    "  isoline tune --leave-one-out sine,heat,burgers --table physics.json",
-       .notes = "The best value has the least median work to the target; among equals, the least "
-                "remainder, "
-                "then\nthe distance from the default. The output names ties and best values at the "
-                "edge of "
-                "the grid."},
+       .notes =
+           "The best value has the least median work to the target. If several are equal, it is the "
+           "one with the least remaining loss or error in x, and then the one nearest to the "
+           "default. The output lists ties and best values at an edge of the grid."},
       declare, run));
 }
 

@@ -1,5 +1,5 @@
-// isoline validate PATH...: do records, plans, component metadata, suites and rates satisfy their
-// schemas?
+// isoline validate PATH...: checks records, plans, component metadata, suites and rates against
+// their schemas.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -71,7 +71,7 @@ Examined examined_record(const Json& record, const std::string& path) {
   const std::string cell = request_from_json(record.at("request")).cell;
   if (cell != claimed)
     examined.violations.push_back(
-        fmt::format("its cell is {}, the digest of its request is {}", claimed, cell));
+        fmt::format("its cell is {}, but the digest of its request is {}", claimed, cell));
   if (std::string violation = fields_violation(record, path); !violation.empty())
     examined.violations.push_back(std::move(violation));
   return examined;
@@ -87,7 +87,7 @@ std::string claim_of(const Json& document) {
 Examined examined_document(const Json& document, const std::string& path) {
   if (document.is_object() && document.contains("$schema")) return {};  // a schema itself
   const std::string claimed = claim_of(document);
-  if (claimed.empty()) return {{"it names no schema"}, {}};
+  if (claimed.empty()) return {{"it does not state its schema"}, {}};
   const auto dot = claimed.find('.'), slash = claimed.find('/');
   const std::string name = claimed.substr(dot + 1, slash - dot - 1);
   const Schema* schema = schema_of(name);
@@ -102,7 +102,7 @@ Examined examined_document(const Json& document, const std::string& path) {
 Examined examined(const std::string& path) {
   try {
     const std::string text = read_text(path);
-    const Json outline = outline_of(text, path);
+    const Json outline = outline_of(text, "it");
     if (claim_of(outline) == kRunSchema) {
       Examined found = examined_document(outline, path);
       if (found.identity) {
@@ -111,7 +111,7 @@ Examined examined(const std::string& path) {
         return found;
       }
     }
-    return examined_document(parse_json(text, path), path);
+    return examined_document(parse_json(text, "it"), path);
   } catch (const std::exception& error) {
     return {{error.what()}, {}};
   }
@@ -166,7 +166,7 @@ void compare_with_manifest(const fs::path& folder, Wrong& wrong) {
     listed.insert(file);
     if (!is_there(file))
       wrong[manifest.string()].push_back(
-          fmt::format("{} is missing, and SHA256SUMS lists it", file.string()));
+          fmt::format("{} is missing, but SHA256SUMS lists it", file.string()));
   }
   for (const char* part : {"runs", "components"}) {
     if (!is_there(folder / part)) continue;

@@ -10,6 +10,7 @@ describes the frames; docs/bring-a-simulator.md and docs/bring-an-optimizer.md h
 """
 
 import array
+import atexit
 import json
 import os
 import platform
@@ -23,19 +24,23 @@ except ImportError:  # numbers are lists then
     numpy = None
 
 PROTOCOL = 1
-HELLO, LINEARIZE, PUSHFORWARD, PULLBACK, JACOBIAN, INVERSE = 1, 2, 3, 4, 5, 6
+HELLO, LINEARIZE, PUSHFORWARD, PULLBACK, JACOBIAN, INVERSE, X_ERROR = 1, 2, 3, 4, 5, 6, 7
 BEGIN, VALUE, GRADIENT, VALUE_AND_GRADIENT, RESIDUAL = 16, 17, 18, 19, 20
 RESIDUAL_JACOBIAN, RESIDUAL_PUSHFORWARD, RESIDUAL_PULLBACK, HESSIAN_PRODUCT = 21, 22, 23, 24
 REPORT, FINISH, CLAIM = 32, 33, 34
 DONE, FAILED, STOP = 0, 1, 2
 HEAD = struct.Struct("<IIQ")
+MOST_TEXT = 60_000  # bytes; Isoline accepts 64 KiB
 
 
 class Stop(SystemExit):
     """The run is over: the budget is spent or the target is reached. Exits the script silently."""
 
+    was_raised = False
+
     def __init__(self):
         super().__init__(0)
+        Stop.was_raised = True
 
 
 class Refused(RuntimeError):
@@ -45,21 +50,48 @@ class Refused(RuntimeError):
 # --- numbers: arrays of NumPy, or lists
 
 
-def _column(values):
-    """A flat array of doubles, which supports the buffer protocol."""
+def _real(values, name):
+    """An array of doubles without gaps, or a list of numbers. Refuses what doubles cannot hold."""
+    if values is None:
+        raise Refused(f"{name} is None; if it is the result of a function, a return is missing")
     if hasattr(values, "detach"):  # a tensor of torch
         values = values.detach().cpu().numpy()
-    if numpy is not None:
-        return numpy.asarray(values, dtype=numpy.float64).reshape(-1)
-    return array.array("d", _flat(values))
+    if numpy is None:
+        return list(_flat(values, name))
+    if numpy.ma.is_masked(values):
+        raise Refused(f"{name} has masked entries; fill or remove them")
+    found = numpy.asarray(values)
+    if found.dtype.kind == "O" and any(each is None for each in found.flat):
+        raise Refused(f"{name} contains None instead of a number")
+    if found.dtype.kind not in "buifO":
+        raise Refused(f"{name} must be real numbers, got an array of {found.dtype}")
+    return numpy.ascontiguousarray(found, dtype=numpy.float64)
 
 
-def _flat(values):
+def _column(values, name="the result"):
+    """A flat array of doubles, which supports the buffer protocol."""
+    found = _real(values, name)
+    return array.array("d", found) if numpy is None else found.reshape(-1)
+
+
+def _flat(values, name):
     for each in values if hasattr(values, "__iter__") else [values]:
-        if hasattr(each, "__iter__"):
-            yield from _flat(each)
+        if hasattr(each, "__iter__") and not isinstance(each, str):
+            yield from _flat(each, name)
+        elif each is None or isinstance(each, (str, complex)):
+            raise Refused(f"{name} must be real numbers, got {each!r}")
         else:
             yield float(each)
+
+
+def _copy(x):
+    """For functions of the user, which may change their arguments."""
+    return x.copy() if hasattr(x, "copy") else x
+
+
+def _text(words):
+    """UTF-8 of a length that Isoline accepts."""
+    return str(words).encode(errors="replace")[:MOST_TEXT]
 
 
 def _vector(buffer):
@@ -71,16 +103,17 @@ def _vector(buffer):
 
 def _by_columns(matrix, rows, columns):
     """A matrix of any package, flattened column by column."""
-    if hasattr(matrix, "detach"):
-        matrix = matrix.detach().cpu().numpy()
+    flat = _real(matrix, "jacobian")
+    count = len(flat) if numpy is None else flat.size
+    if count != rows * columns:
+        raise Refused(f"jacobian must return {rows} × {columns} numbers, got {count}")
     if numpy is not None:
-        return numpy.asarray(matrix, dtype=numpy.float64).reshape(rows, columns).T.reshape(-1)
-    flat = list(_flat(matrix))
+        return flat.reshape(rows, columns).T.reshape(-1)
     return array.array("d", (flat[i * columns + j] for j in range(columns) for i in range(rows)))
 
 
-def _json_numbers(values):
-    return [x if x - x == 0 else str(x) for x in (float(each) for each in _column(values))]
+def _json_numbers(values, name):
+    return [x if x - x == 0 else str(x) for x in (float(each) for each in _column(values, name))]
 
 
 # --- the socket
@@ -148,12 +181,17 @@ def seed():
     return int(_greeted()[1].get("seed", 0))
 
 
+def _refuse(line, why):
+    """Isoline shows the reason in the place of a description."""
+    line.send(HELLO, FAILED, _text(why))
+    raise Stop
+
+
 def _introduce(line, greeting, role, said):
     if greeting["role"] != role:
         article = "an" if role == "optimizer" else "a"
         wrong = f"this script is {article} {role}; use it as such, not as {greeting['role']}"
-        line.send(HELLO, FAILED, wrong.encode())
-        sys.exit(0)
+        _refuse(line, wrong)
     packages = {}
     for name in ("numpy", "scipy", "torch", "jax"):
         module = sys.modules.get(name)
@@ -165,6 +203,9 @@ def _introduce(line, greeting, role, said):
         interpreter=f"{platform.python_implementation()} {platform.python_version()}",
         packages=packages,
     )
+    for name, words in said.items():
+        if isinstance(words, str):
+            said[name] = words.encode(errors="replace").decode()  # JSON has no single surrogates
     line.send(HELLO, DONE, json.dumps({k: v for k, v in said.items() if v is not None}).encode())
 
 
@@ -201,16 +242,16 @@ class _Given:
         self.oracles = [name for name, function in given.items() if function is not None]
 
     def forward_at(self, _, x):
-        return _column(self.forward(x))
+        return _column(self.forward(_copy(x)), "forward(x)")
 
     def pull(self, point, u):
-        return _column(self.vjp(point.x, u))
+        return _column(self.vjp(_copy(point.x), u), "vjp(x, u)")
 
     def push(self, point, v):
-        return _column(self.jvp(point.x, v))
+        return _column(self.jvp(_copy(point.x), v), "jvp(x, v)")
 
     def matrix(self, point):
-        return self.jac(point.x)
+        return self.jac(_copy(point.x))
 
 
 class _Torch(_Given):
@@ -269,16 +310,21 @@ class _Differences(_Given):
 
     differences = True
 
-    def __init__(self, forward, n):
+    def __init__(self, forward, start):
         super().__init__(forward, True, True, True)
-        self.pushforward_price, self.pullback_price = 2, 2 * n
+        self.pushforward_price, self.pullback_price = 2, 2 * len(start)
+        largest = max(map(abs, start), default=0)
+        unknown = min(1, largest) or 1  # the size of an unknown that starts at 0, or at rounding
+        self.sizes = [abs(s) if abs(s) > 1e-8 * largest else unknown for s in start]
 
     def push(self, point, v):
-        size = max(map(abs, v), default=0) or 1
-        h = 6e-6 * max(1, max(map(abs, point.x))) / size  # the cube root of rounding
+        """Along v, by a step that is relative to the size of each unknown."""
+        sizes = [max(abs(a), size) for a, size in zip(point.x, self.sizes)]
+        length = max((abs(b) / size for b, size in zip(v, sizes)), default=0) or 1
+        h = 6e-6 / length  # the cube root of rounding
         ahead, behind = ([a + s * h * b for a, b in zip(point.x, v)] for s in (1, -1))
-        ahead, behind = self.forward(self._like(ahead)), self.forward(self._like(behind))
-        return _column([(a - b) / (2 * h) for a, b in zip(_column(ahead), _column(behind))])
+        ahead, behind = (_column(self.forward(self._like(x)), "forward(x)") for x in (ahead, behind))
+        return _column([(a - b) / (2 * h) for a, b in zip(ahead, behind)])
 
     def matrix(self, point):
         columns = []
@@ -296,7 +342,7 @@ class _Differences(_Given):
 
 def _products_of(forward, start, vjp, jvp, jacobian, differences):
     if differences:
-        return _Differences(forward, len(start))
+        return _Differences(forward, start)
     if vjp or jvp or jacobian:
         return _Given(forward, vjp, jvp, jacobian)
     for name, kind in (("torch", _Torch), ("jax", _Jax)):
@@ -332,6 +378,9 @@ def problem(
     name=None,
     note=None,
     source=None,
+    start_scale=None,
+    x_error=None,
+    x_floor=None,
 ):
     """Serves a problem to Isoline: find x with forward(x) = target, from `start`. Never returns.
 
@@ -346,15 +395,25 @@ def problem(
     drawn: the start of this seed(), instead of one that Isoline samples near `start`.
     bounds=(lower, upper): numbers or lists; Isoline does not call forward outside them.
     aim="x": the user wants the true x, not only a small loss.
+    start_scale="own": starts of other seeds differ by a tenth of each unknown, not of max(1, |x|).
+    x_error(x) -> number: the distance to the nearest solution; without it, that to `truth`.
+    x_floor: the error in x that noisy data cannot better; up to 1.1 of it, x counts as found.
     """
     line, greeting = _greeted()
-    start = _vector(_column(start))
-    products = _products_of(forward, start, vjp, jvp, jacobian, differences)
-    y = _Point(products, start).y
-    if target is None and truth is not None:
-        target = _Point(products, _vector(_column(truth))).y
-        minimum = 0.0 if minimum is None else minimum
-    target = [0.0] * len(y) if target is None else target
+    try:
+        start = _vector(_column(start, "start"))
+        if minimum is not None and not abs(float(minimum)) < float("inf"):
+            raise Refused(f"minimum must be a finite number, got {minimum}")
+        products = _products_of(forward, start, vjp, jvp, jacobian, differences)
+        y = _Point(products, start).y
+        if target is None and truth is not None:
+            target = _Point(products, _vector(_column(truth, "truth"))).y
+            minimum = 0.0 if minimum is None else minimum
+        target = _json_numbers([0.0] * len(y) if target is None else target, "target")
+        drawn = None if drawn is None else _json_numbers(drawn, "drawn")
+        truth = None if truth is None else _json_numbers(truth, "truth")
+    except Refused as error:
+        _refuse(line, error)
     _introduce(
         line,
         greeting,
@@ -370,33 +429,40 @@ def problem(
             "pushforward_price": products.pushforward_price,
             "pullback_price": products.pullback_price,
             "inverse": inverse_kind if inverse else None,
-            "start": _json_numbers(start),
-            "drawn": None if drawn is None else _json_numbers(drawn),
-            "target": _json_numbers(target),
-            "truth": None if truth is None else _json_numbers(truth),
-            "minimum": minimum,
+            "start": _json_numbers(start, "start"),
+            "drawn": drawn,
+            "target": target,
+            "truth": truth,
+            "minimum": None if minimum is None else float(minimum),
+            "start_scale": start_scale,
+            "has_x_error": x_error is not None,
+            "x_floor": x_floor,
             "bounds": None if bounds is None else [_bound(side, start) for side in bounds],
             "aim": aim,
         },
     )
-    _serve(line, products, inverse, len(start), len(y))
+    _serve(line, products, inverse, x_error, len(start), len(y))
 
 
 def _bound(side, start):
-    return _json_numbers([side] * len(start) if isinstance(side, (int, float)) else side)
+    return _json_numbers([side] * len(start) if isinstance(side, (int, float)) else side, "bounds")
 
 
-def _serve(line, products, inverse, n, m):
+def _serve(line, products, inverse, x_error, n, m):
     points = {}
     while True:
         verb, number, payload = line.receive()
         try:
-            answer = _answer(verb, number, payload, points, products, inverse, n, m)
+            if verb == X_ERROR:
+                answer = [_sized(_column(x_error(_vector(payload)), "x_error(x)"), 1, "x_error")]
+            else:
+                answer = _answer(verb, number, payload, points, products, inverse, n, m)
         except Exception as error:  # the cell fails with this message; the traceback goes to its output
             import traceback
 
             traceback.print_exc()
-            line.send(verb, FAILED, f"{type(error).__name__}: {error}".encode())
+            why = str(error) if isinstance(error, Refused) else f"{type(error).__name__}: {error}"
+            line.send(verb, FAILED, _text(why))
             continue
         line.send(verb, DONE, *answer)
 
@@ -439,7 +505,7 @@ def _inverted(payload, inverse, n, m):
     targets = _samples(payload[: 8 * m * samples], m)
     starts = _samples(payload[8 * m * samples :], n)
     found = [inverse(y, x0) for y, x0 in zip(targets, starts)]
-    xs = [_column(x0 if x is None else x) for x, x0 in zip(found, starts)]
+    xs = [_column(x0 if x is None else x, "inverse(y, x0)") for x, x0 in zip(found, starts)]
     return [_sized(x, n, "inverse") for x in xs] + [_column([float(x is not None) for x in found])]
 
 
@@ -466,6 +532,7 @@ class optimizer:
         verb, _, payload = self._line.receive()  # for a mere description, Isoline closes the socket here
         begun = _vector(payload)
         self.n, self.residuals, self.x0 = int(begun[0]), int(begun[1]), begun[2:]
+        self._watch_end()
 
     def value(self, x):
         """L"""
@@ -511,12 +578,28 @@ class optimizer:
     def finish(self, x, message=""):
         """Returns the result x, with the method's own statement about it."""
         if message:
-            self._line.send(CLAIM, DONE, str(message).encode()[:1000])
+            self._line.send(CLAIM, DONE, _text(message)[:1000])
             self._answer()
         self._ask(FINISH, x)
+        self._is_over = True
+
+    def _watch_end(self):
+        """Prints why the run has no result, if the script ends without one."""
+        self._is_over, shown = False, sys.excepthook
+
+        def show(*error):
+            self._is_over = True
+            shown(*error)
+
+        def end():
+            if not (self._is_over or Stop.was_raised):
+                print("isoline: the script ended without finish(x)", file=sys.stderr)
+
+        sys.excepthook = show
+        atexit.register(end)
 
     def _ask(self, verb, *vectors):
-        self._line.send(verb, DONE, *(_column(each) for each in vectors))
+        self._line.send(verb, DONE, *(_column(each, "x") for each in vectors))
         return self._answer()
 
     def _answer(self):

@@ -19,6 +19,7 @@ import atexit
 import ctypes
 import http.client
 import http.server
+import ipaddress
 import json
 import math
 import os
@@ -146,6 +147,9 @@ class Model:
                     self.connection = http.client.HTTPConnection(place.netloc, timeout=PATIENCE)
                 self.connection.request("POST" if body else "GET", place.path.rstrip("/") + path, body,
                                         {"Content-Type": "application/json"})
+                # Servers that send head and body apart wait for our acknowledgement in between.
+                if hasattr(socket, "TCP_QUICKACK"):
+                    self.connection.sock.setsockopt(socket.IPPROTO_TCP, socket.TCP_QUICKACK, 1)
                 reply = self.connection.getresponse()
                 return reply.status, reply.read().decode(errors="replace")
             except (ConnectionError, http.client.BadStatusLine):
@@ -203,7 +207,8 @@ def model(given):
         server.forward, given.start, target=given.target, truth=given.truth, minimum=given.minimum,
         vjp=server.vjp if server.support.get("Gradient") else None,
         jvp=server.jvp if server.support.get("ApplyJacobian") else None,
-        name=given.label or server.name, note=f"model {server.name} over UM-Bridge",
+        differences=given.differences, aim=given.aim, start_scale=given.start_scale,
+        x_floor=given.x_floor, name=given.label or server.name, note=f"model {server.name} over UM-Bridge",
         source="Seelinger et al. (2023), protocol 1.0; the model's own")
 
 
@@ -297,7 +302,18 @@ class Served:
 class Handler(http.server.BaseHTTPRequestHandler):
     timeout = 60  # seconds for a request to arrive
     served = None
+    host = "127.0.0.1"
     most_bytes = 1 << 20
+    disable_nagle_algorithm = True  # head and body are two packets
+
+    def has_own_host(self):
+        """Whether the request names an address. A page of another site would name its own domain."""
+        name = urllib.parse.urlsplit("//" + self.headers.get("Host", "")).hostname or ""
+        try:
+            ipaddress.ip_address(name)
+        except ValueError:
+            return name in ("localhost", self.host)
+        return True
 
     def do_GET(self):
         self.handle_call("Info" if self.path == "/Info" else None)
@@ -313,6 +329,8 @@ class Handler(http.server.BaseHTTPRequestHandler):
         try:
             if path is None:
                 raise Refusal("InvalidInput", "UM-Bridge has no such path with this HTTP method", 404)
+            if not self.has_own_host():
+                raise Refusal("InvalidInput", "Host must be the address of this server", 403)
             length = self.headers.get("Content-Length", "0")
             if not length.isdigit() or int(length) > self.most_bytes or "chunked" in str(
                     self.headers.get("Transfer-Encoding")):
@@ -343,7 +361,7 @@ def serve(given):
                             note="A method in another program, over UM-Bridge.",
                             source="Seelinger et al. (2023), protocol 1.0")
     served = Served(run, offers)
-    Handler.served = served
+    Handler.served, Handler.host = served, given.host
     Handler.most_bytes = (1 << 20) + 64 * (2 * run.n + run.residuals)
     server = http.server.ThreadingHTTPServer((given.host, given.port), Handler)
     server.daemon_threads = True
@@ -372,6 +390,12 @@ def main():
     one.add_argument("--target", type=vector, required=True, help="y*")
     one.add_argument("--truth", type=vector, help="x*, if known")
     one.add_argument("--minimum", type=float, help="least attainable loss, if known")
+    one.add_argument("--differences", action="store_true",
+                     help="derivatives by central differences, for a model that only evaluates")
+    one.add_argument("--aim", choices=["loss", "x"], help="x: the user wants the truth, not only a small loss")
+    one.add_argument("--start-scale", choices=["own"],
+                     help="own: starts of other seeds differ by a tenth of each unknown")
+    one.add_argument("--x-floor", type=float, help="the error in x that noisy data cannot better")
     one.add_argument("--label", default="", help="name in tables")
     one.add_argument("--startup", type=float, default=30, help="seconds until the server must listen")
     one.add_argument("command", nargs="*", help="command that starts a server on the port in PORT")

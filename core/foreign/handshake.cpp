@@ -32,6 +32,18 @@ Foreign foreign_of_command(const std::string& command) {
   return {.door = "process", .command = command, .digest = digest_of_files(shell_words(command))};
 }
 
+void require_unedited(const std::optional<Foreign>& planned) {
+  if (!planned || planned->door != "process") return;
+  std::string now;  // empty while an editor replaces the file
+  try {
+    now = foreign_of_command(planned->command).digest;
+  } catch (const UsageError&) {
+  }
+  if (now != planned->digest)
+    throw KilledProgram(
+        fmt::format("the files of `{}` were edited during the run", planned->command));
+}
+
 // Handshakes, read member by member. A member that is missing, of another type or out of range is
 // refused with its value.
 
@@ -42,6 +54,8 @@ constexpr std::int64_t kMostPrice = std::int64_t{1} << 31;
 constexpr std::array<std::string_view, 4> kInverses = {"exact", "damped", "estimate",
                                                        "approximate"};
 constexpr std::size_t kMostQuoted = 80;  // bytes
+constexpr std::size_t kMostName = 64, kMostWords = 4096,
+                      kMostPackages = 100;  // bytes, as of plugins
 constexpr const char* kOutside = "It has no value outside its bounds on x.";
 
 // The members of one answer.
@@ -66,8 +80,11 @@ class Said {
   }
   bool has(const char* name) const { return json_.contains(name) && !json_[name].is_null(); }
 
-  std::string text(const char* name) const {
-    return value<std::string>(name, &Json::is_string, "text").value_or("");
+  std::string text(const char* name, std::size_t most = kMostWords) const {
+    const std::string law = fmt::format("text of at most {} bytes", most);
+    const std::string said = value<std::string>(name, &Json::is_string, law.c_str()).value_or("");
+    if (said.size() > most) refuse(name, law);
+    return said;
   }
   bool flag(const char* name) const {
     return value<bool>(name, &Json::is_boolean, "true or false").value_or(false);
@@ -120,10 +137,13 @@ class Said {
   std::map<std::string, std::string> texts(const char* name) const {
     std::map<std::string, std::string> all;
     if (!has(name)) return all;
-    if (!json_[name].is_object()) refuse(name, "an object of texts");
-    for (const auto& [key, value] : json_[name].items()) {
-      if (!value.is_string()) refuse(name, "an object of texts");
+    const std::string law = fmt::format("an object of at most {} short texts", kMostPackages);
+    const Json& given = json_[name];
+    if (!given.is_object() || given.size() > kMostPackages) refuse(name, law);
+    for (const auto& [key, value] : given.items()) {
+      if (key.size() > kMostName || !value.is_string()) refuse(name, law);
       all[key] = value.get<std::string>();
+      if (all[key].size() > kMostName) refuse(name, law);
     }
     return all;
   }
@@ -179,7 +199,7 @@ class Said {
 
 Foreign foreign_of(const Said& said) {
   Foreign foreign;
-  foreign.label = said.text("name");
+  foreign.label = said.text("name", kMostName);
   foreign.interpreter = said.text("interpreter");
   foreign.packages = said.texts("packages");
   foreign.note = said.text("note");
@@ -237,8 +257,15 @@ ProblemHandshake problem_handshake(const std::string& text, const std::string& s
   if (!problem.lower.empty()) note += fmt::format("{}{}", note.empty() ? "" : " ", kOutside);
   problem.minimum = said.number("minimum");
   problem.aim = said.choice("aim", kAimNames) == name_of(Aim::x) ? Aim::x : Aim::loss;
-  require(problem.aim == Aim::loss || !problem.truth.empty(),
+  problem.has_x_error = said.flag("has_x_error");
+  require(problem.aim == Aim::loss || !problem.truth.empty() || problem.has_x_error,
           [&] { return sender + " has the success criterion x, but truth is missing"; });
+  constexpr std::array<std::string_view, 1> kScales = {"own"};
+  problem.has_own_scale = !said.choice("start_scale", kScales).empty();
+  problem.x_floor = said.number("x_floor").value_or(0);
+  require(problem.x_floor >= 0, [&] {
+    return fmt::format("{} says x_floor = {}, which must not be negative", sender, problem.x_floor);
+  });
   return problem;
 }
 

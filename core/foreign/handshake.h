@@ -36,6 +36,10 @@ ChildProgram::Start door_to(const std::string& command);
 // The part of a component's Foreign that follows from its command.
 Foreign foreign_of_command(const std::string& command);
 
+// KilledProgram if the files of a component's command are no longer those that it was planned with:
+// results of other files must not be stored under their digest.
+void require_unedited(const std::optional<Foreign>& planned);
+
 template <class Handshake>
 class Introductions {
  public:
@@ -73,6 +77,9 @@ struct ProblemHandshake {
   std::vector<Real> lower, upper;   // bounds on x (k), where it has any
   std::optional<Real> minimum;      // f_L, if known
   Aim aim = Aim::loss;
+  bool has_own_scale = false;  // sampled starts differ by a tenth of each unknown
+  bool has_x_error = false;    // it knows the distance from the nearest solution
+  Real x_floor = 0;            // the error in x that its data cannot better
 };
 
 struct MethodHandshake {

@@ -20,13 +20,14 @@
 namespace isoline {
 namespace {
 
-constexpr std::array<std::pair<Verb, std::string_view>, 18> kNames{{
+constexpr std::array<std::pair<Verb, std::string_view>, 19> kNames{{
     {Verb::hello, "hello"},
     {Verb::linearize, "linearize"},
     {Verb::pushforward, "pushforward"},
     {Verb::pullback, "pullback"},
     {Verb::jacobian, "jacobian"},
     {Verb::inverse, "inverse"},
+    {Verb::x_error, "x_error"},
     {Verb::begin, "begin"},
     {Verb::value, "value"},
     {Verb::gradient, "gradient"},

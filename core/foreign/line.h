@@ -33,6 +33,7 @@ enum class Verb : std::uint32_t {
   pullback = 4,     // u (m, B) -> Jᵀ u (k, B)
   jacobian = 5,     // -> J of each sample side by side, (m, k·B)
   inverse = 6,      // y (m, B), x₀ (k, B) -> x (k, B), then a flag of success per sample
+  x_error = 7,      // x (k) -> its distance from the nearest solution
   // The first message to an optimizer; then the optimizer sends requests, the point first.
   begin = 16,               // n and the count of residuals, as doubles; θ₀ (n)
   value = 17,               // θ -> L
@@ -69,7 +70,7 @@ struct LineError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-// Somebody killed the other program: it may be asked again.
+// Somebody killed the other program, or edited its files: it may be asked again.
 struct KilledProgram : LineError {
   using LineError::LineError;
 };

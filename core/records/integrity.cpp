@@ -32,14 +32,17 @@ class Invariants {
       : record_(record), curve_(record.curve), summary_(record.summary) {
     const bool is_own = !record.imported && record.status != Status::inapplicable;
     const bool broke_off = is_failure(record.status) || record.status == Status::interrupted;
-    hold(record.criterion.empty() || record.criterion == digest_of(criterion_of(record)),
-         "its criterion is not the digest of its f_L, scale, x_scale, x_floor, aim and prices");
+    hold(
+        record.criterion.empty() || record.criterion == digest_of(criterion_of(record)),
+        "its criterion is not the digest of its f_L, scale, x_scale, x_floor, aim and nominal costs");
     check_signs();
     if (!is_own) return;
     hold(std::ranges::adjacent_find(curve_.iteration, std::greater_equal()) ==
              curve_.iteration.end(),
-         "the iterations of its curve do not ascend");
-    hold(std::ranges::is_sorted(curve_.work), "the work of its curve descends");
+         "the iterations of its curve do not increase");
+    hold(std::ranges::is_sorted(curve_.work), "the work of its curve decreases");
+    for (const std::vector<Real>* times : {&curve_.wall_seconds, &curve_.processor_seconds})
+      hold(std::ranges::is_sorted(*times), "the times of its curve decrease");
     if (!broke_off) check_ends();
     check_prices();
     check_losses();
@@ -63,8 +66,11 @@ class Invariants {
     for (const std::vector<Real>* times :
          {&curve_.wall_seconds, &curve_.processor_seconds, &record_.repeat_wall_seconds})
       hold(std::ranges::none_of(*times, is_negative), "its times are negative");
-    hold(summary_.work >= 0 && summary_.iterations >= 0 && !is_negative(summary_.wall_seconds),
-         "its summary has negative work, iterations or time");
+    hold(summary_.work >= 0 && summary_.iterations >= 0 && summary_.rejected_steps >= 0 &&
+             summary_.peak_memory_bytes >= 0 && !is_negative(summary_.wall_seconds) &&
+             !is_negative(summary_.processor_seconds),
+         "its summary has negative counts, times or memory");
+    hold(std::ranges::none_of(record_.counts, is_negative), "its counts are negative");
   }
 
   // The summary is the first and the last point of the curve. Of one point both are it.
@@ -110,14 +116,13 @@ class Invariants {
     std::int64_t total = 0;
     for (std::size_t kind = 0; kind < kOracles; ++kind)
       total += record_.counts[kind] * record_.prices[kind];
-    hold(total == summary_.work, "its work is {}, its counts times its prices {}", summary_.work,
-         total);
+    hold(total == summary_.work, "its work is {}, but its calls cost {}", summary_.work, total);
     const auto check = [&](const char* whose, const std::map<std::string, Works>& counts,
                            const Works& works) {
       if (counts.empty()) return;
       for (std::size_t i = 0; i < works.size(); ++i)
         if (works[i] >= 0 && priced_work(counts, i) != works[i])
-          return hold(false, "the work of its {} is not its counts times its prices", whose);
+          return hold(false, "the work of its {} is not the nominal cost of its calls", whose);
     };
     check("curve", curve_.counts, curve_.work);
     if (record_.hits) check("hits", record_.hits->counts, record_.hits->work);
@@ -130,7 +135,7 @@ class Invariants {
   void check_losses() {
     for (const Real loss : curve_.loss)
       if (std::isfinite(loss) && !(summary_.best_loss <= loss))
-        return hold(false, "its best loss is {}, and one of its curve is {}", summary_.best_loss,
+        return hold(false, "its best loss is {}, but a loss of its curve is {}", summary_.best_loss,
                     loss);
     // Older records do not say whether f_L is declared, or the best loss known.
     const bool is_declared = !record_.criterion.empty() && !record_.is_best_known;
@@ -145,21 +150,27 @@ class Invariants {
 
   // A target is met by the iterate of an iteration, or by a trial on the way to the next one.
   void check_hits(const Hits& hits) {
+    const auto forwards = hits.counts.find(std::string(kOracleNames[0]));
+    hold(forwards == hits.counts.end() || forwards->second == hits.forwards,
+         "the forward solves of its hits are not those of its counts");
     for (std::size_t j = 0; j < hits.target.size(); ++j) {
+      hold(std::abs(hits.target[j] - rung(j)) <= kRounding * rung(j),
+           "its target {} is not the one of this place, {}", hits.target[j], rung(j));
+      hold(!(hits.wall_seconds[j] < 0), "its hits have negative times");
       const Real goal = goal_at(hits.target[j]);
       if (hits.iteration[j] < 0) {
         hold(!(summary_.best_loss < goal - slack()),
-             "it never met the target {}, and its best loss is {}", hits.target[j],
+             "it did not reach the target {}, but its best loss is {}", hits.target[j],
              summary_.best_loss);
         continue;
       }
       hold(summary_.best_loss <= goal + slack(),
-           "it met the target {}, {}, and its best loss is {}", hits.target[j], goal,
+           "it reached the target {}, {}, but its best loss is {}", hits.target[j], goal,
            summary_.best_loss);
       for (std::size_t i = 0; i < curve_.iteration.size(); ++i)
         if (is_beside(hits, j, i, goal))
           return hold(false,
-                      "its target {} is not met where its curve meets it, at "
+                      "its target {} is not reached where its curve reaches it, at "
                       "iteration {}",
                       hits.target[j], curve_.iteration[i]);
     }
@@ -179,7 +190,7 @@ class Invariants {
       for (const auto& [text, tau] : kVerified)
         if (const auto at = verdicts.find(text); at != verdicts.end() && at->second)
           hold(*at->second == (has_returned && is_met(tau)),
-               "it is {}{} to {}, and its last point says otherwise", *at->second ? "" : "not ",
+               "it is {}{} to {}, but its last point contradicts this", *at->second ? "" : "not ",
                name, text);
     };
     if (record_.minimum && record_.scale)
@@ -197,7 +208,7 @@ class Invariants {
                          summary_.x_error <= x_goal(tau, *record_.x_scale, record_.x_floor);
     const Real of_loss = record_.aim == Aim::x ? tau * tau : tau;
     hold(is_in_x || (record_.minimum && summary_.best_loss <= goal_at(of_loss) + slack()),
-         "its status is target, and its best loss, {}, is above it", summary_.best_loss);
+         "its status is target, but its best loss, {}, is above the target", summary_.best_loss);
   }
 
   const Record& record_;

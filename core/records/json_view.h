@@ -1,5 +1,4 @@
-// JSON as it stands in files: views of a text, and schemas. The headers of the libraries, which are
-// large, stay in json_view.cpp.
+// JSON as text: views of it, and schemas. The large headers of the libraries stay in json_view.cpp.
 #pragma once
 
 #include <cstdint>
@@ -77,8 +76,8 @@ std::string json_of_text(const std::string& text);  // a text as JSON, quoted
 Real real_of(const JsonView& value);  // also "inf", "-inf" and "nan"
 std::vector<Real> reals_of(const JsonView& list);
 
-// Reuses its buffers for all texts: one object per thread. The parser stays in json_view.cpp, since
-// its layout depends on whether a file is compiled with threads.
+// Uses the same buffers for all texts, so use one object per thread. The parser stays in
+// json_view.cpp, because its layout depends on the compilation with threads.
 class JsonReader {
  public:
   JsonReader();

@@ -73,14 +73,14 @@ Header header_from(const std::string& text) {
   } catch (const Json::exception&) {
   }
   constexpr std::size_t kShown = 200;
-  throw UsageError(
-      fmt::format("its header must be like {{'descr': '<f8', 'fortran_order': False, 'shape': (3, "
-                  "4), }}, got {}",
-                  printable(text.substr(0, kShown))));
+  throw UsageError(fmt::format(
+      "its header must have the form {{'descr': '<f8', 'fortran_order': False, 'shape': (3, "
+      "4), }}, got {}",
+      printable(text.substr(0, kShown))));
 }
 
 Header header_of(const std::string& bytes) {
-  require(bytes.starts_with(kMagic) && bytes.size() > kPreamble + 4, "it is no .npy file");
+  require(bytes.starts_with(kMagic) && bytes.size() > kPreamble + 4, "it is not a .npy file");
   const int version = static_cast<unsigned char>(bytes[kMagic.size()]);
   require(version >= 1 && version <= 3, [&] {
     return fmt::format("its version of the format is {}; 1 to 3 can be read", version);
@@ -93,7 +93,7 @@ Header header_of(const std::string& bytes) {
                        kMostHeaderBytes);
   });
   const std::size_t begin = kPreamble + field;
-  require(begin + length <= bytes.size(), "its header is cut short");
+  require(begin + length <= bytes.size(), "its header is incomplete");
   Header header = header_from(bytes.substr(begin, length));
   header.data_begin = begin + length;
   return header;
@@ -114,8 +114,9 @@ template <class Number>
 std::vector<Real> numbers_at(const std::string& bytes, const Header& header) {
   const std::size_t count = count_of(header.shape), present = bytes.size() - header.data_begin;
   require(present % sizeof(Number) == 0 && present / sizeof(Number) == count, [&] {
-    return fmt::format("it holds {} bytes of numbers, but its shape needs {} numbers of {} bytes",
-                       present, count, sizeof(Number));
+    return fmt::format(
+        "it contains {} bytes of numbers, but its shape requires {} numbers of {} bytes", present,
+        count, sizeof(Number));
   });
   std::vector<Real> numbers(count);
   for (std::size_t i = 0; i < count; ++i) {
@@ -208,7 +209,7 @@ NumberArray read_csv(const std::filesystem::path& path) {
     for (const std::string& cell : cells) {
       const std::optional<Real> value = number_of(cell);
       require(value && std::isfinite(*value), [&] {
-        return fmt::format("{}: line {}: '{}' is no finite number", path.string(), number, cell);
+        return fmt::format("{}: line {}: '{}' is not a finite number", path.string(), number, cell);
       });
       array.values.push_back(*value);
     }
@@ -232,7 +233,7 @@ void write_csv(const std::filesystem::path& path, const NumberArray& array) {
 
 void require_known(const std::filesystem::path& path) {
   require(path.extension() == ".npy" || path.extension() == ".csv", [&] {
-    return fmt::format("{}: arrays are read and written as .npy or .csv", path.string());
+    return fmt::format("{}: the name of an array must end with .npy or .csv", path.string());
   });
 }
 
@@ -243,7 +244,7 @@ NumberArray npy_from_bytes(const std::string& bytes) {
   NumberArray array{header.shape, numbers_of(bytes, header)};
   if (header.is_column_major) array.values = turned(array.values, array.shape);
   for (const Real value : array.values)
-    require(std::isfinite(value), "it holds a number that is not finite");
+    require(std::isfinite(value), "it contains a number that is not finite");
   return array;
 }
 

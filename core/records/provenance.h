@@ -1,5 +1,5 @@
-// Where a record comes from: the program, its build and the machine, kept once for all records of
-// one build; and the run, which is each one's own.
+// The origin of a record: the program, its build and the machine, stored once for all records of a
+// build; and the run, which each record states itself.
 #pragma once
 
 #include <cstdint>

@@ -44,11 +44,11 @@ void require_equal_columns(const Record& record) {
   if (record.fields) require_sound(*record.fields);
   if (record.spectrum)
     require(record.spectrum->iterations.size() == record.spectrum->sigma.size(),
-            "its spectra are not as many as their iterations");
+            "the numbers of its spectra and of their iterations differ");
   if (!record.hits) return;
   const Hits& hits = *record.hits;
   const std::size_t targets = hits.target.size();
-  require(targets <= std::size_t{kRungs}, "its hits have more targets than there are");
+  require(targets <= std::size_t{kRungs}, "it reached more targets than exist");
   const auto of_hits = [targets](const auto&... columns) {
     (require_length(targets, "hits", columns), ...);
   };
@@ -249,16 +249,19 @@ void fields(Like<Record> auto& record, auto& field) {
   field("claimed", record.claimed);
   field.forgiven("aim", record.aim);
   field("minimum", record.minimum);
-  field.optional("best_known", record.is_best_known,
-                 R"({"description": "The minimum is the best loss known, and none is declared"})");
-  field.forgiven("scale", record.scale, R"({"description": "Older records lack it: f₀ − f_L"})");
+  field.optional(
+      "best_known", record.is_best_known,
+      R"({"description": "The minimum is the lowest known loss; the problem does not declare it"})");
+  field.forgiven(
+      "scale", record.scale,
+      R"({"description": "The scale of the loss; older records do not have it, and use f₀ − f_L"})");
   field("verified", record.verified, kTolerancesLaw);
   field.forgiven("x_scale", record.x_scale);
   field.forgiven("x_floor", record.x_floor);
   field.forgiven("found", record.found, kTolerancesLaw);
   field.optional("criterion", record.criterion,
                  R"({"pattern": "^[0-9a-f]{16}$",
-                     "description": "Digest of f_L, scale, x_scale, x_floor, aim and prices"})");
+                     "description": "Digest of f_L, scale, x_scale, x_floor, aim and nominal costs"})");
   field("counts", record.counts);
   field("prices", record.prices);
   field("summary", record.summary);

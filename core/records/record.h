@@ -19,12 +19,12 @@
 
 namespace isoline {
 
-// Where a record comes from that this program did not run: a curve of others, by their own claims.
+// The origin of an imported record: a curve that others computed, with their own statements.
 struct Imported {
   std::string source;   // the origin: a paper and its figure, a repository, a person
-  std::string program;  // what computed it, with its version
-  std::string curve;    // the file's name
-  std::string sha256;   // of that file
+  std::string program;  // the program that computed it, with its version
+  std::string curve;    // the name of the file
+  std::string sha256;   // digest of that file
 };
 
 // The curve as columns of equal length.

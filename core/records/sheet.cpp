@@ -1,4 +1,4 @@
-// Members of component metadata and of audits, as they stand in their files.
+// The members of the files of component metadata and of audits.
 #include "core/records/sheet.h"
 
 #include <fmt/format.h>
@@ -34,7 +34,7 @@ void fields(Like<Field> auto& grid, auto& field) {
   field("x", grid.x);
   field("y", grid.y);
   field.optional("time", grid.time, R"({"exclusiveMinimum": 0, "description":
-        "Where rows are states: of the last one, which is y; the first one, x, is at 0"})");
+        "If the rows are states: the time of the last one, which is y; that of the first one, x, is 0"})");
 }
 
 void fields(Like<Landscape> auto& landscape, auto& field) {

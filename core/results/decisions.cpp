@@ -1,5 +1,5 @@
-// Scores, flips of signs, the confidence set of the best, and how far the first place hangs on
-// chance and choice.
+// Scores, sign-flip tests, the confidence set of the best, and the dependence of the first rank on
+// chance and on choices.
 #include "core/results/decisions.h"
 
 #include <algorithm>
@@ -248,11 +248,15 @@ class Decider {
       }
       out.places.push_back(place);
     }
-    Row differences;
-    for (std::size_t g = 0; g < sums.size() && order.size() > 1; ++g)
-      differences.push_back((sums[g][order[0]] - sums[g][order[1]]) * Real(sums.size()) /
-                            Real(out.settings));
-    out.detectable = detectable_mean(deviation_of(differences), differences.size());
+    Row detectable;
+    for (std::size_t i = 1; i < order.size(); ++i) {
+      Row differences;
+      for (const Row& sum : sums)
+        differences.push_back((sum[order[0]] - sum[order[i]]) * Real(sums.size()) /
+                              Real(out.settings));
+      detectable.push_back(detectable_mean(deviation_of(differences), differences.size()));
+    }
+    out.detectable = detectable.empty() ? kNever : median_of(std::move(detectable));
     out.friedman = friedman_p(sums);
   }
 
@@ -289,7 +293,7 @@ class Decider {
   }
 
   void fill_choices(Decision& out) const {
-    for (const int end : {16, 64, 256})
+    for (const int end : {16, 256})
       add_choice(out, Varied::profile_end, std::to_string(end), evidence_.costs, end);
     for (const OtherCosts& other : evidence_.others)
       add_choice(out, other.varied, other.value, other.costs);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <numeric>
 #include <set>
@@ -77,6 +78,7 @@ std::vector<std::size_t> best_first(const Comparison& c) {
     if (c.order.has(a) != c.order.has(b)) return c.order.has(a);
     const Standing &mine = c.optimizers[a].tightest(), &other = c.optimizers[b].tightest();
     if (!are_tied(mine.score, other.score)) return mine.score > other.score;
+    if (mine.solved != other.solved) return mine.solved > other.solved;
     if (mine.reached != other.reached) return mine.reached > other.reached;
     return c.optimizers[a].standings[0].score > c.optimizers[b].standings[0].score;
   });
@@ -134,7 +136,7 @@ std::vector<Repetition> repetitions_of(const Comparison& c, std::size_t problem,
 
 // Median costs to the tightest tolerance at these factors of the prices of one oracle, for each
 // oracle that the runs called: halved, and doubled.
-std::vector<OtherCosts> costs_at_other_prices(const Comparison& c, bool is_open) {
+std::vector<OtherCosts> costs_at_other_prices(const Comparison& c) {
   std::vector<OracleCounts> counts(c.runs.size());  // until the tolerance
   OracleCounts called{};
   const std::size_t rung = c.yardstick.tightest().rung;
@@ -151,7 +153,7 @@ std::vector<OtherCosts> costs_at_other_prices(const Comparison& c, bool is_open)
   std::vector<OtherCosts> all;
   for (std::size_t kind = 0; kind < kOracles; ++kind)
     for (const auto& [name, factor] :
-         {std::pair{" at half price", 0.5}, std::pair{" at twice the price", 2.0}}) {
+         {std::pair{" at half its cost", 0.5}, std::pair{" at twice its cost", 2.0}}) {
       if (called[kind] == 0) continue;
       Costs costs(c.problems.size(), std::vector<std::optional<Real>>(c.optimizers.size()));
       for (const std::size_t p : c.order.settings)
@@ -166,34 +168,38 @@ std::vector<OtherCosts> costs_at_other_prices(const Comparison& c, bool is_open)
           for (const std::size_t row : c.cell(p, s).runs) values.push_back(cost(row));
           costs[p][s] = median_of(std::move(values));
         }
-      all.push_back({Varied::prices, std::string(kOracleNames[kind]) + name,
-                     decision_costs(c, costs, is_open)});
+      all.push_back({Varied::prices, std::string(kOracleNames[kind]) + name, std::move(costs)});
     }
+  return all;
+}
+
+std::vector<OtherCosts> costs_by_other_choices(const Comparison& c) {
+  const Measure own = c.yardstick.by;
+  std::vector<OtherCosts> all;
+  for (std::size_t t = kTightest; t-- > 0;)
+    all.push_back(
+        {Varied::tolerance, std::string(c.yardstick.tolerances[t].name), common_costs(c, t)});
+  for (const Measure by : {Measure::work, Measure::cost, Measure::time})
+    if (by != own)
+      all.push_back({Varied::measure, std::string(name_of(by)), common_costs(c, kTightest, by)});
+  std::ranges::move(costs_at_other_prices(c), std::back_inserter(all));
   return all;
 }
 
 // In a study with more runs than this, only families are resampled.
 constexpr std::size_t kMostResampled = 20'000;
 
-std::optional<Decision> decision_of(const Comparison& c, bool is_open) {
-  const auto costs = [&](Measure by, std::size_t tolerance) {
-    return decision_costs(c, common_costs(c, tolerance, by), is_open);
-  };
-  Evidence evidence{.costs = costs(c.yardstick.by, kTightest)};
+std::optional<Decision> decision_of(const Comparison& c, const std::vector<OtherCosts>& others,
+                                    bool is_open) {
+  Evidence evidence{.costs = decision_costs(c, common_costs(c, kTightest), is_open)};
   for (std::size_t i = 0; i < c.order.settings.size(); ++i) {
     const std::size_t p = c.order.settings[i];
     evidence.families.push_back(c.problems[p].name);
     if (c.runs.size() <= kMostResampled)
       evidence.repetitions.push_back(repetitions_of(c, p, evidence.costs[i]));
   }
-  for (std::size_t t = kTightest; t-- > 0;)
-    evidence.others.push_back(
-        {Varied::tolerance, std::string(c.yardstick.tolerances[t].name), costs(c.yardstick.by, t)});
-  for (const Measure by : {Measure::work, Measure::cost, Measure::time})
-    if (by != c.yardstick.by)
-      evidence.others.push_back({Varied::measure, std::string(name_of(by)), costs(by, kTightest)});
-  for (OtherCosts& other : costs_at_other_prices(c, is_open))
-    evidence.others.push_back(std::move(other));
+  for (const auto& [varied, value, costs] : others)
+    evidence.others.push_back({varied, value, decision_costs(c, costs, is_open)});
   return decide(evidence);
 }
 
@@ -245,17 +251,19 @@ Comparison compare_optimizers(const Study& study, const Yardstick& yardstick) {
     for (std::size_t p = 0; p < c.cells.size(); ++p) mark_best(c, p, t);
     c.profiles[t] = performance_profile(common_costs(c, t));
   }
-  c.decision = decision_of(c, false);
+  const std::vector<OtherCosts> others = costs_by_other_choices(c);
+  c.decision = decision_of(c, others, false);
   const auto is_privileged = [&](std::size_t s) { return !c.optimizers[s].privileges.empty(); };
-  c.open_decision =
-      std::ranges::any_of(c.order.methods, is_privileged) ? decision_of(c, true) : c.decision;
+  c.open_decision = std::ranges::any_of(c.order.methods, is_privileged)
+                        ? decision_of(c, others, true)
+                        : c.decision;
   c.names = problems_by_name(c).size();
   return c;
 }
 
 bool is_ordered(const Comparison& c, std::size_t p) {
   if (c.problems[p].is_learned) return is_all_learned(c);
-  return !is_sanity(c, p) && !is_ill_posed(c, p);
+  return !is_sanity(c, p) && !is_ill_posed(c, p) && !c.problems[p].lacks_least_loss();
 }
 
 bool is_sanity(const Comparison& c, std::size_t p) {
@@ -263,7 +271,7 @@ bool is_sanity(const Comparison& c, std::size_t p) {
     return [group](const ProblemAxis& problem) { return problem.group() == group; };
   };
   return (is_in("classical")(c.problems[p]) || is_in("toy")(c.problems[p])) &&
-         std::ranges::any_of(c.problems, is_in("physics"));
+         !c.problems[p].lacks_least_loss() && std::ranges::any_of(c.problems, is_in("physics"));
 }
 
 bool is_ill_posed(const Comparison& c, std::size_t p) {
@@ -316,6 +324,10 @@ bool are_tied(Real score, Real other) {
   return std::abs(score - other) <= kRounding;
 }
 
+bool are_tied(const Standing& standing, const Standing& other) {
+  return are_tied(standing.score, other.score) && standing.solved == other.solved;
+}
+
 std::vector<Ranked> standings_to(const Comparison& c, Measure by, std::size_t target) {
   return standings_over(c, c.order, by, target);
 }
@@ -347,6 +359,7 @@ std::vector<Ranked> standings_over(const Comparison& c, const Order& order, Meas
   }
   std::ranges::stable_sort(standings, [](const Ranked& a, const Ranked& b) {
     if (!are_tied(a.standing.score, b.standing.score)) return a.standing.score > b.standing.score;
+    if (a.standing.solved != b.standing.solved) return a.standing.solved > b.standing.solved;
     return a.standing.reached > b.standing.reached;
   });
   return standings;

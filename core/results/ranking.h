@@ -43,7 +43,8 @@ Comparison compare_optimizers(const Study& study, const Yardstick& yardstick = {
 
 // Whether a problem counts for the ranking. A tolerance of the loss means little for a network, so
 // learned problems are reported separately, by the error in x, unless a study has no others; so are
-// ill-posed ones, by the error in x over work. Classical and toy problems do not count beside
+// ill-posed ones, by the error in x over work, and those whose least loss is unknown, by their
+// losses. Classical and toy problems do not count beside
 // physics.
 bool is_ordered(const Comparison& comparison, std::size_t problem);
 bool is_sanity(const Comparison& comparison, std::size_t problem);
@@ -65,7 +66,9 @@ std::size_t names_of(const Comparison& comparison, const Order& order);  // of i
 // Whether there are problems enough to speak of an order over them.
 bool has_order(const Comparison& comparison);
 
-bool are_tied(Real score, Real other);  // but for rounding
+// But for rounding; of equal scores the one that solves more settings is ahead.
+bool are_tied(Real score, Real other);
+bool are_tied(const Standing& standing, const Standing& other);
 
 // How those of the order did to a target, the headline's or another that a reader chooses; best
 // first.

@@ -1,4 +1,4 @@
-// Reads result folders, and what targets took.
+// Reads result folders, and computes the work to each target.
 #include "core/results/study.h"
 
 #include <fmt/format.h>
@@ -19,6 +19,7 @@ namespace isoline::results {
 void fields(Like<TunedRate> auto& rate, auto& field) {
   field("problem", rate.problem);
   field("optimizer", rate.optimizer);
+  field.optional("setting", rate.setting);
   field.optional("file", rate.file);
   std::map<std::string, std::vector<Real>> grid;
   std::vector<std::vector<Real>> scores;
@@ -61,7 +62,7 @@ Real TunedRate::work_of(Real tried) const {
 }
 
 std::vector<TunedRate> rates_from_text(const std::string& text, const std::string& origin) {
-  return from_text<RatesFile>(text, origin, "no table of rates").rows;
+  return from_text<RatesFile>(text, origin, "not a table of rates").rows;
 }
 
 // Reads result folders. Records come by the ten thousand, and parsing them is nearly all the time a
@@ -427,6 +428,7 @@ std::vector<Reached> targets_met(const Record& record, const Prices& prices, Aim
       return x_goal(rung(j), *record.x_scale, record.x_floor);
     });
   }
+  if (!record.minimum) return {};
   if (record.hits) return from_hits(record, prices);
   const Real minimum = best.minimum(record), scale = best.scale(record);
   return from_curve(record, prices, record.curve.loss,

@@ -1,5 +1,5 @@
 // The input of a report: the plan, the records and the component metadata of result folders; and
-// what each target took a run.
+// the work of each run to each target.
 #pragma once
 
 #include <array>
@@ -27,6 +27,7 @@ namespace isoline::results {
 // A row of a table of rates.
 struct TunedRate {
   std::string problem, optimizer;  // the problem's spec, the optimizer's name
+  std::string setting;             // the spec that it was found on, if that is another one
   std::string file;                // the table of rates that it stands in
   std::string paper;               // that published it; empty where a grid was tried
   std::string option;              // that was chosen: "rate"
@@ -189,11 +190,12 @@ class Prices {
 // the first kept point from there on.
 OracleCounts counts_at(const Record& record, Real work);
 
-// The least loss any run of a problem and instance has reached: f_L where none is declared.
+// The least loss any run of a problem and instance has reached: what distances are measured from
+// where f_L is unknown.
 class BestKnown {
  public:
   explicit BestKnown(const Study& study);
-  // Declared, else the best known; not-a-number where no run of its problem and instance is.
+  // f_L where it is known; not-a-number where no run of its problem and instance is.
   Real minimum(const Record& record) const;
   // s of f ≤ f_L + τ s; f₀ − f_L where older records lack it.
   Real scale(const Record& record) const {
@@ -213,7 +215,8 @@ struct Reached {
   Real by(Measure measure) const;
 };
 // The targets τ = 10^(−j/5), j = 0, 1, … until one that it never met. Of losses exact where the
-// record has hits; all else is read at the kept points of its curve.
+// record has hits; all else is read at the kept points of its curve. Of losses none where f_L is
+// unknown.
 std::vector<Reached> targets_met(const Record& record, const Prices& prices, Aim aim,
                                  const BestKnown& best);
 

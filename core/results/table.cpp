@@ -1,6 +1,8 @@
-// Finds the problems and optimizers of a study and what to call them, reads records into rows, and
+// Finds the problems and optimizers of a study and their labels, reads records into rows, and
 // pivots rows into cells of a problem and an optimizer.
 #include "core/results/table.h"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
@@ -92,22 +94,25 @@ std::string given_by(const std::set<std::string>& privileges) {
 // problems only becomes two: "sip, given P⁻¹" and "sip". An external program has the name that it
 // gives itself, unless another method has this name. If a study contains a method with its defaults
 // and with rates of tables, they are "gd" and "gd, tuned"; if both are equal on a problem, its
-// single run is in both rows.
+// single run is in both rows. Where one cell was run with several budgets, each budget has a row.
 class OptimizerLabels {
  public:
   explicit OptimizerLabels(const Study& study);
-  std::vector<std::string> of(const std::string& problem, const std::string& spec) const;
+  std::vector<std::string> of(const std::string& problem, std::vector<std::string> wholes) const;
   const std::string& method(const std::string& spec) const { return names_.at(spec); }
   // For all meanings.
+  std::vector<std::string> wholes(const Request& request) const;
   std::vector<std::string> wholes(const std::string& problem, const std::string& spec) const;
   std::string meaning(const std::string& problem, const std::string& whole) const;
   bool has_meanings(const std::string& whole) const { return meanings_.contains(whole); }
   bool is_foreign(const std::string& spec) const { return foreign_.contains(spec); }
+  bool has_budgets(const std::string& spec) const { return several_budgets_.contains(spec); }
 
  private:
   using Pair = std::pair<std::string, std::string>;
 
   void find_foreign(const Study& study);
+  void find_budgets(const Study& study);
   void find_both_ways(const Study& study);
   void find_meanings(const Study& study);
 
@@ -115,6 +120,7 @@ class OptimizerLabels {
   std::set<std::string> by_name_;               // names that stand for all their specs
   std::map<std::string, std::string> names_;    // by spec, as records have them
   std::map<std::string, std::string> foreign_;  // by spec: what other programs call themselves
+  std::set<std::string> several_budgets_;       // specs that some problem has with two budgets
   std::set<std::string> both_ways_;             // names at their defaults and with rates
   std::set<Pair> rated_;                        // problem and name, with another rate
   // By label of all meanings and problem: what is given there beyond the problem, or nothing.
@@ -124,6 +130,7 @@ class OptimizerLabels {
 OptimizerLabels::OptimizerLabels(const Study& study)
     : names_(names_by_spec(study, &Request::optimizer, &PlannedCell::optimizer)) {
   find_foreign(study);
+  find_budgets(study);
   std::set<Pair> seen;                // problem, optimizer spec
   std::map<Pair, std::size_t> specs;  // by problem and name
   for (const Record& record : study.runs) {
@@ -156,6 +163,18 @@ void OptimizerLabels::find_foreign(const Study& study) {
   }
 }
 
+void OptimizerLabels::find_budgets(const Study& study) {
+  std::map<Pair, std::string> first;  // by problem and optimizer
+  for (const Record& record : study.runs) {
+    if (record.imported) continue;  // it has as many iterations as its curve
+    const Request& request = record.request;
+    const std::string budget = budget_options(request);
+    const auto [known, is_new] =
+        first.try_emplace({request.problem.spec, request.optimizer.spec}, budget);
+    if (known->second != budget) several_budgets_.insert(request.optimizer.spec);
+  }
+}
+
 // Where one problem has a method both ways, with different options: at its defaults, and at the one
 // setting that a table gives it. Several settings of one problem were asked for one by one.
 void OptimizerLabels::find_both_ways(const Study& study) {
@@ -184,7 +203,7 @@ void OptimizerLabels::find_meanings(const Study& study) {
   for (const Record& record : study.runs) {
     if (record.status == Status::inapplicable) continue;
     const std::string& problem = record.request.problem.spec;
-    for (const std::string& whole : wholes(problem, record.request.optimizer.spec))
+    for (const std::string& whole : wholes(record.request))
       seen[whole][problem].insert(record.privileges.begin(), record.privileges.end());
   }
   for (const auto& [label, problems] : seen) {
@@ -204,9 +223,15 @@ std::string OptimizerLabels::meaning(const std::string& problem, const std::stri
 }
 
 std::vector<std::string> OptimizerLabels::of(const std::string& problem,
-                                             const std::string& spec) const {
-  std::vector<std::string> labels;
-  for (const std::string& whole : wholes(problem, spec)) labels.push_back(meaning(problem, whole));
+                                             std::vector<std::string> wholes) const {
+  for (std::string& whole : wholes) whole = meaning(problem, whole);
+  return wholes;
+}
+
+std::vector<std::string> OptimizerLabels::wholes(const Request& request) const {
+  std::vector<std::string> labels = wholes(request.problem.spec, request.optimizer.spec);
+  if (has_budgets(request.optimizer.spec))
+    for (std::string& label : labels) label += ", " + budget_options(request);
   return labels;
 }
 
@@ -235,7 +260,8 @@ std::vector<ProblemAxis> problem_axis(const Study& study) {
   for (const Record& record : study.runs) {
     const auto at = std::ranges::find(axis, record.request.problem.spec, &ProblemAxis::spec);
     const bool could_declare = record.status != Status::inapplicable;
-    if (could_declare && !record.minimum) at->is_minimum_declared = false;
+    const bool has_loss = could_declare && std::isfinite(record.summary.best_loss);
+    if (has_loss && !record.minimum && !record.imported) at->is_minimum_known = false;
     if (record.aim == Aim::x && record.x_scale) at->aim = Aim::x;
     at->is_learned = record.request.problem.is_learned;
     if (at->aim == Aim::x && record.x_scale && could_declare)
@@ -258,15 +284,23 @@ std::vector<OptimizerAxis> optimizer_axis(const Study& study, const OptimizerLab
     bool is_imported = false;
   };
   std::map<std::string, Known> known;  // by label, any spec of it
-  const auto know = [&](const std::string& problem, const std::string& spec, bool is_imported) {
-    for (const std::string& whole : labels.wholes(problem, spec)) {
+  const auto know = [&](const std::vector<std::string>& wholes, const std::string& problem,
+                        const std::string& spec, bool is_imported) {
+    for (const std::string& whole : wholes) {
       const std::string label = labels.meaning(problem, whole);
       known.emplace(label, Known{spec, whole}).first->second.is_imported |= is_imported;
     }
   };
-  for (const Record& record : study.runs)
-    know(record.request.problem.spec, record.request.optimizer.spec, record.imported.has_value());
-  for (const PlannedCell& cell : study.plan.cells) know(cell.problem, cell.optimizer, false);
+  std::unordered_set<std::string_view> answered;
+  for (const Record& record : study.runs) {
+    const Request& request = record.request;
+    answered.insert(record.cell);
+    know(labels.wholes(request), request.problem.spec, request.optimizer.spec,
+         record.imported.has_value());
+  }
+  for (const PlannedCell& cell : study.plan.cells)
+    if (!answered.contains(cell.cell))
+      know(labels.wholes(cell.problem, cell.optimizer), cell.problem, cell.optimizer, false);
   std::vector<std::string> names;
   for (const auto& [label, each] : known) names.push_back(label);
   const std::vector<std::string> brief = brief_labels(names);
@@ -278,6 +312,7 @@ std::vector<OptimizerAxis> optimizer_axis(const Study& study, const OptimizerLab
                     .whole = each.whole,
                     .is_meaning = labels.has_meanings(each.whole),
                     .is_foreign = labels.is_foreign(each.spec),
+                    .has_budgets = labels.has_budgets(each.spec),
                     .sheet = sheet_of(study, "optimizer", each.spec, labels.method(each.spec)),
                     .privileges = {},
                     .is_imported = each.is_imported});
@@ -305,7 +340,9 @@ Run run_of(const Record& record, const ProblemAxis& problem, const BestKnown& be
   run.minimum = best.minimum(record);
   run.scale = best.scale(record);
   run.spent = problem.prices.cost(record);
-  std::vector<Reached> loss = targets_met(record, problem.prices, Aim::loss, best),
+  std::vector<Reached> loss = problem.lacks_least_loss()
+                                  ? std::vector<Reached>()
+                                  : targets_met(record, problem.prices, Aim::loss, best),
                        x = targets_met(record, problem.prices, Aim::x, best);
   run.loss_met = loss.size();
   run.x_met = x.size();
@@ -330,7 +367,7 @@ void fill_runs(Table& table, const OptimizerLabels& labels) {
   for (Run& run : read) {
     const Request& request = run.record->request;
     answered.insert(run.record->cell);
-    const std::vector<std::string> names = labels.of(request.problem.spec, request.optimizer.spec);
+    const std::vector<std::string> names = labels.of(request.problem.spec, labels.wholes(request));
     for (std::size_t i = 0; i < names.size(); ++i) {
       run.optimizer = optimizer.at(names[i]);
       run.is_repeated = i > 0;
@@ -346,7 +383,8 @@ void fill_runs(Table& table, const OptimizerLabels& labels) {
       continue;
     }
     table.missing.push_back(cell);
-    for (const std::string& name : labels.of(cell.problem, cell.optimizer))
+    for (const std::string& name :
+         labels.of(cell.problem, labels.wholes(cell.problem, cell.optimizer)))
       table.absent.push_back({.problem = problem.at(cell.problem),
                               .optimizer = optimizer.at(name),
                               .seed = cell.seed,
@@ -387,7 +425,7 @@ std::set<std::uint64_t> usual_seeds(const std::vector<std::set<std::uint64_t>>& 
 }
 
 // Puts rows into cells and counts the seeds each cell lacks. They never got anywhere: leaving a run
-// out betters no median.
+// out betters no median. A curve that others made has the seeds that it has.
 void fill_cells(const Table& table, Pivot& cells) {
   using Seeds = std::vector<std::vector<std::set<std::uint64_t>>>;  // [problem][optimizer]
   Seeds asked(table.problems.size(), {table.optimizers.size(), std::set<std::uint64_t>()});
@@ -402,7 +440,10 @@ void fill_cells(const Table& table, Pivot& cells) {
     for (std::size_t s = 0; s < cells[p].size(); ++s) {
       std::set<std::uint64_t>& all = asked[p][s];
       if (all.empty()) continue;
-      all.insert(usual.begin(), usual.end());
+      const bool is_imported = std::ranges::all_of(cells[p][s].runs, [&](std::size_t row) {
+        return table.runs[row].record->imported.has_value();
+      });
+      if (!is_imported || cells[p][s].runs.empty()) all.insert(usual.begin(), usual.end());
       for (const std::size_t row : cells[p][s].runs) all.erase(table.runs[row].seed);
       cells[p][s].planned = cells[p][s].runs.size() + all.size();
     }
@@ -434,7 +475,7 @@ void aggregate(const Table& table, const Yardstick& yardstick, Cell& cell) {
   }
   if (cell.statuses[Status::inapplicable] == cell.runs.size()) {
     const std::string& reason = table.runs[cell.runs[0]].record->message;
-    cell.inapplicable = reason.empty() ? "no reason given" : reason;
+    cell.inapplicable = reason.empty() ? "the reason is not stated" : reason;
     return;
   }
   std::erase_if(cell.statuses, [](const auto& status) { return status.second == 0; });
@@ -475,6 +516,16 @@ std::vector<std::string> brief_labels(const std::vector<std::string>& labels) {
   for (std::size_t i = 0; i < labels.size(); ++i)
     if (count[brief[i]] > 1) brief[i] = labels[i];
   return brief;
+}
+
+std::string budget_options(const Request& request) {
+  const Budget& budget = request.budget;
+  std::string options = fmt::format("--iterations {}", budget.iterations);
+  if (budget.work < Budget{}.work) options += fmt::format(" --work {}", budget.work);
+  if (budget.seconds < Budget{}.seconds) options += fmt::format(" --time {}s", budget.seconds);
+  if (budget.target != Budget{}.target) options += fmt::format(" --target {}", budget.target);
+  if (request.threads != 1) options += fmt::format(" --threads {}", request.threads);
+  return options;
 }
 
 std::string marks_text(const Marks& marks) {

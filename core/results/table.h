@@ -24,13 +24,16 @@ struct Marks {
 };
 std::string marks_text(const Marks& marks);  // " ‡ † §" of those that apply
 
+// "--iterations 1000 --work 50": what of a budget is not as usual, and the iterations.
+std::string budget_options(const Request& request);
+
 // A row. One that is missing has no record: its problem, optimizer and seed alone are known.
 struct Run {
   const Record* record = nullptr;
   std::size_t problem = 0, optimizer = 0;  // indices
   std::uint64_t seed = 0;
   Aim aim = Aim::loss;                  // of its problem: which success counts
-  Real minimum = 0;                     // f_L: declared, else the best known
+  Real minimum = 0;                     // f_L; where it is unknown the best loss of any run
   Real scale = 0;                       // s of f ≤ f_L + τ s
   std::vector<Reached> targets = {};    // of its aim: those that it met
   std::size_t loss_met = 0, x_met = 0;  // how many it met of either kind
@@ -54,8 +57,8 @@ struct ProblemAxis {
   bool is_foreign = false;       // another program computes it
   const Sheet* sheet = nullptr;  // none where the folder has none
   Prices prices = {};            // measured only where the sheet is of this very spec
-  bool is_minimum_declared = true;  // otherwise f_L is the least loss any run of its seed reached
-  Aim aim = Aim::loss;              // what its user wants, as its records say
+  bool is_minimum_known = true;  // otherwise its runs have distances from the best of them alone
+  Aim aim = Aim::loss;           // what its user wants, as its records say
   bool is_learned = false;
   // For an aim in x: the least error that counts as solved, 1.1 of the floor, over ‖x*‖; the median
   // over seeds.
@@ -66,6 +69,8 @@ struct ProblemAxis {
     constexpr Real kMostError = 0.1;
     return least_goal > kMostError;
   }
+  // Whether any loss counts as solved, and which, is then unknown.
+  bool lacks_least_loss() const { return !is_minimum_known && aim == Aim::loss && !is_learned; }
   bool has_own_sheet() const { return sheet != nullptr && sheet->spec == spec; }
   // "toy", "physics", "classical", "learned"; "other" where its sheet says nothing.
   std::string group() const {
@@ -93,7 +98,8 @@ struct OptimizerAxis {
   // "sip, given P⁻¹" and "sip". Then all of them stand under this label.
   std::string whole;
   bool is_meaning = false;
-  bool is_foreign = false;  // another program runs it
+  bool is_foreign = false;   // another program runs it
+  bool has_budgets = false;  // another row has its runs with another budget
   const Sheet* sheet = nullptr;
   std::vector<std::string> privileges;                   // on any problem
   bool is_imported = false;                              // some run of it is a claim of others

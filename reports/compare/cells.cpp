@@ -1,5 +1,5 @@
-// Turns records into cells of a comparison, each as it is read, and writes and reads baselines,
-// whose cells name rows of tables of what many cells share.
+// Turns records into cells of a comparison while they are read, and writes and reads baselines,
+// whose cells refer to rows of shared tables.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -22,7 +22,7 @@ namespace {
 
 constexpr const char* kDisputed = "two records of this cell and build differ";
 
-// Equal values are kept once, for as long as the program runs.
+// Equal values share one object, which exists until the program ends.
 template <class Value>
 std::shared_ptr<const Value> shared_value(const std::string& key, const Value& value) {
   static std::mutex mutex;
@@ -59,8 +59,8 @@ std::shared_ptr<const BuildParts> shared_parts(const BuildParts& parts) {
   return shared_value(json_text(Json(parts)), parts);
 }
 
-// The geometric mean over kept points of what lies above the smallest that counts: one point that
-// differs moves it. Rounding of 1e-16 of the problem's scale moves it by up to 1e-10.
+// The geometric mean of the stored losses above the smallest that counts. A difference in one point
+// changes it. Rounding by 1e-16 of the problem's scale changes it by at most 1e-10.
 Real mean_of_path(const std::vector<Real>& losses, Real scale) {
   Real sum = 0;
   std::size_t count = 0;
@@ -73,11 +73,11 @@ Real mean_of_path(const std::vector<Real>& losses, Real scale) {
   return count == 0 ? 0 : std::exp(sum / Real(count));
 }
 
-// Without hits, where f_L is not known, the path stands for the work.
+// Without f_L, targets are not defined, and the path is compared instead of the work.
 void add_figures(ComparedCell& cell, const Record& record) {
   const Summary& summary = record.summary;
   const Curve& curve = record.curve;
-  // Not-a-number is no better than infinite.
+  // NaN counts as infinite.
   const auto known = [](Real value) { return std::isnan(value) ? kNever : value; };
   cell.figures.assign(kFigures, std::nan(""));
   cell.scale = record.scale.value_or(summary.start_loss);
@@ -106,7 +106,7 @@ void add_figures(ComparedCell& cell, const Record& record) {
     cell.figures[kWork + j] = record.hits->iteration[j] < 0 ? kNever : Real(record.hits->work[j]);
 }
 
-// The path apart from the rest, so that each is called by its name.
+// The path is compared separately from the other values, to state which of them differs.
 void add_digests(ComparedCell& cell, const Record& record) {
   Json json = result_of(to_json(record));
   for (const char* known : {"build", "build_parts", "cell", "schema"}) json.erase(known);
@@ -209,7 +209,7 @@ FolderCells read_cells(const std::string& folder, const Listener& listener) {
 // --- baselines
 namespace {
 
-// Rows once each, in the order of their first use.
+// Distinct rows, in the order of their first use.
 class Rows {
  public:
   std::size_t place(const Json& row) {
@@ -255,7 +255,7 @@ Status status_named(const std::string& name) {
   return *status;
 }
 
-// Works to the tolerances stand for those to all targets.
+// The work to three tolerances represents the work to all targets.
 std::vector<std::size_t> kept_figures(const FigureKind& kind) {
   std::vector<std::size_t> kept;
   for (std::size_t t = 0; t < std::min(kind.count, kTolerances.size()); ++t)
@@ -290,7 +290,7 @@ void read_figures(ComparedCell& cell, const Json& json) {
   }
 }
 
-// With the targets that the file keeps, so that a cell moves by what a comparison will look at.
+// Uses the targets that the file stores, which are those that a comparison uses.
 Json perturbed_json(ComparedCell cell, const std::vector<ComparedCell>& others) {
   std::vector<Real> kept(kFigures, std::nan(""));
   for (const FigureKind& kind : kFigureKinds)

@@ -1,5 +1,5 @@
-// Which cell of NEW answers which of BASE, and in which status, figures, options and build parts
-// the two differ.
+// Pairs cells of BASE and NEW, and finds the differences of their statuses, values, options and
+// builds.
 #include <fmt/format.h>
 #include <fnmatch.h>
 
@@ -39,7 +39,7 @@ AllowedList allowed_from_json(const Json& json) {
     AllowedList list;
     for (const Json& cells : json.at("cells")) {
       require(cells.contains("problem") || cells.contains("optimizer"),
-              "an entry of the allowed cells must name a problem or an optimizer");
+              "an entry of the allowed cells must contain a problem or an optimizer");
       list.push_back({.problem = cells.value("problem", std::string("*")),
                       .optimizer = cells.value("optimizer", std::string("*")),
                       .reason = cells.at("reason").get<std::string>(),
@@ -89,7 +89,7 @@ Pairs paired(const std::vector<ComparedCell>& before, const std::vector<Compared
   return pairs;
 }
 
-// Two that are equally bad may still differ: that is a change, and no verdict.
+// Two equally bad values may still differ: this is a change without a verdict.
 int badness_of(Status status) {
   if (status == Status::target || status == Status::converged) return 0;
   if (status == Status::budget || status == Status::stalled) return 1;
@@ -115,7 +115,7 @@ namespace {
 
 constexpr Real kRounding = 1e-16;  // of double precision, as a share of the problem's scale
 
-// As a share of |before|, or of the smallest value that counts, above what rounding explains.
+// Relative to |before|, or to the smallest value that counts, after subtraction of the rounding.
 Real least_tolerance(Real before, Real after, Real scale) {
   if (before == after) return 0;
   if (!std::isfinite(before) || !std::isfinite(after)) return kNever;
@@ -155,7 +155,7 @@ bool has_both(const ComparedCell& a, const ComparedCell& b, std::size_t figure) 
   return a.has(figure) && b.has(figure);
 }
 
-// Those that no size has. A status that broke off explains what is lacking.
+// Differences without a size. If a status broke off, it explains the missing values.
 Differences differences_of_kind(const ComparedCell& a, const ComparedCell& b) {
   Differences found;
   for (const auto& [figure, what] :
@@ -213,7 +213,7 @@ Real movement(const ComparedCell& a, const ComparedCell& b) {
 Differences figure_differences(const ComparedCell& a, const ComparedCell& b,
                                const std::optional<Real>& tolerance) {
   Differences out = differences_of_kind(a, b);
-  std::map<std::pair<const char*, Change>, std::pair<std::size_t, int>> largest;  // and how many
+  std::map<std::pair<const char*, Change>, std::pair<std::size_t, int>> largest;  // and count
   for (const FigureKind& kind : kFigureKinds)
     for (std::size_t i = kind.first; i < kind.first + kind.count; ++i) {
       if (!has_both(a, b, i) || agree(a.figures[i], b.figures[i], scale_of(a, i), tolerance))
@@ -236,11 +236,11 @@ Differences figure_differences(const ComparedCell& a, const ComparedCell& b,
 
 namespace {
 
-// Another processor rounds in every operation, a perturbed start once: cells that moved by nearly
-// the tolerance when perturbed move beyond it elsewhere.
+// Another processor rounds in every operation, but a perturbed start differs only once. Cells that
+// changed by almost the tolerance after a perturbation change by more on another processor.
 constexpr Real kMargin = 0.1;
 
-// In the sense of the aim that BASE knows of.
+// By the success criterion of BASE.
 bool has_reached(const ComparedCell& cell, Aim aim, std::size_t tolerance) {
   const std::size_t figure = work_at(aim, tolerance);
   return cell.has(figure) && cell.figures[figure] < kNever;
@@ -291,7 +291,7 @@ Differences coarse_differences(const ComparedCell& a, const ComparedCell& b) {
                                 is_reached ? "missed" : "reached",
                                 is_reached ? "reached" : "missed"));
   }
-  for (Difference& one : all) one.note = "chaotic: compared by status and coarse targets";
+  for (Difference& one : all) one.note = "chaotic: compared by status and targets 1e-1, 1e-3, 1e-6";
   return all;
 }
 
@@ -344,16 +344,16 @@ std::vector<std::string> changed_parts(const ComparedCell& before, const Compare
   if (before.build == after.build) return {};
   std::vector<std::string> changes;
   for (const auto& [part, text] :
-       {std::pair("platform", "another platform (compiler, flags, libraries or kernel)"),
-        {"harness", "another harness (core, meter or run loop)"},
-        {"problem", "another source of the problem"},
-        {"network", "another source of the network"},
-        {"optimizer", "another source of the optimizer"}}) {
+       {std::pair("platform", "a change of the platform (compiler, flags, libraries or kernel)"),
+        {"harness", "a change of the harness (core, meter or run loop)"},
+        {"problem", "a change of the problem's source"},
+        {"network", "a change of the network's source"},
+        {"optimizer", "a change of the optimizer's source"}}) {
     const auto old = before.parts->find(part), now = after.parts->find(part);
     if (old != before.parts->end() && now != after.parts->end() && old->second != now->second)
       changes.emplace_back(text);
   }
-  if (changes.empty()) changes.emplace_back("another build");
+  if (changes.empty()) changes.emplace_back("a change of the build");
   return changes;
 }
 

@@ -1,5 +1,5 @@
-// Pairs two sets of cells, compares their figures, judges their times, and concludes; and the
-// conclusion as sentences and tables, which the formats of reports lay out, and as JSON.
+// Pairs two sets of cells, compares their values and times, and draws a conclusion, as sentences
+// and tables for the formats of reports, and as JSON.
 #include "reports/compare/gate.h"
 
 #include <fmt/format.h>
@@ -173,8 +173,8 @@ std::string gate_markdown(const GateResult& result) {
   Section section = gate_section(result, false);
   for (Table& table : section.tables) {
     if (table.rows.size() <= kMostRows) continue;
-    table.caption =
-        fmt::format("{} more are left out here; --json lists them.", table.rows.size() - kMostRows);
+    table.caption = fmt::format("{} more rows are omitted here; --json lists them.",
+                                table.rows.size() - kMostRows);
     table.rows.resize(kMostRows, {""});
   }
   return markdown_section(section);
@@ -199,12 +199,12 @@ std::string why_incomparable(const ComparedCell& a, const ComparedCell& b,
                              const GateOptions& options) {
   for (const ComparedCell* side : {&a, &b})
     if (!side->doubt.empty())
-      return fmt::format("{} cannot be trusted: {}", side == &a ? "BASE" : "NEW", side->doubt);
+      return fmt::format("{} contradicts itself: {}", side == &a ? "BASE" : "NEW", side->doubt);
   if (a.is_cut || b.is_cut)
     return fmt::format("a clock or a kill ended it in {} ({})", b.is_cut ? "NEW" : "BASE",
                        name_of(b.is_cut ? b.status : a.status));
   if (options.tolerance || a.build == b.build) return "";
-  return "another build or instruction set; give --tolerance to compare their figures";
+  return "another build or instruction set; pass --tolerance to compare the values";
 }
 
 // "curve", "message, claimed": what of the records differs where all figures agree.
@@ -218,8 +218,8 @@ Difference silent_difference(const ComparedCell& a, const ComparedCell& b) {
   if (names.empty()) names.insert(is_path ? "trace" : "record");
   Difference difference = difference_in(a, Change::changed, joined({names.begin(), names.end()}),
                                         is_path ? a.trace : a.rest, is_path ? b.trace : b.rest);
-  difference.note = is_path ? "the path differs, all compared figures agree"
-                            : "its path and all compared figures agree";
+  difference.note = is_path ? "the path differs; all compared values are equal"
+                            : "the path and all compared values are equal";
   return difference;
 }
 
@@ -264,7 +264,7 @@ class Gate {
     const std::string criterion = criterion_change_text(a, b, options_.tolerance);
     const bool is_doubtful = !a.doubt.empty() || !b.doubt.empty();
     if (!criterion.empty() && !is_doubtful && !is_allowed(a, true))
-      reason = "success is judged by another criterion: " + criterion;
+      reason = "different success criteria: " + criterion;
     if (reason.empty()) return judge(a, b);
     const auto is_lost = [](const ComparedCell& cell) {  // it went wrong, or does not apply
       return is_failure(cell.status) || cell.status == Status::inapplicable;
@@ -341,7 +341,7 @@ class Gate {
     for (std::size_t i = 0; i < is_used_.size(); ++i)
       if (!is_used_[i])
         result_.remarks.push_back(fmt::format(
-            "the list of allowed cells names {} × {}, which NEW does not {}: remove the entry",
+            "the list of allowed cells contains {} × {}, which NEW does not {}: remove the entry",
             options_.allowed[i].problem, options_.allowed[i].optimizer,
             options_.allowed[i].is_of_criterion ? "judge otherwise" : "lack"));
   }
@@ -378,17 +378,15 @@ class Gate {
   void add_remarks() {
     const std::tuple<std::size_t, const char*, std::string> all[] = {
         {result_.chaotic, "chaotic cell",
-         "judged by status and by which of the targets 1e-1, 1e-3, 1e-6 it reaches: the figures "
-         "moved by more than a tenth of the tolerance when the start was perturbed in the last "
-         "bit"},
+         "compared by status and the targets 1e-1, 1e-3 and 1e-6: a change of the start in the last "
+         "bit changes the values by more than a tenth of the tolerance"},
         {too_few_, "cell",
-         fmt::format("with too few repetitions for a verdict on time: {0} a side are needed (run "
-                     "--repeat {0} --exclusive)",
+         fmt::format("with too few repetitions to compare times: use --repeat {} --exclusive",
                      kLeastRepetitions)},
-        {senseless_, "timing", "left out: not positive and finite"},
-        {other_processors_, "cell", "timed on another processor: times are not comparable"},
+        {senseless_, "time", "omitted: not positive and finite"},
+        {other_processors_, "cell", "timed on different processors, so times are not comparable"},
         {skipped_, "cell",
-         fmt::format("more with enough repetitions; time is judged on the {} slowest",
+         fmt::format("more with enough repetitions; times are compared for the {} slowest cells",
                      kMostTimed)}};
     for (const auto& [number, noun, text] : all)
       if (number > 0) result_.remarks.push_back(fmt::format("{} {}", counted(number, noun), text));
@@ -445,13 +443,15 @@ void conclude(GateResult& result, const GateOptions& options) {
   if (!worse.empty() || !slower.empty() || !lack.empty()) {
     settle(kWorse, "worse", {settings, lack, worse, slower});
   } else if (result.joined == 0) {
-    settle(kNotComparable, "not comparable", {"no cell is in both"});
+    settle(kNotComparable, "not comparable", {"the two sides have no common cell"});
   } else if (const auto& all = result.incomparable; !all.empty()) {
     const std::string first = all[0].title + ": " + all[0].reason;
-    settle(kNotComparable, "not comparable in part, nothing worse in the rest",
-           {all.size() == 1 ? first : fmt::format("{} cells, as {}", all.size(), first)});
+    settle(kNotComparable,
+           all.size() == result.joined ? "not comparable"
+                                       : "partly not comparable, the other cells are not worse",
+           {all.size() == 1 ? first : fmt::format("{} cells, such as {}", all.size(), first)});
   } else if (!better.empty() || !faster.empty()) {
-    settle(kBetterOnly, "better, nothing worse", {settings, better, faster});
+    settle(kBetterOnly, "better, not worse in any cell", {settings, better, faster});
   } else {
     const bool is_equal = result.differences.empty() && settings.empty();
     settle(kGood, is_equal ? "equal" : "changed, neither better nor worse", {settings});
@@ -466,8 +466,8 @@ std::optional<std::vector<ComparedCell>> read_baseline(const std::filesystem::pa
   if (std::filesystem::is_directory(path, unknown)) return std::nullopt;
   const Json json = read_json(path);
   require(json.is_object() && json.value("schema", "") == kBaselineSchema,
-          "compare takes two result folders, or a baseline and a result folder: "
-          "isoline compare BASE RESULTS");
+          "compare needs two result folders, or a baseline and a result folder: "
+          "isoline compare BASE NEW");
   return baseline_from_json(json);
 }
 
@@ -482,7 +482,7 @@ void CauseGroup::add(const ComparedCell& cell) {
 GateResult compare_results(const std::filesystem::path& before, const std::filesystem::path& after,
                            const GateOptions& options) {
   auto baseline = read_baseline(before);
-  require(!read_baseline(after), "a baseline stands on the left: isoline compare BASE RESULTS");
+  require(!read_baseline(after), "a baseline must be the first argument: isoline compare BASE NEW");
   FolderCells old;
   if (baseline)
     old.cells = std::move(*baseline);
@@ -491,13 +491,13 @@ GateResult compare_results(const std::filesystem::path& before, const std::files
   const FolderCells now = read_cells(after, options.listener);
   GateResult result = Gate(options).run(old.cells, now.cells);
   conclude(result, options);
-  if (baseline) result.remarks.push_back("a baseline holds no times: none is judged");
+  if (baseline) result.remarks.push_back("a baseline has no times, so times are not compared");
   for (const auto& [found, path] : {std::pair(&std::as_const(old), before), {&now, after}}) {
     if (found->unreadable > 0)
       result.remarks.push_back(fmt::format("{} of {} could not be read",
                                            counted(found->unreadable, "file"), path.string()));
     if (found->superseded > 0)
-      result.remarks.push_back(fmt::format("{} of {} left aside for newer builds of the same cells",
+      result.remarks.push_back(fmt::format("{} of {} omitted: newer builds computed the same cells",
                                            counted(found->superseded, "older record"),
                                            path.string()));
   }

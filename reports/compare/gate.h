@@ -164,7 +164,7 @@ bool is_chaotic(const ComparedCell& cell, const std::optional<Real>& tolerance);
 // not, or that none of them reached and NEW does. What only some reached is no difference.
 Differences coarse_differences(const ComparedCell& before, const ComparedCell& after);
 
-// Differences before any value differs: "adam: default of epsilon 1e-8 → 0.01"; "another harness".
+// Differences before any value differs: "adam: default of epsilon 1e-8 → 0.01", the harness.
 std::set<std::string> changed_options(const ComparedCell& before, const ComparedCell& after);
 std::vector<std::string> changed_parts(const ComparedCell& before, const ComparedCell& after);
 

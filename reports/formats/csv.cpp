@@ -1,5 +1,5 @@
-// The report as tidy CSV: one row a run or planned cell that has not run, one row a figure of the
-// statistics, and one row a point of a curve.
+// The report as tidy CSV: one row per run or missing cell, one row per number of the statistics,
+// and one row per point of a curve.
 #include <fmt/format.h>
 
 #include <functional>

@@ -1,4 +1,4 @@
-// Shared pieces of formats: foreign text escaped for each, and wide tables taken apart.
+// Functions that several formats share: they escape foreign text, and divide wide tables.
 #include <algorithm>
 #include <span>
 

@@ -15,6 +15,10 @@ constexpr std::size_t kMostColumns = 7;  // beside the names of the rows
 constexpr std::size_t kMostRows = 45;
 constexpr std::size_t kLongHeading = 10;  // characters: longer ones are turned upright
 
+constexpr std::string_view kGreek =
+    "αalpha βbeta γgamma δdelta εvarepsilon ηeta θtheta κkappa λlambda μmu νnu ξxi πpi ρrho σsigma "
+    "τtau φvarphi ψpsi ωomega ΔDelta ΛLambda ΣSigma ΦPhi ΩOmega ";
+
 // The marks of a table in the letters that LaTeX has.
 std::string marked_text(std::string_view text) {
   struct Mark {
@@ -37,10 +41,24 @@ std::string marked_text(std::string_view text) {
                              {"⁻¹", "$^{-1}$"},
                              {"…", "\\ldots{}"},
                              {"°", "$^\\circ$"},
-                             {"α", "$\\alpha$"},
+                             {"∂", "$\\partial$"},
+                             {"‖", "$\\|$"},
+                             {"∇", "$\\nabla$"},
+                             {"ᵀ", "$^T$"},
+                             {"₁", "$_1$"},
+                             {"ᵣ", "$_r$"},
                              {"’", "'"}};
+  constexpr std::size_t kLetter = 2;  // bytes of a Greek letter
   std::string out, plain;
   while (!text.empty()) {
+    if (const auto at = kGreek.find(text.substr(0, kLetter));
+        text.size() >= kLetter && at != kGreek.npos && text[0] < 0) {
+      const std::string_view name = kGreek.substr(at + kLetter);
+      out += fmt::format("{}$\\{}$", latex_text(plain), name.substr(0, name.find(' ')));
+      plain.clear();
+      text.remove_prefix(kLetter);
+      continue;
+    }
     const auto* mark =
         std::ranges::find_if(kMarks, [&](const Mark& one) { return text.starts_with(one.letter); });
     if (mark == std::end(kMarks)) {

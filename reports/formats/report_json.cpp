@@ -150,18 +150,12 @@ Json decision_json(const Comparison& c, const std::optional<Decision>& decision)
           {"choices", list_of(decision->choices, choice_json)}};
 }
 
-// [a, b, wins, losses, ties, neither, typical, its interval]
+// [a, b, settings that both solve, a alone, b alone, neither, work of a over b, its interval]
 Json pair_json(const Comparison& c, const MethodPair& pair) {
-  const auto [low, high] = pair.pairing.interval();
-  return {c.optimizers[pair.a].label,
-          c.optimizers[pair.b].label,
-          pair.pairing.wins,
-          pair.pairing.losses,
-          pair.pairing.ties,
-          pair.pairing.neither,
-          pair.pairing.typical(),
-          low,
-          high};
+  return {
+      c.optimizers[pair.a].label,  c.optimizers[pair.b].label, pair.ratio.both,   pair.ratio.only_a,
+      pair.ratio.only_b,           pair.ratio.neither,         pair.ratio.median, pair.ratio.low,
+      json_number(pair.ratio.high)};
 }
 
 Json failure_json(const Record& record) {

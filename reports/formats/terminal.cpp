@@ -1,5 +1,5 @@
-// Plain text within a hundred columns: the standings and the best of each problem, of a small study
-// every cell; and any section.
+// Plain text with at most 100 columns: the ranking and the best method of each problem, every cell
+// of a small study, and any section.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -73,9 +73,11 @@ std::string best_of_each(const Comparison& c) {
   for (std::size_t p = 0; p < c.problems.size(); ++p) {
     const std::vector<std::size_t> order = ranking(c, p);
     const bool is_solved = !order.empty() && c.cell(p, order[0]).headline[kTightest].is_solved();
-    const std::string best = is_solved ? fmt::format("{} {}", label_of(c.optimizers[order[0]]),
-                                                     matrix_text(c, c.cell(p, order[0]), kTightest))
-                                       : "none";
+    const bool is_unknown = !order.empty() && c.problems[p].lacks_least_loss();
+    const std::string best = is_solved || is_unknown
+                                 ? fmt::format("{} {}", label_of(c.optimizers[order[0]]),
+                                               matrix_text(c, c.cell(p, order[0]), kTightest))
+                                 : "none";
     lines.push_back("  " + left(label_of(c.problems[p]), width) + "  " + best);
     longest = std::max(longest, width_of(lines.back()));
   }
@@ -94,12 +96,13 @@ std::string line_of(const Comparison& c, std::size_t p, std::size_t s, std::size
   if (cell.runs.empty()) return line + "  missing\n";
   if (!cell.is_measured()) return line + "  n/a: " + terminal_text(cell.inapplicable) + "\n";
   const Spread& work = cell.headline[kTightest];
-  line += right(fmt::format("{}/{}", work.n - work.unsolved, work.n), 6) + "  ";
+  const bool is_unknown = c.problems[p].lacks_least_loss();
+  line += right(is_unknown ? "?" : fmt::format("{}/{}", work.n - work.unsolved, work.n), 6) + "  ";
   for (std::size_t t = 0; t < kTolerances.size(); ++t)
     line += right(matrix_text(c, cell, t) + (cell.is_best[t] ? "*" : " "), 8);
   const Spread& seconds = cell.taken[Measure::time][kTightest];
   const bool is_marked = !cell.is_timed_alone && seconds.is_solved();
-  line += right(milliseconds(seconds.median) + (is_marked ? "≈" : " "), 9);
+  line += right((is_unknown ? "?" : milliseconds(seconds.median)) + (is_marked ? "≈" : " "), 9);
   return line + right(reached_figure(cell.loss.median), 11) + "  " + status_text(cell.statuses) +
          "\n";
 }
@@ -120,10 +123,12 @@ std::string every_cell(const Comparison& c) {
       if (c.cell(p, s).planned > 0 && !c.cell(p, s).is_measured()) text += line_of(c, p, s, width);
   }
   std::string marks = fmt::format(
-      "Median {} in {} to each tolerance; runs: those that reach {}; ms to {}; final loss. {} * "
-      "least on its problem, ✗ not reached by half of the runs, n/a: not applicable",
+      "Median {} to each tolerance, in {}; runs that reach {}; median ms to {}; median final loss. "
+      "{} *: the least of its problem; ✗: at most half of the runs reached it; n/a: not applicable",
       counted_name(c), unit_name(c), tau_name(c), tau_name(c), success_text(c));
-  if (c.is_any_timed_together) marks += ", ≈ timed while other runs used the machine";
+  if (std::ranges::any_of(c.problems, &ProblemAxis::lacks_least_loss))
+    marks += "; ?: least loss unknown";
+  if (c.is_any_timed_together) marks += "; ≈: timed while other runs used the machine";
   return text + "\n" + wrapped(marks + ".");
 }
 
@@ -271,6 +276,9 @@ std::string terminal_table(const Document& document) {
     text += "\n" + (tables.empty() ? "" : table_text(tables[0])) + best_of_each(c) + "\n";
   for (const Reading& sentence : document.section("standings").readings)
     text += wrapped(terminal_text(sentence.text));
+  const Section& claims = document.section("claims");
+  if (!c.study->plan.suites.empty() || !document.claims.empty())
+    text += wrapped(claims.readings.empty() ? claims.otherwise : claims.readings[0].text);
   if (const std::string legend = marks_legend(c); !legend.empty()) text += wrapped(legend);
   return text + failure_lines(c);
 }

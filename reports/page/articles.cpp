@@ -1,4 +1,5 @@
-// One section an optimizer: formula, requirements, options, wins and failures, read in a sentence.
+// One article per optimizer and problem: formula, requirements, options, wins and failures, with a
+// summary.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -18,12 +19,12 @@
 namespace isoline::reports {
 namespace {
 
-// A row of the list of facts, where there is any.
+// A row of the list of facts, if it has a value.
 std::string row(const char* term, const std::string& content) {
   return content.empty() ? "" : fmt::format("<dt>{}</dt><dd>{}</dd>", term, content);
 }
 
-// Its problems by what became of them, each list in order of the problems.
+// The problems of a method by their results, each list in the order of the problems.
 std::string deeds_html(const Comparison& c, std::size_t s) {
   std::string won, unsolved, failed, inapplicable;
   for (std::size_t p = 0; p < c.problems.size(); ++p) {
@@ -46,7 +47,7 @@ std::string deeds_html(const Comparison& c, std::size_t s) {
       for (const std::size_t run : cell.runs)
         if (is_failure(c.runs[run].record->status)) message = c.runs[run].record->message;
       add(failed, fmt::format("{} of {} runs: {}", cell.failed, cell.runs.size(), message));
-    } else if (!work.is_solved()) {
+    } else if (!work.is_solved() && !c.problems[p].lacks_least_loss()) {
       add(unsolved, fmt::format("{}; final loss {} at best", status_text(cell.statuses),
                                 figure(cell.loss.low)));
     }
@@ -100,19 +101,19 @@ std::string options_html(const Comparison& c, std::size_t s, const Sheet& sheet)
   return fmt::format(
       "<details><summary>Options</summary><div class=scroll tabindex=0 role=region "
       "aria-label=\"Options of {}\"><table><thead><tr><th scope=col>option<th scope=col>default"
-      "<th scope=col>in these runs<th scope=col>what it is<th scope=col>range<tbody>{}</table>"
+      "<th scope=col>in these runs<th scope=col>meaning<th scope=col>range<tbody>{}</table>"
       "</div></details>",
       html_text(sheet.name), rows);
 }
 
 // "3rd of 36 on the 17 settings that all ranked methods ran on", or that it is not ranked.
 std::string place_text(const Comparison& c, std::size_t s) {
-  if (!c.order.has(s)) return "Not ranked with the others";
-  const Real score = c.optimizers[s].tightest().score;
-  const auto before = std::ranges::count_if(c.order.methods, [&](std::size_t other) {
-    const Real theirs = c.optimizers[other].tightest().score;
-    return theirs > score && !are_tied(theirs, score);
+  if (!c.order.has(s)) return "Not ranked";
+  const Standing& own = c.optimizers[s].tightest();
+  const auto first = std::ranges::find_if(c.order.methods, [&](std::size_t other) {
+    return are_tied(own, c.optimizers[other].tightest());
   });
+  const auto before = first - c.order.methods.begin();
   return fmt::format("{} of {} on the {} common to all ranked methods",
                      ordinal(1 + static_cast<std::size_t>(before)), c.order.methods.size(),
                      counted(c.order.settings.size(), common_noun(c)));
@@ -122,7 +123,8 @@ std::string place_text(const Comparison& c, std::size_t s) {
 std::string reading(const Comparison& c, std::size_t s) {
   const OptimizerAxis& axis = c.optimizers[s];
   const Standing& standing = axis.tightest();
-  if (axis.runs == 0) return axis.applicable == 0 ? "It applies to none of these problems." : "";
+  if (axis.runs == 0)
+    return axis.applicable == 0 ? "It is not applicable to any of these problems." : "";
   std::string text = fmt::format("{}: solves {} of these {} to {}", place_text(c, s),
                                  standing.solved, standing.settings, tau_name(c));
   if (standing.wins > 0)
@@ -151,9 +153,10 @@ std::string optimizer_html(const Comparison& c, std::size_t s) {
       s, html_text(shown_spec(axis.label)), marks_html(axis), sheet_html(axis.sheet),
       html_text(reading(c, s)));
   html += row("kind", kind_title(axis.mathematics()));
-  html += row("asks for", html_text(counted_oracles(c, s)));
+  html += row("required derivatives", html_text(counted_oracles(c, s)));
   if (!axis.privileges.empty())
-    html += row("sees", "<span class=privilege>" + html_text(joined(axis.privileges)) + "</span>");
+    html += row("extra information",
+                "<span class=privilege>" + html_text(joined(axis.privileges)) + "</span>");
   return html + deeds_html(c, s) + "</dl>" +
          (axis.sheet == nullptr ? "" : options_html(c, s, *axis.sheet)) + "</noscript></article>\n";
 }
@@ -161,7 +164,7 @@ std::string optimizer_html(const Comparison& c, std::size_t s) {
 }  // namespace
 
 std::string counted_oracles(const Comparison& c, std::size_t s) {
-  std::array<std::size_t, kOracles> asked{};  // problems on which some run asked it
+  std::array<std::size_t, kOracles> asked{};  // problems on which a run called the oracle
   std::size_t all = 0;
   for (const auto& problem : c.cells) {
     if (!problem[s].is_measured()) continue;
@@ -184,7 +187,7 @@ std::string optimizers_html(const Comparison& c) {
   return html;
 }
 
-// One section a problem: formula, what it takes to solve it, places for curves and paths.
+// One section per problem: its formula, the work to solve it, and places for curves and paths.
 
 namespace {
 
@@ -197,7 +200,7 @@ std::string facts_text(const Sheet& sheet) {
   std::vector<std::string> conditions;  // of J, where they are known
   if (sheet.start_condition) conditions.push_back(figure(*sheet.start_condition) + " at the start");
   if (sheet.condition) conditions.push_back(figure(*sheet.condition) + " at the solution");
-  if (!conditions.empty()) facts += fmt::format("condition of J {}, ", joined(conditions));
+  if (!conditions.empty()) facts += fmt::format("condition number of J {}, ", joined(conditions));
   const bool has_inverse = !sheet.inverse.empty() && sheet.inverse != "none";
   return facts + (has_inverse ? sheet.inverse : "no") + " inverse";
 }
@@ -217,7 +220,7 @@ std::string problem_html(const Comparison& c, std::size_t p,
 
 }  // namespace
 
-// By group, each a row of links.
+// Rows of links, one per group.
 std::string problems_html(const Comparison& c, const AllFields& fields) {
   std::vector<std::string> articles(c.problems.size());
   share(articles.size(), [&](std::size_t p) { articles[p] = problem_html(c, p, fields[p]); });

@@ -1,4 +1,4 @@
-// What the page draws of problems and papers: curves by every measure, and the papers' figures.
+// The charts of problems and papers: curves by every metric, and the papers' figures.
 #include <fmt/format.h>
 
 #include <algorithm>

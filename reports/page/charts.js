@@ -217,6 +217,17 @@ document.addEventListener('click', ({target}) => {
   if (place.matches('article')) CHOSEN.set(Number(place.dataset.p), lines);
   showLinesIn(place, lines);
 });
+// Names of lines are one stop of the keyboard: arrows move among them.
+ON_UNPACK.push((place) => place.querySelectorAll('.names').forEach((names) => {
+  const buttons = [...names.querySelectorAll('button')];
+  buttons.forEach((button, i) => { button.tabIndex = i === 0 ? 0 : -1; });
+  names.addEventListener('keydown', ({key}) => {
+    const next = buttons[buttons.indexOf(document.activeElement) + (key === 'ArrowRight' ? 1 : key === 'ArrowLeft' ? -1 : NaN)];
+    if (next === undefined) return;
+    buttons.forEach((button) => { button.tabIndex = button === next ? 0 : -1; });
+    next.focus();
+  });
+}));
 ON_UNPACK.push((place) => {
   if (!place.matches('article')) place.querySelectorAll('.chart').forEach((chart) => live(chart, () => fitView(chart)));
 });

@@ -1,5 +1,5 @@
-// Fields of a problem on a grid: y*, x*, and for one method of each kind x and what is missing, a
-// byte a cell, which the scripts paint and from which a reader chooses the step.
+// Fields of a problem on a grid: y*, x*, and x and x − x* of one method of each kind, with one byte
+// per cell. The scripts paint them, and the reader selects the step.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -105,12 +105,11 @@ std::string given_html(const FoundFields& all) {
   if (frames.has_truth())
     pictures += picture(all, frames.truth(), all.x_scale, truth, truth + ": " + quantity_name(all));
   return fmt::format(
-      "<figure class=given><div class=two>{}</div><figcaption><b>What is given{}.</b> {}{}; its "
-      "colours "
-      "end at ±{}.</figcaption></figure>",
-      pictures, frames.has_truth() ? ", and what is sought" : "",
-      html_text("y* is the " + quantity_name(all.y)),
-      all.is_history() ? ", the highest row alone" : "", short_figure(all.y_scale));
+      "<figure class=given><div class=two>{}</div><figcaption><b>The data{}.</b> {}{}; its colour "
+      "scale ends at ±{}.</figcaption></figure>",
+      pictures, frames.has_truth() ? ", and the true x" : "",
+      html_text("y* is the " + quantity_name(all.y)), all.is_history() ? ", in the top row" : "",
+      short_figure(all.y_scale));
 }
 
 std::string found_html(const Comparison& c, const FoundFields& all, const FoundField& found) {
@@ -142,23 +141,23 @@ std::string key_html(const FoundFields& all) {
   std::string bytes;  // 64 to 192: half of them, as far as colours go
   for (int byte = 64; byte <= 192; ++byte) bytes += static_cast<char>(byte);
   return fmt::format(
-      "<p class=field-key><span>−{0}</span>{1}<span>{0}</span> {2}. {3} have this one scale; what "
-      "lies beyond has the colour of its end.{4}</p>",
+      "<p class=field-key><span>−{0}</span>{1}<span>{0}</span> {2}. {3} share this scale; values "
+      "beyond it have the colour of its end.{4}</p>",
       short_figure(all.x_scale),
       canvas_html(bytes, 1, static_cast<Index>(bytes.size()), "diverging",
                   "from blue over white, which is 0, to orange"),
-      html_text(quantity_name(all)), all.is_history() ? "All pictures" : "x, x* and x − x*",
+      html_text(quantity_name(all)), all.is_history() ? "All images" : "x, x* and x − x*",
       all.is_history()
-          ? fmt::format(" Across is the place and upward the time: the lowest row is x, "
-                        "at 0, the highest y, at {}.",
+          ? fmt::format(" The horizontal axis is space and the vertical axis is time: the "
+                        "bottom row is x at time 0, and the top row is y at time {}.",
                         short_figure(all.time))
           : "");
 }
 
 std::string fields_reading(const Comparison& c, const FoundFields& all) {
   const std::string seed = fmt::format("seed {}", seed_text(all.seed));
-  const std::string sample = all.is_learned ? "the first sample of the validation, " + seed : seed;
-  std::string text = fmt::format("The best method of each kind, on {}.", sample);
+  const std::string sample = all.is_learned ? "the first validation sample, " + seed : seed;
+  std::string text = fmt::format("The best method of each kind: {}.", sample);
   if (!all.frames().has_truth()) return text;
   const auto end = [](const FoundField& found) { return found.apart.back(); };
   const auto [least, most] = std::ranges::minmax_element(all.found, {}, end);
@@ -166,8 +165,8 @@ std::string fields_reading(const Comparison& c, const FoundFields& all) {
     return fmt::format("{}, ‖x − x*‖ {} ‖x*‖", shown_spec(c.optimizers[at->optimizer].brief),
                        apart_text(*at, at->apart.size() - 1));
   };
-  text += fmt::format(" In the end the x nearest to x* is that of {}", words(least));
-  if (least != most) text += fmt::format("; the farthest is that of {}", words(most));
+  text += fmt::format(" At the end, x is nearest to x* for {}", words(least));
+  if (least != most) text += fmt::format(" and farthest from it for {}", words(most));
   return text + ".";
 }
 

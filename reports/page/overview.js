@@ -9,6 +9,14 @@ function filledTable(table, caption, heads, rows) {
   table.replaceChildren(element('caption', {}, caption), element('thead', {}, ...heads), element('tbody', {}, ...rows));
 }
 
+// A table that scrolls by itself where it is wider than the page.
+function scrolled(table) {
+  const place = element('div', {className: 'scroll', tabIndex: 0}, table);
+  place.setAttribute('role', 'region');
+  place.setAttribute('aria-label', table.caption.textContent);
+  return place;
+}
+
 // Its score as a dot on a track from 0 to 1, with the interval of the report's own order.
 function trackOf(s, score) {
   const dot = element('i'), [, , , low, high] = DATA.given[s];
@@ -20,13 +28,20 @@ function trackOf(s, score) {
   return element('td', {className: 'track'}, dot);
 }
 
-function standingRow({s, score, solved, settings, wins, typical, reached, runs, failed}, place, isRest) {
-  const row = element('tr', {className: isRest ? 'rest' : ''}, cellWith(String(place + 1)),
-      element('th', {scope: 'row'}, ...nameOfMethod(s)), trackOf(s, score), cellWith(score.toFixed(3)), cellWith(String(solved), `/${settings}`),
+function standingRow({s, score, solved, settings, wins, typical, reached, runs, failed}, place, isRest, remark = '') {
+  const row = element('tr', {className: `${isRest ? 'rest' : ''} ${isOwn() && DATA.group.includes(s) ? 'tied' : ''}`}, cellWith(place),
+      element('th', {scope: 'row', title: remark && worded('pinned-title')}, ...nameOfMethod(s), ...remark === '' ? [] : [element('small', {}, remark)]), trackOf(s, score), cellWith(score.toFixed(3)), cellWith(String(solved), `/${settings}`),
       cellWith(wins === 0 ? '·' : String(wins)), cellWith(multiple(typical)), cellWith(String(reached), `/${runs}`),
       cellWith(failed === 0 ? '·' : String(failed), '', {className: failed === 0 ? '' : 'lost'}));
   row.dataset.s = s;
   return row;
+}
+
+// Methods that are not ranked since they see more on some settings: those settings alone count.
+function pinnedRows() {
+  if (!isOwn()) return [];
+  return DATA.pinned.map(([settings, runs, failed, [s, score, solved, wins, typical, reached]]) =>
+    standingRow({s, score, solved, settings, wins, typical: typical ?? Infinity, reached, runs, failed}, '–', false, worded('pinned', {settings, all: DATA.common.length})));
 }
 
 function drawStandings(table) {
@@ -36,17 +51,19 @@ function drawStandings(table) {
   if (rows.length === 0 || DATA.allLearned)
     return table.replaceChildren(element('caption', {}, worded('all-learned')));
   filledTable(table, worded('ranking', {tau: tauName(view.target), measure: measureNow().counted}),
-      [element('tr', {}, ...heads.map((head) => element('th', {scope: 'col'}, head)))], rows.map((row) => standingRow(row, rows.indexOf(row), shown.indexOf(row) >= SHOWN_AT_FIRST)));
+      [element('tr', {}, ...heads.map((head) => element('th', {scope: 'col'}, head)))], [
+    ...rows.map((row, i) => standingRow(row, String(i + 1), shown.indexOf(row) >= SHOWN_AT_FIRST)), ...pinnedRows()]);
   makeSortable(table);
 }
 
 // How far from the best, as a class of the style sheet: how many of the report's steps are passed.
 const heatOf = (value, low) => `h${DATA.shades.filter((step) => value / low > step).length}`;
 
-function heatCell(cell, low, best) {
+function heatCell(cell, low, best, isUnknown = false) {
   if (cell === undefined) return cellWith('', '', {className: 'none'});
   const work = takenBy(cell), {failed, missing} = cell, all = cell.reached.length, reached = reachedOf(cell);
   if (all === 0) return missing > 0 ? cellWith('missing', '', {className: 'lost'}) : cellWith('n/a', '', {className: 'na'});
+  if (isUnknown) return cellWith('?', '', {className: 'none'});  // no loss of it counts as solved
   const isTold = (reached > 0 && reached < all) || failed > 0 || missing > 0;
   const told = `${reached}/${all}${failed > 0 ? `, ${failed} failed` : ''}${missing > 0 ? `, ${missing} missing` : ''}`;
   return cellWith(amount(work), isTold ? told : '', {className: work === Infinity ? 'no' : work <= best ? 'h0 best' : heatOf(atLeast(work), atLeast(low))});
@@ -83,7 +100,7 @@ function heatHeads(columns) {
 function drawHeat(table) {
   const {counted, unit} = measureNow(), solved = new Map(standingsNow().map((standing) => [standing.s, standing]));
   const leastOf = (cells) => cells.reduce((low, cell) => Math.min(low, takenBy(cell)), Infinity);
-  const columns = ['toy', 'physics', 'classical', 'other', 'learned'].flatMap((group) => [...DATA.problems.keys()].filter((p) => DATA.problems[p].group === group));
+  const columns = ['physics', 'learned', 'other', 'toy', 'classical'].flatMap((group) => [...DATA.problems.keys()].filter((p) => DATA.problems[p].group === group));
   const least = DATA.problems.map(({cells}) => leastOf(cells));
   const best = DATA.problems.map(({cells}, p) =>  // on common settings of the ranked ones
     leastOf(DATA.common.includes(p) ? cells.filter((cell) => DATA.ranked.includes(cell.s)) : cells));
@@ -96,7 +113,7 @@ function drawHeat(table) {
         element('th', {scope: 'row'}, ...nameOfMethod(s), ...kind === undefined ? [] : [element('small', {}, kind)]),
         standing === undefined ? cellWith('') : cellWith(String(standing.solved), `/${standing.settings}`, {className: 'solved'}),
         ...columns.map((p) => {
-          const place = DATA.problems[p].learned === undefined ? heatCell(by.get(p), least[p], best[p]) : learnedCell(DATA.problems[p], s);
+          const place = DATA.problems[p].learned === undefined ? heatCell(by.get(p), least[p], best[p], DATA.problems[p].isUnknown) : learnedCell(DATA.problems[p], s);
           place.dataset.p = p;
           return place;
         }));
@@ -126,7 +143,41 @@ function makeMore(table, draw) {
   };
 }
 
+// Three methods on their way from y* to x: their kept steps in turn, once; again on demand.
+function makeMotion(place) {
+  const kinds = ['Adaptive gradient', 'Least squares', 'Inversion of the physics'], stepsOf = (three) => Math.min(...three.map(({iterations}) => iterations.length));
+  const all = DATA.problems.map(({fields}, p) => ({p, three: kinds.map((kind) => fields?.found.find(({s}) => DATA.kinds[s] === kind))}))
+      .filter(({three}) => !three.includes(undefined) && stepsOf(three) > 1).sort((a, b) => stepsOf(b.three) - stepsOf(a.three));
+  if (all.length === 0) return;
+  const [{p, three}] = all, {fields, spec} = DATA.problems[p], article = document.getElementById(`problem-${p}`), made = document.createElement('template');
+  made.innerHTML = article.querySelector(':scope > noscript')?.textContent ?? article.innerHTML;
+  const figures = ['.given', ...three.map(({s}) => `[data-s="${s}"]`)].map((which) => made.content.querySelector(`.field-cards > figure${which}`));
+  const most = Math.max(...three.map(({iterations}) => iterations.length)), truth = bytesOf(fields.truth);
+  let step = most, timer;
+  const draw = () => three.forEach((found, i) => showStep(figures[i + 1], {...fields, found, truth}, step));
+  const button = pressable('Play', undefined, () => (timer === undefined ? play() : pause()));
+  const pause = () => {
+    clearInterval(timer);
+    timer = undefined;
+    button.textContent = 'Play';
+  };
+  const play = () => {
+    if (step >= most) step = 0;
+    button.textContent = 'Pause';
+    timer = setInterval(() => {
+      step = Math.min(most, step + 1);
+      draw();
+      if (step === most) pause();
+    }, 700);
+  };
+  place.replaceChildren(element('p', {}, element('a', {href: `#problem-${p}`}, worded('motion', {problem: spec})), ' ', button), element('div', {className: 'field-cards'}, ...figures));
+  place.querySelectorAll('canvas').forEach((canvas) => paint(canvas));
+  draw();
+  if (!matchMedia('(prefers-reduced-motion: reduce)').matches) play();
+}
+
 function liveOverview() {
+  live(document.getElementById('motion'), () => { if (document.getElementById('motion').childElementCount === 0) makeMotion(document.getElementById('motion')); });
   const standings = document.getElementById('standings-table'), heat = document.getElementById('heat');
   live(standings, makeMore(standings, drawStandings));
   live(heat, makeMore(heat, drawHeat));

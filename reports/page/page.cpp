@@ -1,5 +1,5 @@
-// The page: its template with style and scripts, filled with tables, drawings and data. One file
-// that asks nothing of the network.
+// The page: its template with style and scripts, filled with tables, charts and data, in one file
+// that does not need a network connection.
 #include "reports/page/page.h"
 
 #include <fmt/format.h>
@@ -98,6 +98,33 @@ std::string profile_html(const Comparison& c) {
   return html_text(profile_reading(c, kTightest));
 }
 
+// How many of the published results agree, and the plot of one that does: of the ratios with a
+// stated error that with the most seeds.
+std::string published_html(const Document& document) {
+  const std::vector<Verdict> facts = verdicts_on_facts(document.claims, false);
+  const auto count = [&](Verdict from, Verdict to) {
+    return std::ranges::count_if(facts,
+                                 [&](Verdict verdict) { return verdict >= from && verdict <= to; });
+  };
+  std::string html = fmt::format(
+      "<p class=checked>{} <a href=\"#claims\">{}</a> · <a href=\"#figures\">{}</a></p>",
+      html_text(words("page.published", count(Verdict::reproduced, Verdict::consistent),
+                      count(Verdict::stronger, Verdict::stronger),
+                      count(Verdict::partly, Verdict::not_reproduced))),
+      html_text(words("page.each-claim")), html_text(words("page.all-figures")));
+  const Judgement* best = nullptr;
+  for (const Judgement& one : document.claims)
+    if (is_decided(one.verdict) && is_supported(one.verdict) && one.evidence.kind == "ratio" &&
+        one.band && one.band->high < kNever && one.band->low < one.band->high &&
+        (best == nullptr || one.measured->n > best->measured->n))
+      best = &one;
+  if (best == nullptr) return html;
+  const std::vector<Plot> plots = claim_plots(best->evidence, best->id + "-first");
+  if (plots.empty()) return html;
+  return fmt::format("{}<p class=reading><a href=\"#claim-{}\">{}</a></p>{}", html, best->id,
+                     html_text(best->sentence), plot_html(plots[0]));
+}
+
 // The first tab: alerts; a sentence that decides, of which all that these runs say opens; facts.
 std::string overview_html(const Document& document) {
   const Comparison& c = document.comparison;
@@ -121,7 +148,10 @@ std::string overview_html(const Document& document) {
   html += "<dl class=settled>";
   for (const Reading& reading : ranking_facts(c))
     html += fmt::format("<dt>{}<dd>{}", html_text(reading.title), html_text(reading.text));
-  return html + "</dl>\n";
+  html += "</dl>\n";
+  if (document.claims.empty()) return html;
+  return "<div class=first><div>" + html + "</div><div>" + published_html(document) +
+         "</div></div>";
 }
 
 std::string endings_html(const Comparison& c) {

@@ -2,6 +2,8 @@
 // every measure, and of each problem the medians of its cells.
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <ranges>
@@ -117,6 +119,7 @@ std::string problem_json(const Comparison& c, std::size_t p,
              is_ordered(c, p), json_list(asked, [&](std::size_t s) { return cell_json(c, p, s); }),
              indices(ranked), indices(shown_at_first(c, ranked))) +
          origins_json(c, p) + learned_json(c, p) +
+         (problem.lacks_least_loss() ? ",\"isUnknown\":true" : "") +
          (fields ? ",\"fields\":" + fields_json(*fields) : "") + "}";
 }
 
@@ -169,6 +172,25 @@ std::string standings_json(const Comparison& c) {
   return text + "]]";
 }
 
+// Methods that see more on some settings than on others are not ranked: [settings, runs, failed,
+// place as above] among the ranked on those settings of the order that it was run on.
+std::string pinned_json(const Comparison& c) {
+  std::vector<std::string> all;
+  for (std::size_t s = 0; s < c.optimizers.size(); ++s) {
+    if (!c.optimizers[s].is_meaning || c.order.has(s)) continue;
+    Order order{.settings = c.order.settings, .methods = c.order.methods};
+    std::erase_if(order.settings, [&](std::size_t p) { return c.cell(p, s).planned == 0; });
+    if (order.settings.empty()) continue;
+    order.methods.push_back(s);
+    auto places = standings_over(c, order, c.yardstick.by, c.yardstick.tightest().rung);
+    std::erase_if(places, [&](const Ranked& place) { return place.optimizer != s; });
+    const Standing& own = places[0].standing;
+    all.push_back(fmt::format("[{},{},{},{}]", own.settings, own.runs, c.optimizers[s].failed,
+                              places_json(places)));
+  }
+  return "[" + joined(all, ",") + "]";
+}
+
 // What does not change from target to target: [settings, runs, failed, score's interval].
 std::string given_json(const Comparison& c) {
   const std::vector<Interval> intervals = score_intervals(c);
@@ -204,14 +226,43 @@ std::string measures_json(const Comparison& c) {
   });
 }
 
-// The sentences that scripts fill, by key.
-std::string script_words() {
-  constexpr std::string_view kPrefix = "script.";
+// The sentences of scripts, which these fill, or the meanings of terms; by key.
+std::string script_words(std::string_view prefix) {
   std::vector<std::string> all;
   for (const auto& [key, sentence] : all_sentences())
-    if (key.starts_with(kPrefix))
-      all.push_back(json_quoted(key.substr(kPrefix.size())) + ":" + json_quoted(sentence.text));
+    if (key.starts_with(prefix))
+      all.push_back(json_quoted(key.substr(prefix.size())) + ":" + json_quoted(sentence.text));
   return "{" + joined(all, ",") + "}";
+}
+
+// The advice for every choice of means: [which of them] by derivatives, inverse, size and budget,
+// and each once with its text, its settings and [optimizer, solved, settings, score, median work,
+// whether in the group] of its methods, one after the other.
+constexpr std::array<std::array<Index, 2>, 4> kSizes = {
+    {{0, Means{}.most_unknowns}, {0, 10}, {11, 100}, {101, Means{}.most_unknowns}}};
+constexpr std::array<Real, 4> kBudgets = {kNever, 10'000, 1'000, 100};
+
+std::string advice_json(const Comparison& c) {
+  if (is_large(c)) return "[]";  // each is a decision of its own
+  constexpr std::size_t kMost = 10, kEach = kSizes.size() * kBudgets.size();
+  std::vector<std::string> all(2 * kDerivativeNames.size() * kEach);
+  share(all.size(), [&](std::size_t i) {
+    const auto& [least, most] = kSizes[i / kBudgets.size() % kSizes.size()];
+    const Means means{.derivatives = static_cast<Derivatives>(i / (2 * kEach)),
+                      .has_inverse = i / kEach % 2 == 1,
+                      .least_unknowns = least,
+                      .most_unknowns = most,
+                      .budget = kBudgets[i % kBudgets.size()]};
+    const Advice advice = advise(c, means);
+    const std::size_t shown = std::min(kMost, advice.ranked.size());
+    all[i] = fmt::format(
+        "[{},{},{}]", json_quoted(advice_text(c, means, advice)), advice.settings.size(),
+        json_list(advice.ranked | std::views::take(shown), [](const Advised& one) {
+          return fmt::format("{},{},{},{:.3g},{},{}", one.optimizer, one.solved, one.settings,
+                             one.score, number(one.work), one.is_in_group ? 1 : 0);
+        }));
+  });
+  return json_list(all, [](const std::string& text) { return text; });
 }
 
 }  // namespace
@@ -245,13 +296,15 @@ std::string page_data(const Document& document, const AllFields& fields) {
   std::string text = fmt::format(
       "{{\"runs\":{},\"by\":\"{}\",\"allLearned\":{},\"shades\":{},\"measures\":{},\"isTimedTogether\":{},"
       "\"rungs\":{},\"targets\":{},{},\"given\":{},\"ranked\":{},\"common\":{},\"claims\":{},"
-      "\"words\":{},\"standings\":{},\"problems\":[",
+      "\"pinned\":{},\"group\":{},\"advice\":{},\"words\":{},\"terms\":{},\"standings\":{},\"problems\":[",
       json_quoted(runs_address(document)), name_of(c.yardstick.by), is_all_learned(c),
       json_list(kShades, exact_figure), measures_json(c), c.is_any_timed_together,
       json_list(c.yardstick.tolerances,
                 [](const Tolerance& tolerance) { return std::to_string(tolerance.rung); }),
       indices(targets_of(c)), axes_json(c), given_json(c), indices(c.order.methods),
-      indices(c.order.settings), claims_about(document), script_words(), standings_json(c));
+      indices(c.order.settings), claims_about(document), pinned_json(c),
+      indices(c.decision ? c.decision->group() : std::vector<std::size_t>()), advice_json(c),
+      script_words("script."), script_words("glossary."), standings_json(c));
   for (std::size_t p = 0; p < c.problems.size(); ++p)
     text += (p > 0 ? "," : "") + problem_json(c, p, fields[p]);
   std::string safe;  // no </script and no <!-- can stand in it

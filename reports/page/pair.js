@@ -1,17 +1,10 @@
-// Two methods of the reader's choice. `pairOf` is the one function of these scripts that makes
-// figures: those of `pairing_of` in the report, which a test of the browser holds it to for every pair.
-const MOST_DOUBLINGS = 6;  // unsolved counts as 64 times as much
+// Up to four methods of the reader's choice. `ratioOf` is the one function of these scripts that makes
+// figures: those of `work_ratio` in the report, which a test of the browser holds it to for every pair.
+const MOST_COMPARED = 4;
 
 function medianOf(ascending) {
   const half = Math.floor(ascending.length / 2);
   return ascending.length % 2 === 1 ? ascending[half] : (ascending[half - 1] + ascending[half]) / 2;
-}
-
-// log2 of what a takes over what b takes; unsolved against solved is the most.
-function doublingsOf(a, b) {
-  if (a === Infinity && b === Infinity) return 0;
-  if (a === Infinity || b === Infinity) return a === Infinity ? MOST_DOUBLINGS : -MOST_DOUBLINGS;
-  return Math.min(MOST_DOUBLINGS, Math.max(-MOST_DOUBLINGS, Math.log2(atLeast(a)) - Math.log2(atLeast(b))));
 }
 
 // The order statistics that the test of signs does not reject at 0.05; of fewer than six the range.
@@ -27,47 +20,57 @@ function medianInterval(ascending) {
   return [ascending[first], ascending[n - 1 - first]];
 }
 
-// Problems of one name count as one: the median over the settings that both were run on.
-function pairOf(a, b) {
-  const names = new Map();
-  DATA.problems.forEach((problem, p) => {
-    const mine = cellOf(problem, a), other = cellOf(problem, b);
-    if (!problem.isOrdered || mine === undefined || other === undefined) return;
-    const [x, y] = [takenBy(mine), takenBy(other)], one = names.get(problem.name) ?? {name: problem.name, values: [], settings: [], isSolved: false};
-    names.set(problem.name, one);
-    one.isSolved = one.isSolved || x < Infinity || y < Infinity;
-    one.values.push(doublingsOf(x, y));
-    one.settings.push({p, a: x, b: y});
-  });
-  const all = [...names.values()], solved = all.filter((one) => one.isSolved)
-      .map((one) => ({...one, doublings: medianOf([...one.values].sort((x, y) => x - y))}));
-  const sorted = solved.map((one) => one.doublings).sort((x, y) => x - y), count = (isCounted) => sorted.filter(isCounted).length;
-  const [low, high] = sorted.length === 0 ? [0, 0] : medianInterval(sorted);
-  return {
-    names: solved, neither: all.length - solved.length,
-    wins: count((d) => d < 0), losses: count((d) => d > 0), ties: count((d) => d === 0),
-    typical: sorted.length === 0 ? 1 : 2 ** -medianOf(sorted), low: 2 ** -high, high: 2 ** -low,
-  };
+// The settings that may be ranked and to which all of these methods apply.
+const settingsOf = (methods) => DATA.problems.flatMap((problem, p) => {
+  const cells = methods.map((s) => cellOf(problem, s));
+  return problem.isOrdered && cells.every((cell) => cell !== undefined && isMeasured(cell)) ? [{p, taken: cells.map((cell) => takenBy(cell))}] : [];
+});
+
+// The work of `a` over that of `b` where both solve: the median over problems, of a problem the
+// median over its settings.
+function ratioOf(a, b) {
+  const names = new Map(), counts = {both: 0, onlyA: 0, onlyB: 0, neither: 0};
+  for (const {p, taken: [x, y]} of settingsOf([a, b])) {
+    ++counts[x < Infinity ? (y < Infinity ? 'both' : 'onlyA') : y < Infinity ? 'onlyB' : 'neither'];
+    if (x === Infinity || y === Infinity) continue;
+    const {name} = DATA.problems[p];
+    names.set(name, [...names.get(name) ?? [], Math.log2(atLeast(x)) - Math.log2(atLeast(y))]);
+  }
+  const ascending = (values) => values.sort((x, y) => x - y), all = ascending([...names.values()].map((values) => medianOf(ascending(values))));
+  if (all.length === 0) return {...counts, problems: 0, median: 1, low: 0, high: Infinity};
+  const [low, high] = medianInterval(all);
+  return {...counts, problems: all.length, median: 2 ** medianOf(all), low: 2 ** low, high: 2 ** high};
 }
 
 // --- the tab
 
-const pair = {a: 0, b: 0, isChosen: false};
+const pair = {methods: [0], isChosen: false};
 
-function readPair() {
-  const asked = new URLSearchParams(location.search), of = (name) => DATA.optimizers.indexOf(name);
-  const known = (name) => DATA.methods.indexOf(name);
-  const first = [of(asked.get('a')), known('sip'), 0].find((s) => s >= 0);
-  const second = [of(asked.get('b')), known('adam'), 1, 0].find((s) => s >= 0 && s < DATA.optimizers.length && s !== first);
-  Object.assign(pair, {a: first, b: second ?? first, isChosen: asked.has('a') || asked.has('b')});
+// Of the rows of a method that with the most settings which it and another both solve.
+function bestRow(method, other) {
+  const rows = [...DATA.optimizers.keys()].filter((s) => DATA.methods[s] === method && s !== other);
+  return rows.sort((a, b) => ratioOf(b, other).both - ratioOf(a, other).both)[0];
 }
 
-function pairSelect(key, redraw) {
-  const select = element('select', {});
-  select.setAttribute('aria-label', key === 'a' ? 'First method' : 'Second method');
-  DATA.optimizers.forEach((name, s) => select.append(element('option', {value: s, selected: s === pair[key]}, name)));
+function readPair() {
+  const asked = new URLSearchParams(location.search).getAll('vs').map((name) => DATA.optimizers.indexOf(name)).filter((s) => s >= 0);
+  const adam = DATA.methods.indexOf('adam'), sip = adam < 0 ? undefined : bestRow('sip', adam), own = sip === undefined ? [0, 1] : [sip, adam];
+  const methods = asked.length > 0 ? asked.slice(0, MOST_COMPARED) : own.filter((s) => s < DATA.optimizers.length);
+  Object.assign(pair, {methods, isChosen: asked.length > 0});
+}
+
+// The choice of one method; "–" leaves it out, and a last one adds it.
+function pairSelect(place, redraw) {
+  const select = element('select', {}), {methods} = pair, isOptional = place > 1;
+  select.setAttribute('aria-label', `Method ${place + 1}`);
+  if (isOptional) select.append(element('option', {value: -1, selected: place >= methods.length}, '–'));
+  DATA.optimizers.forEach((name, s) => {
+    if (s === methods[place] || !methods.includes(s)) select.append(element('option', {value: s, selected: s === methods[place]}, name));
+  });
   select.addEventListener('change', () => {
-    Object.assign(pair, {[key]: Number(select.value), isChosen: true});
+    const chosen = Number(select.value);
+    if (chosen < 0) methods.splice(place, 1); else methods[place] = chosen;
+    pair.isChosen = true;
     writeAddress();
     redraw();
   });
@@ -76,85 +79,85 @@ function pairSelect(key, redraw) {
 
 const named = (s) => element('b', {}, swatch(s), DATA.optimizers[s], DATA.marks[s]);
 
-// What both take on the problems that both solve: medians, so that "dear" has a size.
-function priceRows() {
-  const both = DATA.problems.filter((problem) => problem.isOrdered).map((problem) => [cellOf(problem, pair.a), cellOf(problem, pair.b)])
-      .filter(([x, y]) => x !== undefined && y !== undefined && takenBy(x) < Infinity && takenBy(y) < Infinity);
-  const middle = (side, measure) => (both.length === 0 ? '–' : figure(Number(medianOf(both.map((cells) => takenBy(cells[side], view.target, measure)).sort((x, y) => x - y)).toPrecision(4))));
-  const rows = MEASURES.map((name, measure) => [`${DATA.measures[measure].counted}, ${DATA.measures[measure].unit}`, middle(0, measure), middle(1, measure)]);
-  return [...rows, ['required derivatives', DATA.asks[pair.a], DATA.asks[pair.b]],
-    ['extra information (†)', DATA.privileges[pair.a] || 'none', DATA.privileges[pair.b] || 'none'],
-    ['kind', DATA.kinds[pair.a], DATA.kinds[pair.b]]].map(([what, a, b]) => ({what, a, b, n: both.length}));
-}
-
+// Medians over the settings that all of them solve.
 function priceTable() {
-  const rows = priceRows();
-  const head = element('tr', {}, element('th', {scope: 'col'}, ''), ...[pair.a, pair.b].map((s) => element('th', {scope: 'col'}, named(s))));
-  const body = rows.map(({what, a, b}) => element('tr', {}, element('th', {scope: 'row'}, what), element('td', {className: 'text'}, a), element('td', {className: 'text'}, b)));
-  return element('table', {className: 'prices'}, element('caption', {}, `Medians over the ${rows[0].n} settings that both solve to τ = ${tauName(view.target)}`),
-      element('thead', {}, head), element('tbody', {}, ...body));
-}
-
-function factorWords(ratio, first, second) {
-  const [who, factor] = ratio >= 1 ? [first, ratio] : [second, 1 / ratio];
-  return ratio === 1 ? 'no difference' : `${multiple(factor)} in favour of ${DATA.optimizers[who]}`;
+  const {methods} = pair, solved = settingsOf(methods).filter(({taken}) => taken.every((work) => work < Infinity));
+  const middle = (s, measure) => (solved.length === 0 ? '–' : figure(Number(medianOf(solved.map(({p}) => takenBy(cellOf(DATA.problems[p], s), view.target, measure)).sort((x, y) => x - y)).toPrecision(4))));
+  const rows = [...DATA.measures.map(({counted, unit}, measure) => [`${counted}, ${unit}`, (s) => middle(s, measure)]), ['required derivatives', (s) => DATA.asks[s]],
+    ['extra information (†)', (s) => DATA.privileges[s] || 'none'], ['kind', (s) => DATA.kinds[s]]];
+  const table = element('table', {className: 'prices'});
+  filledTable(table, worded('price-caption', {settings: solved.length, tau: tauName(view.target)}), [element('tr', {}, element('td'), ...methods.map((s) => element('th', {scope: 'col'}, named(s))))],
+      rows.map(([what, of]) => element('tr', {}, element('th', {scope: 'row'}, what), ...methods.map((s) => element('td', {className: 'text'}, of(s))))));
+  return table;
 }
 
 // A sentence that says no more than the interval does.
-function pairSentence(told) {
-  const {a, b} = pair, n = told.names.length, counted = measureNow().counted;
-  if (n === 0) return `Neither solves a problem that both were run on to τ = ${tauName(view.target)}.`;
-  const range = n < 6 ? `range of ${n}` : '95 % interval', isOpen = told.low <= 1 && told.high >= 1;
-  return `${DATA.optimizers[a]} needs less ${counted} on ${told.wins} of ${n} problems and more on ${told.losses}` +
-      `${told.ties > 0 ? `, the same on ${told.ties}` : ''}${told.neither > 0 ? `; neither solves ${told.neither} more` : ''}. ` +
-      `Median factor: ${factorWords(told.typical, a, b)} (${range} ${multiple(told.low)} to ${multiple(told.high)}, ` +
-      `above 1 for ${DATA.optimizers[a]})${isOpen || n < 6 ? ': not significant.' : '.'}`;
+function pairSentence(a, b) {
+  const {both, onlyA, onlyB, neither, problems, median, low, high} = ratioOf(a, b), isOpen = problems < 6 || (low <= 1 && high >= 1);
+  const counts = worded('pair-counts', {a: DATA.optimizers[a], b: DATA.optimizers[b], tau: tauName(view.target), both, onlyA, onlyB, neither});
+  if (both === 0) return counts;
+  const [more, less, ...ratios] = median < 1 ? [b, a, 1 / median, 1 / high, 1 / low] : [a, b, median, low, high], [ratio, least, most] = ratios.map(multiple);
+  return `${counts} ${worded('pair-ratio', {a: DATA.optimizers[more], b: DATA.optimizers[less], measure: measureNow().counted, ratio, interval: worded(problems < 6 ? 'pair-range' : 'pair-interval', {n: problems}), low: least, high: most})}${isOpen ? ` ${worded('pair-open')}` : ''}`;
 }
 
-// One bar per setting, to the left if the first method needs less; it links to the problem with both lines.
-function pairBar(name, p, value, words) {
-  const bar = element('i', {className: value < 0 ? 'first' : 'second'});
-  bar.style.setProperty('--w', Math.abs(value) / MOST_DOUBLINGS);
-  bar.dataset.s = value < 0 ? pair.a : pair.b;
-  const link = element('a', {href: `#problem-${p}`}, element('span', {}, name), element('span', {className: 'way'}, bar), element('small', {}, words));
-  link.dataset.p = p;
-  link.addEventListener('click', () => showLines(p, [pair.a, pair.b]));
-  return element('li', {}, link);
+// One row a setting: a dot for each method on one logarithmic axis, ✗ at its end.
+function dotRows(rows) {
+  const values = rows.flatMap(({taken}) => taken.filter((value) => value > 0 && value < Infinity)), [low, high] = [Math.min(...values), Math.max(...values)];
+  const at = (value) => (value === Infinity ? 1 : high > low ? 0.94 * Math.log(Math.max(value, low) / low) / Math.log(high / low) : 0);
+  return element('ol', {className: 'bars-of'}, ...rows.map(({p, taken, words}) => {
+    const dots = taken.map((value, i) => {
+      const dot = element('i', {className: value === Infinity ? 'lost' : ''}, value === Infinity ? '✗' : '');
+      dot.style.setProperty('--at', at(value));
+      dot.dataset.s = pair.methods[i];
+      return dot;
+    });
+    const link = element('a', {href: `#problem-${p}`}, element('span', {}, DATA.problems[p].spec), element('span', {className: 'way'}, ...dots), element('small', {}, words));
+    link.dataset.p = p;
+    link.addEventListener('click', () => showLines(p, pair.methods));
+    return element('li', {}, link);
+  }));
 }
 
-function pairBars(told) {
-  const settings = told.names.flatMap((one) => one.settings.map(({p, a, b}) => ({p, value: doublingsOf(a, b), words: `${amount(a)} : ${amount(b)}`})));
-  settings.sort((x, y) => x.value - y.value);
-  return element('ol', {className: 'bars-of'}, ...settings.map(({p, value, words}) => pairBar(DATA.problems[p].spec, p, value, words)));
+function settingRows() {
+  const ratio = ([x, y]) => (x === y ? 0 : x === Infinity ? 1e9 : y === Infinity ? 1e8 : Math.log(x / y));
+  return settingsOf(pair.methods).sort((x, y) => ratio(x.taken) - ratio(y.taken)).map(({p, taken}) => ({p, taken: taken.map(atLeast), words: taken.map(amount).join(' : ')}));
 }
 
 // Learned problems by the error in x at equal work.
-function learnedBars() {
-  const bars = [];
-  DATA.problems.forEach((problem, p) => {
-    const [mine, other] = [pair.a, pair.b].map((s) => problem.learned?.rows.find((row) => row.s === s));
-    if (mine === undefined || other === undefined) return;
-    const [x, y] = [mine.error ?? Infinity, other.error ?? Infinity];
-    const value = x === Infinity || y === Infinity ? doublingsOf(x, y) : Math.min(MOST_DOUBLINGS, Math.max(-MOST_DOUBLINGS, Math.log2(x / y)));
-    bars.push(pairBar(problem.spec, p, value, `${figure(x)} : ${figure(y)}`));
+function learnedSection() {
+  const rows = DATA.problems.flatMap(({learned}, p) => {
+    const found = pair.methods.map((s) => learned?.rows.find((row) => row.s === s)), taken = found.map((row) => row?.error ?? Infinity);
+    return found.includes(undefined) ? [] : [{p, taken, words: taken.map(figure).join(' : ')}];
   });
-  return bars;
+  return rows.length === 0 ? [] : [element('h3', {}, worded('learned-pair')), dotRows(rows)];
 }
 
-function learnedSection() {
-  const learned = learnedBars();
-  return learned.length === 0 ? [] : [element('h3', {}, 'Learned: error in x at equal work'), element('ol', {className: 'bars-of'}, ...learned)];
+// The work of each other method over settings, against that of the first: below the diagonal it needs less.
+function scatter(rows) {
+  const solved = rows.filter(({taken}) => taken[0] < Infinity && taken.some((value, i) => i > 0 && value < Infinity)), values = solved.flatMap(({taken}) => taken.filter((value) => value < Infinity));
+  if (solved.length < 2) return [];
+  const [low, high] = [Math.min(...values) / 1.2, 1.2 * Math.max(...values)], at = (value) => 40 + 240 * Math.log(value / low) / Math.log(high / low);
+  const drawn = svgElement('svg', {class: 'scatter', viewBox: '0 0 300 310', role: 'img', 'aria-label': worded('scatter', {measure: measureNow().counted, a: DATA.optimizers[pair.methods[0]]})});
+  drawn.append(svgElement('path', {class: 'grid', d: 'M40 280V40M40 280H280M40 280L280 40'}));
+  for (const tick of ticksOf(low, high, true))
+    drawn.append(svgElement('text', {x: at(tick), y: 294, 'text-anchor': 'middle'}, short(tick)), svgElement('text', {x: 36, y: 324 - at(tick), 'text-anchor': 'end'}, short(tick)));
+  drawn.append(svgElement('text', {x: 160, y: 308, 'text-anchor': 'middle'}, DATA.optimizers[pair.methods[0]]));
+  for (const {p, taken} of solved)
+    taken.forEach((value, i) => {
+      if (i === 0 || value === Infinity) return;
+      const dot = svgElement('circle', {cx: at(taken[0]), cy: 320 - at(value), r: 4, 'data-s': pair.methods[i], 'data-p': p});
+      dot.append(svgElement('title', {}, `${DATA.problems[p].spec}: ${taken.map(short).join(' : ')}`));
+      drawn.append(dot);
+    });
+  return [element('figure', {}, element('figcaption', {}, drawn.getAttribute('aria-label')), drawn)];
 }
 
 function drawPair(place) {
-  const told = pairOf(pair.a, pair.b), redraw = () => drawPair(place);
-  place.replaceChildren(
-      element('p', {className: 'chosen-two'}, pairSelect('a', redraw), ' against ', pairSelect('b', redraw)),
-      element('p', {className: 'verdict'}, pairSentence(told)),
-      element('div', {className: 'decided'}, element('div', {},
-          element('p', {className: 'legend'}, `To the left ${DATA.optimizers[pair.a]} needs less, to the right ${DATA.optimizers[pair.b]}; a full bar is a factor of 64 or unsolved. Select a bar for its curves.`),
-          pairBars(told), ...learnedSection()),
-      priceTable()));
+  const redraw = () => drawPair(place), {methods} = pair, rows = settingRows(), selects = [...Array(Math.min(MOST_COMPARED, methods.length + 1)).keys()].map((i) => pairSelect(i, redraw));
+  place.replaceChildren(element('p', {className: 'chosen-two'}, ...selects.flatMap((select, i) => (i === 0 ? [select] : [i === 1 ? ' against ' : ' ', select]))),
+      ...methods.slice(1).map((s) => element('p', {className: 'verdict'}, pairSentence(methods[0], s))),
+      element('div', {className: 'decided'}, element('div', {}, element('p', {className: 'legend'}, worded('pair-legend', {measure: measureNow().counted})), dotRows(rows), ...learnedSection()),
+          element('div', {}, scrolled(priceTable()), ...scatter(rows))));
 }
 
 function livePair(place) {

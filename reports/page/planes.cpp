@@ -122,7 +122,8 @@ Drawing plane_drawing(const Comparison& c, std::size_t p, const std::vector<Path
   out.ends.push_back({{}, "start", {first.x.at(0)}, {first.y.at(0)}, {}, {}});
   if (goal.size() == 2) out.ends.push_back({{}, "goal", {goal[0]}, {goal[1]}, {}, {}});
   if (!out.is_to_scale)
-    out.plot.caption = fmt::format("Not to scale: one axis is {:.3g} times as long.", stretch);
+    out.plot.caption =
+        fmt::format("Not to scale: the scales of the axes differ by a factor of {:.3g}.", stretch);
   return out;
 }
 
@@ -135,7 +136,7 @@ std::string path_reading(const Comparison& c, std::vector<Path> all, Rows Trajec
   constexpr Real kStraight = 1.0005;
   const Real least = length(straight);
   return fmt::format(
-      "Straightest: {}, {}. Longest way round: {}, {} the direct distance.",
+      "Shortest path: {}, {}. Longest path: {}, {} the direct distance.",
       shown_spec(c.optimizers[straight.optimizer].label),
       least < kStraight ? "a straight line" : multiple(least) + " the direct distance",
       shown_spec(c.optimizers[winding.optimizer].label), multiple(length(winding)));
@@ -158,13 +159,15 @@ std::string planes_html(const Comparison& c, std::size_t p) {
                         title, html_text(path_reading(c, all, rows)),
                         html_text(drawing.plot.caption), drawing_svg(drawing));
   };
-  add(sheet->landscape_x, "x", &Trajectory::x, sheet->truth, "Paths in x, over the loss.");
+  add(sheet->landscape_x, "x", &Trajectory::x, sheet->truth,
+      "Paths in x, with contours of the loss.");
   add(sheet->landscape_y, "y", &Trajectory::y, sheet->target, "The same paths in y.");
-  return html + fmt::format(
-                    "</div><p class=legend>Thin lines: equal loss, {}. Paths of the lowest seed; "
-                    "points are steps, drawn for runs of few steps. ○ start, ● solution in x, "
-                    "target in y.</p>",
-                    levels_text(sheet->landscape_x ? *sheet->landscape_x : *sheet->landscape_y));
+  return html +
+         fmt::format(
+             "</div><p class=legend>Thin lines: contours of the loss, {}. The paths are those of "
+             "the lowest seed; points mark the steps of short runs. ○: start; ●: solution in "
+             "x, target in y.</p>",
+             levels_text(sheet->landscape_x ? *sheet->landscape_x : *sheet->landscape_y));
 }
 
 }  // namespace isoline::reports

@@ -18,7 +18,7 @@
 namespace isoline::reports {
 namespace {
 
-// Copies it, by a script.
+// A button that copies the text by a script.
 std::string command_button(const std::string& command) {
   return fmt::format("<button class=copy data-command=\"{}\">copy</button>", html_text(command));
 }
@@ -66,7 +66,7 @@ std::string rows_html(const Table& table) {
   return html;
 }
 
-// " · <b>name</b>: what it means", but for the first dot.
+// " · <b>name</b>: meaning"; the first entry does not have the dot.
 void add_meaning(std::string& html, const std::string& name, const std::string& meaning) {
   if (!meaning.empty())
     html += fmt::format("{}<b>{}</b>: {}", html.empty() ? "" : " · ", html_text(name),
@@ -132,7 +132,7 @@ std::string address(const std::string& path) {
   return out;
 }
 
-// From the page to a record; empty where it is not known where either lies.
+// The path from the page to a record; empty if either place is unknown.
 std::string record_link(const Document& document, const std::string& name) {
   if (document.out.empty()) return "";
   for (const std::filesystem::path folder : document.comparison.study->folders) {
@@ -181,7 +181,7 @@ std::string runs_address(const Document& document) {
 std::string claims_html(const Document& document) {
   std::string html = section_html(document.section("claims"));
   if (document.claims.empty()) return html;
-  html += "<h3>Each claim, and what decides it</h3>\n<div class=each-claim>";
+  html += "<h3>Evidence for each claim</h3>\n<div class=each-claim>";
   for (const Judgement& judgement : document.claims) html += claim_html(document, judgement);
   return html + "</div>";
 }
@@ -229,7 +229,7 @@ std::string details_html(const Comparison& c) {
   for (const std::string_view what : {name_of(by), std::string_view("time, ms,")})
     for (const Tolerance& tolerance : c.yardstick.tolerances)
       table.columns.push_back(fmt::format("{} to {}", what, tolerance.name));
-  for (const char* last : {"final loss", "error in x", "how the runs ended", "again"})
+  for (const char* last : {"final loss", "error in x", "how the runs ended", "command"})
     table.columns.emplace_back(last);
   for (std::size_t p = 0; p < c.problems.size(); ++p)
     for (std::size_t s = 0; s < c.optimizers.size(); ++s) {
@@ -260,7 +260,7 @@ std::string details_html(const Comparison& c) {
   return "<table class=sortable id=detail-table>" + rows_html(table) + "</table>";
 }
 
-// The grid of measured properties, a row a method, from which its card opens.
+// The table of measured properties, with one row per method, which opens its details.
 
 namespace {
 
@@ -276,10 +276,10 @@ constexpr Property kProperties[] = {
     {"linear map of y", "the path in x is the same under any linear map of y"},
     {"one step", "reaches a regular solution in one step"},
     {"superlinear", "order 1.5 or more near a regular solution"},
-    {"singular too", "order 1.5 or more where J is singular at the solution"},
-    {"as declared", "asked for no oracle that its entry does not name"}};
+    {"order if singular", "order 1.5 or more where J is singular at the solution"},
+    {"as declared", "called only the oracles that its entry lists"}};
 
-// Of each property whether it holds; none where it was not measured.
+// Whether each property holds; no value if it was not measured.
 std::array<std::optional<bool>, std::size(kProperties)> answers_of(
     const AuditedOptimizer& audited) {
   constexpr Real kLeastOrder = 1.5;
@@ -322,17 +322,18 @@ std::string row_html(const Comparison& c, std::size_t s) {
 
 std::string methods_html(const Comparison& c) {
   std::string html =
-      "<table class=\"grid sortable\" id=methods-table><caption>Methods by rank; press a name for "
-      "its card</caption><thead><tr><th scope=col>method<th scope=col>kind";
+      "<table class=\"grid sortable\" id=methods-table><caption>Methods by rank; select a name for "
+      "details</caption><thead><tr><th scope=col>method<th scope=col>kind";
   std::string legend;
   for (const auto& [name, meaning] : kProperties) {
     html += fmt::format("<th scope=col>{}", name);
     add_meaning(legend, name, meaning);
   }
-  html += "<th scope=col>asks for<th scope=col id=privileges>† privileged information<tbody>\n";
+  html +=
+      "<th scope=col>required derivatives<th scope=col id=privileges>extra information (†)<tbody>\n";
   for (std::size_t s = 0; s < c.optimizers.size(); ++s) html += row_html(c, s);
   return "<div class=\"scroll pane\" tabindex=0 role=region aria-label=Methods>" + html +
-         "</table></div><p class=legend>Measured on small problems whose answers are known, at "
+         "</table></div><p class=legend>Measured on small problems with known solutions, with "
          "default options. " +
          legend + ". Empty: not measured.</p>";
 }

@@ -85,6 +85,17 @@ function makeFilter(input, table, output) {
   return show;
 }
 
+// The meaning of a term, in the head of a column or beside a switch, on demand.
+function explainTerms() {
+  const tip = document.getElementById('tip');
+  const explain = ({target}) => {
+    const place = target.closest?.('thead th, #measures button'), name = place?.textContent.trim().replace(/, .*| to .*/, '');
+    if (place && Object.hasOwn(DATA.terms, name)) showTip(tip, [name, DATA.terms[name]], place);
+  };
+  for (const event of ['pointerover', 'focusin']) document.addEventListener(event, explain);
+  for (const event of ['pointerout', 'focusout']) document.addEventListener(event, ({target}) => { if (target.closest?.('thead th, #measures button')) tip.hidden = true; });
+}
+
 // A claim is of interest as long as one of its optimizers and one of its problems are.
 function hideClaims() {
   for (const [id, [optimizers, problems]] of Object.entries(DATA.claims)) {

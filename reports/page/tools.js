@@ -73,6 +73,7 @@ function addTools(place) {
   const turn = (key) => () => setKind(chart(), key, axisOf(chart(), key).kind === 'log' ? 'linear' : 'log');
   const tools = element('p', {className: 'tools'}, pressable('whole', undefined, () => fitView(chart())), pressable('SVG', undefined, () => download(`${fileOf(chart())}.svg`, 'image/svg+xml', svgText(chart()))),
       pressable('CSV', undefined, () => download(`${fileOf(chart())}.csv`, 'text/csv', csvText(chart()))));
+  if (chart().querySelector('.band') !== null) tools.append(pressable('bands', true, ({currentTarget}) => currentTarget.setAttribute('aria-pressed', !place.classList.toggle('no-bands'))));
   for (const key of ['x', 'y'])
     if (axisOf(chart(), key).kind !== 'share' && axisOf(chart(), key).low > 0) tools.firstChild.after(pressable(`log ${key}`, undefined, turn(key)));
   place.querySelector('.chart:last-of-type').after(tools);

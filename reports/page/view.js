@@ -45,10 +45,8 @@ function writeAddress() {
   }
   if (view.target !== DEFAULT_TARGET) asked.set('tau', tauName(view.target));
   if (view.measure !== DEFAULT_MEASURE) asked.set('by', MEASURES[view.measure]);
-  if (pair.isChosen === true) {
-    asked.set('a', DATA.optimizers[pair.a]);
-    asked.set('b', DATA.optimizers[pair.b]);
-  }
+  if (pair.isChosen) for (const s of pair.methods) asked.append('vs', DATA.optimizers[s]);
+  writeMeans(asked);
   const text = asked.toString();
   try {
     history.replaceState(null, '', (text === '' ? location.pathname : `?${text}`) + location.hash);
@@ -63,6 +61,7 @@ function readAddress() {
       if (hidden.includes(name) || (shown.length > 0 && !shown.includes(name))) view.hidden[kind].add(index);
     });
   }
+  readMeans(asked);
   const tau = Number(asked.get('tau'));
   if (MEASURES.includes(asked.get('by'))) view.measure = MEASURES.indexOf(asked.get('by'));
   const wanted = -5 * Math.log10(tau);

@@ -1,5 +1,5 @@
-// Plots of claims: curves over iterations, or figures over an abscissa, and the band of what was
-// published at the place where the quantity is read.
+// Plots of claims: curves over iterations, or values over an abscissa, with the published band at
+// the place where the quantity is read.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -16,7 +16,7 @@ namespace {
 std::vector<PlotSeries> goals_of(const Evidence& evidence) {
   const bool is_ratio = evidence.kind == "ratio";
   const bool is_height = is_ratio || evidence.kind == "value" || evidence.kind == "greatest";
-  if (evidence.curve != evidence.column || !is_height) return {};  // places are no heights
+  if (evidence.curve != evidence.column || !is_height) return {};  // positions are not values
   const Real unit = is_ratio ? evidence.terms.at(1).level : 1;
   return {{.optimizer = {},
            .name = "published",
@@ -26,7 +26,7 @@ std::vector<PlotSeries> goals_of(const Evidence& evidence) {
            .high = {unit * evidence.band.high}}};
 }
 
-// One line a term; terms that are the same runs read at several places have one.
+// One line per term. Terms that read the same runs at several places share a line.
 Plot curves(const Evidence& evidence) {
   Plot plot = worded_plot(evidence.is_over_time ? "curves-over-time" : "curves");
   plot.y_label = column_words(evidence.curve);
@@ -85,7 +85,7 @@ PlotSeries published_slope(const Evidence& evidence, const PlotSeries& line) {
   return out;
 }
 
-// The medians of the first half of the terms over those of the second.
+// The ratios of the medians of the first half of the terms to those of the second half.
 PlotSeries ratios_of(const PlotSeries& over, const PlotSeries& under) {
   PlotSeries line{.name = over.name + " / " + under.name, .x = over.x, .y = over.y};
   for (std::size_t i = 0; i < line.y.size(); ++i) line.y[i] /= under.y.at(i);
@@ -124,7 +124,7 @@ Plot figures_over_abscissa(const Evidence& evidence) {
   return plot;
 }
 
-// Logarithmic where all that is drawn is above 0 and spans more than a factor of ten.
+// Logarithmic if all plotted values are positive and span more than a factor of ten.
 bool is_logarithmic(const Plot& plot) {
   constexpr Real kWide = 10;
   Real low = kNever, high = 0;
@@ -146,7 +146,7 @@ std::vector<std::string> term_names(const Evidence& evidence) {
       return term.*part == evidence.terms[0].*part;
     });
   };
-  const bool has_abscissa = !evidence.abscissa.empty();  // tells the problems apart
+  const bool has_abscissa = !evidence.abscissa.empty();  // distinguishes the problems
   const bool one_problem = has_abscissa || is_one(&EvidenceTerm::problem);
   const bool one_optimizer = is_one(&EvidenceTerm::optimizer) && !one_problem;
   std::vector<std::string> names;

@@ -1,11 +1,12 @@
-// One claim whole: what is said and by whom, the verdict, what was published and measured, the
-// figures that decide it, and how to get them again.
+// One claim with its source, its verdict, the published and the measured value, the values that
+// decide it, and the command that repeats it.
 #include "reports/sections/claims.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "core/seeds.h"
 #include "reports/sections/words.h"
@@ -38,11 +39,14 @@ std::vector<Reading> readings_of(const Judgement& judgement) {
     const auto& measured = judgement.measured;
     const std::string interval =
         measured && measured->n > 1 ? words("claim.interval", interval_name(measured->n)) : "";
-    all.push_back({"What is read", judgement.quantity + "."});
+    const bool is_here =
+        std::ranges::any_of(judgement.sets, [](const CellSet& set) { return set.here > 0; });
+    all.push_back({"Quantity", judgement.quantity + "."});
     all.push_back(
         {"Published", words("claim.published", judgement.published, band_text(*judgement.band))});
-    all.push_back({"Measured", measured ? measured_text(judgement) + interval + "."
-                                        : words("claim.unmeasured")});
+    all.push_back({"Measured", measured
+                                   ? measured_text(judgement) + interval + "."
+                                   : words(is_here ? "claim.partly-here" : "claim.unmeasured")});
   }
   for (Reading& note : claim_notes(judgement)) all.push_back(std::move(note));
   for (const CellSet& set : judgement.sets) all.push_back({"Cells", cells_sentence(set)});
@@ -183,19 +187,19 @@ std::vector<Reading> claim_notes(const Judgement& judgement) {
         {"Contrast", words("claim.contrast", contrast.quantity, contrast.published,
                            contrast.measured ? figure(contrast.measured->value) : kNothing)});
   for (const OtherReading& other : judgement.others)
-    notes.push_back({"Read otherwise", words("claim.otherwise", other.how, other.measured.value,
-                                             name_of(other.verdict))});
+    notes.push_back({"Other reading", words("claim.otherwise", other.how, other.measured.value,
+                                            name_of(other.verdict))});
   if (const auto& measured = judgement.measured;
       measured && measured->predicted && judgement.is_of_one_run)
     notes.push_back({"One published run",
                      words("claim.one-run", measured->predicted->low, measured->predicted->high)});
   if (!judgement.reading.empty()) notes.push_back({"Published figure", judgement.reading});
-  if (!judgement.why.empty()) notes.push_back({"Why", judgement.why + "."});
+  if (!judgement.why.empty()) notes.push_back({"Reason", judgement.why + "."});
   if (!judgement.survives.empty())
     notes.push_back(
         {"Not refutable", words("claim.survives", joined(judgement.survives, " and "))});
   if (judgement.fact != judgement.id)
-    notes.push_back({"Fact", fmt::format("Counted with {}.", judgement.fact)});
+    notes.push_back({"Fact", fmt::format("Counts as one fact with {}.", judgement.fact)});
   if (!judgement.caveat.empty()) notes.push_back({"Caveat", judgement.caveat});
   return notes;
 }
@@ -231,9 +235,22 @@ Section claims_section(const std::vector<Judgement>& judgements) {
   if (judgements.empty()) return section;
   section.readings = {{"", claims_reading(judgements)}};
   Table& table = section.tables.emplace_back(worded_table("claims-table"));
+  constexpr std::size_t kRepeated = 3;  // a remark of so many claims stands below the table, once
+  std::map<std::string, std::size_t> counts;
+  std::vector<std::string> below;
+  for (const Judgement& judgement : judgements)
+    for (const Reading& note : claim_notes(judgement)) ++counts[note.text];
   for (const Judgement& judgement : judgements) {
     std::vector<std::string> remarks;
-    for (const Reading& note : claim_notes(judgement)) remarks.push_back(note.text);
+    for (const Reading& note : claim_notes(judgement)) {
+      if (counts[note.text] < kRepeated) {
+        remarks.push_back(note.text);
+        continue;
+      }
+      const auto at = std::ranges::find(below, note.text);
+      remarks.push_back(fmt::format("[{}]", at - below.begin() + 1));
+      if (at == below.end()) below.push_back(note.text);
+    }
     TableCell claim = judgement.sentence;
     claim.note = judgement.quantity;
     claim.remark = judgement.source;
@@ -243,6 +260,8 @@ Section claims_section(const std::vector<Judgement>& judgements) {
                           joined(remarks, " ")});
     table.row_topics.push_back({.claim = judgement.id});
   }
+  for (std::size_t i = 0; i < below.size(); ++i)
+    table.caption += fmt::format("{}[{}] {}", table.caption.empty() ? "" : " ", i + 1, below[i]);
   return section;
 }
 
@@ -266,7 +285,7 @@ Section papers_section(const std::vector<Judgement>& judgements) {
     const bool is_not_run = !has_runs && !judgement.sets.empty();
     std::string verdict = verdict_text(judgement);
     if (!is_decided(judgement.verdict) && !judgement.why.empty()) verdict += ": " + judgement.why;
-    if (is_not_run && judgement.verdict != Verdict::undecidable) verdict = "not run here";
+    if (is_not_run && judgement.verdict != Verdict::undecidable) verdict = "not run";
     table->rows.push_back(
         {judgement.sentence, judgement.place,
          fmt::format("isoline claims {}{}", judgement.id, is_long ? " --long" : ""),

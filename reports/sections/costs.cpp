@@ -1,5 +1,5 @@
-// Tables of costs: raw counts of oracle calls with what they come to, the prices themselves,
-// expected running times by restarts, and the work of every optimizer on each problem.
+// Tables of costs: counts of oracle calls with their total cost, measured costs, expected running
+// times with restarts, and the work of every optimizer on each problem.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -47,7 +47,7 @@ TableCell price_cell(const MeasuredPrices& prices, std::string_view oracle) {
                   {"measured", price->price},
                   {"low", price->low},
                   {"high", price->high}}};
-  if (!is_told(prices, *price)) cell.remark = "nominal is used";
+  if (!is_told(prices, *price)) cell.remark = "nominal cost used";
   return cell;
 }
 

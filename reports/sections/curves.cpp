@@ -1,4 +1,4 @@
-// Curves, paths and fields of runs as the page draws them, and the window of a plot.
+// Curves, paths and fields of runs for the page, and the window of a plot.
 #include <algorithm>
 #include <cmath>
 #include <functional>

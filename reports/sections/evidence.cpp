@@ -150,7 +150,7 @@ std::string published_text(const Json& claim) {
   if (published.contains("table"))
     return published["table"].size() == 1
                ? fmt::format("an end point ({})", error)
-               : fmt::format("{} rows of figures ({})", published["table"].size(), error);
+               : fmt::format("{} rows of numbers ({})", published["table"].size(), error);
   const char* relation = published.contains("at_least")  ? "≥ "
                          : published.contains("at_most") ? "≤ "
                                                          : "";
@@ -399,7 +399,7 @@ void measure_in(Judgement& out, const Measured& from) {
   out.is_covered = true;
   out.cells = cells_of(set);
   for (const std::string& cell : std::set<std::string>(out.cells.begin(), out.cells.end()))
-    out.seconds += from.runs.at(cell)->summary.wall_seconds;
+    out.seconds += from.runs.at(cell)->summary.processor_seconds;
   const bool is_known = take(out, from);
   if (set.contains("deviation"))
     out.caveat = set["deviation"].get<std::string>() + (out.caveat.empty() ? "" : " ") + out.caveat;
@@ -410,9 +410,9 @@ void measure_in(Judgement& out, const Measured& from) {
   if (!out.why.empty()) return;
   if (from.iterations() < out.needs) {
     out.verdict = Verdict::too_short;
-    out.why = fmt::format("{} of the {} iterations that it requires", from.iterations(), out.needs);
+    out.why = fmt::format("{} of the {} required iterations", from.iterations(), out.needs);
   } else if (!is_known) {
-    out.why = "the runs have no such value";
+    out.why = "the runs do not have this value";
   } else {
     out.verdict = weakest_verdict(out, claim);
     if (is_supported(out.verdict)) name_survived_nulls(out, from);
@@ -455,7 +455,8 @@ Judgement judge_one(const Json& claim, const ByCell& runs) {
       return out;
     }
   }
-  if (!missing.empty() && out.why.empty()) out.why = fmt::format("no runs of {}", joined(missing));
+  if (!missing.empty() && out.why.empty())
+    out.why = fmt::format("missing runs: {}", joined(missing));
   return out;
 }
 
@@ -483,6 +484,13 @@ std::string repeat_command(const std::string& id, const std::vector<CellSet>& se
 std::vector<Judgement> judge(const Json& claims, const std::vector<Record>& runs) {
   ByCell by_cell;
   for (const Record& record : runs) by_cell.emplace(record.cell, &record);
+  // A limit of time that did not end a run has not changed what it computed.
+  for (const Record& record : runs) {
+    Request asked = record.request;
+    if (record.is_nondeterministic || asked.budget.seconds == Budget{}.seconds) continue;
+    asked.budget.seconds = Budget{}.seconds;
+    by_cell.emplace(cell_digest(asked), &record);
+  }
   std::vector<Judgement> judgements;
   for (const Json& claim : claims) judgements.push_back(judge_one(claim, by_cell));
   return judgements;

@@ -1,4 +1,4 @@
-// Panels to figures: which runs belong to each, and what of them is drawn.
+// The panels of figures: the runs of each panel, and the data that it shows.
 #include "reports/sections/figures.h"
 
 #include <fmt/format.h>

@@ -40,7 +40,7 @@ Document document_of(Comparison comparison, std::vector<Judgement> claims) {
 
 namespace {
 
-// Methods, however many meanings each has: all, or those that were run on a problem.
+// The number of methods: all, or those that were run on a problem.
 std::size_t methods_of(const Comparison& c, std::optional<std::size_t> problem = {}) {
   std::set<std::string> names;
   for (std::size_t s = 0; s < c.optimizers.size(); ++s)
@@ -58,9 +58,15 @@ Leading leaders(const Comparison& c, const Profile& profile, Real factor) {
 
 std::string least_loss_reading(const Comparison& c, std::size_t problem,
                                const std::vector<std::size_t>& order) {
-  const std::size_t best = *std::ranges::min_element(
-      order, {}, [&](std::size_t s) { return c.cell(problem, s).loss.median; });
-  const Real loss = c.cell(problem, best).loss.median;
+  const auto loss_of = [&](std::size_t s) { return c.cell(problem, s).loss.median; };
+  const std::size_t best = *std::ranges::min_element(order, {}, loss_of);
+  const Real loss = loss_of(best);
+  if (c.problems[problem].lacks_least_loss() && loss < kNever)  // in order of their losses
+    return words("curve.unknown", name_in_sentence(c.optimizers[best]), loss,
+                 order.size() < 2
+                     ? ""
+                     : words("curve.next-loss", name_in_sentence(c.optimizers[order[1]]),
+                             reached_figure(loss_of(order[1]))));
   return words(loss == kNever ? "curve.none-finite" : "curve.least-loss",
                words(c.problems[problem].aim == Aim::x ? "curve.x-error" : "curve.gap"),
                tau_name(c), name_in_sentence(c.optimizers[best]), loss);
@@ -95,21 +101,31 @@ std::string missing_text(const Comparison& comparison) {
 }
 
 std::string headline(const Comparison& c) {
+  std::map<std::size_t, std::set<std::uint64_t>> seeds;  // by problem
+  for (const Run& run : c.runs) seeds[run.problem].insert(run.seed);
+  const bool is_limit = std::ranges::any_of(
+      seeds, [&](const auto& own) { return own.second.size() < c.seeds.size(); });
   return words(c.problems.size() > c.names ? "overview.headline-settings" : "overview.headline",
-               methods_of(c), c.names, c.problems.size(), c.seeds.size(), c.study->runs.size());
+               methods_of(c), c.names, c.problems.size(),
+               is_limit ? words("overview.at-most") + " " : "", c.seeds.size(),
+               c.study->runs.size());
 }
 
 std::vector<std::string> remarks(const Comparison& c) {
   const Study& study = *c.study;
   std::vector<std::string> all;
   constexpr std::size_t kNamed = 8;
-  std::vector<std::string> partial;  // problems that were not asked of every optimizer
+  std::vector<std::string> partial;  // problems that were not planned for every optimizer
   for (std::size_t p = 0; p < c.problems.size(); ++p)
     if (const std::size_t planned = methods_of(c, p); planned < methods_of(c))
       partial.push_back(words("remarks.count", problem_name(c.problems[p]), planned));
   if (!partial.empty())
     all.push_back(words("remarks.partial", counted_settings(c, c.order.settings.size()),
                         methods_of(c), first_of(partial, kNamed)));
+  std::vector<std::string> budgets;
+  for (const OptimizerAxis& optimizer : c.optimizers)
+    if (optimizer.has_budgets) budgets.push_back(name_in_sentence(optimizer));
+  if (!budgets.empty()) all.push_back(words("remarks.budgets", first_of(budgets, kNamed)));
   if (study.superseded > 0) all.push_back(words("remarks.superseded", study.superseded));
   if (!study.unreadable.empty())
     all.push_back(words("remarks.unreadable", study.unreadable.size()));
@@ -123,7 +139,7 @@ std::vector<std::string> remarks(const Comparison& c) {
     named.push_back(words("remarks.source", method, joined({those.begin(), those.end()}, "; ")));
   if (!named.empty()) all.push_back(words("remarks.imported", joined(named)));
   for (const ProblemAxis& problem : c.problems)
-    if (!problem.is_minimum_declared)
+    if (!problem.is_minimum_known)
       all.push_back(words("remarks.no-minimum", problem_name(problem)));
   return all;
 }
@@ -133,7 +149,7 @@ std::string profile_reading(const Comparison& c, std::size_t tolerance) {
   const Leading fast = leaders(c, profile, 2), robust = leaders(c, profile, kNever);
   const std::string_view tau = c.yardstick.tolerances[tolerance].name;
   if (robust.value == 0) return words("profile.none", tau);
-  const auto text = [](const Leading& first) {  // many are counted, not named
+  const auto text = [](const Leading& first) {  // if there are many, only their number
     constexpr std::size_t kNamed = 3;
     const std::size_t count = first.names.size();
     return count > kNamed ? words("profile.methods", count) : listed(first.names);
@@ -143,9 +159,10 @@ std::string profile_reading(const Comparison& c, std::size_t tolerance) {
 }
 
 std::string curve_reading(const Comparison& c, std::size_t problem) {
-  const std::vector<std::size_t> order = ranking(c, problem);
+  std::vector<std::size_t> order = ranking(c, problem);
   if (order.empty()) return words("curve.nothing");
   const auto work = [&](std::size_t s) { return c.cell(problem, s).headline[kTightest]; };
+  std::ranges::stable_sort(order, {}, [&](std::size_t s) { return work(s).median; });
   const auto solved = static_cast<std::size_t>(
       std::ranges::count_if(order, [&](std::size_t s) { return work(s).is_solved(); }));
   if (solved == 0) return least_loss_reading(c, problem, order);
@@ -167,7 +184,10 @@ std::string curve_reading(const Comparison& c, std::size_t problem) {
                    ? ""
                    : runner_up(c, c.cell(problem, order[0]), c.cell(problem, order[next]),
                                name_in_sentence(c.optimizers[order[next]])),
-               words(unsolved == 0 ? "curve.all" : "curve.unsolved", unsolved, order.size()));
+               words(unsolved > 0        ? "curve.unsolved"
+                     : order.size() == 1 ? "curve.only"
+                                         : "curve.all",
+                     unsolved, order.size()));
 }
 
 // The learned problems, at equal work.
@@ -200,7 +220,8 @@ std::vector<std::string> learned_sentences(const Comparison& c) {
   std::vector<std::pair<std::string, std::size_t>> ranked(nearest.begin(), nearest.end());
   std::ranges::stable_sort(ranked, std::ranges::greater{},
                            &std::pair<std::string, std::size_t>::second);
-  std::vector<std::string> parts;  // on how many of the problems each is nearest in x
+  std::vector<std::string>
+      parts;  // the number of problems on which each method has the smallest error in x
   for (const auto& [name, count] : ranked)
     if (parts.size() < kNamed) parts.push_back(words("learned.on", name, count));
   all.insert(all.begin(), words("learned.summary", problems, joined(parts)));

@@ -12,7 +12,7 @@ namespace {
 
 constexpr const char* kNoLaw = "no power law";
 constexpr const char* kNoStep = "no step";
-constexpr const char* kNoSense = "does not apply";  // to what teaches a network
+constexpr const char* kNoSense = "does not apply";  // for methods that train a network
 
 // Two decimals, without the minus of a zero.
 std::string decimal(Real value) {
@@ -116,9 +116,9 @@ std::string listed_where(const Audits& all, Test test) {
   return names.empty() ? "none" : joined(names);
 }
 
-// Whose first step goes with this exponent of what is scaled.
+// The methods whose first step has this exponent in the scaled quantity.
 std::string listed_with(const Audits& all, Scaled scaled, Real exponent) {
-  constexpr Real kSame = 0.02;  // how near to a whole exponent is that exponent
+  constexpr Real kSame = 0.02;  // largest distance from a whole exponent
   return listed_where(all, [=](Audited audited) {
     const PowerLaw& law = audited.law(scaled).step;
     return law.holds() && std::abs(law.exponent - exponent) <= kSame;
@@ -139,7 +139,7 @@ std::string hessian_sentence(const Audits& all) {
   return " " + words("audit.hessian", newton, gradient, newton - gradient);
 }
 
-// The chapter's L = αx stands beside, where the figures and the chapter need not say the same.
+// The results for the chapter's L = αx follow; they may differ from the chapter.
 std::string scaling_sentence(const Audits& all) {
   const auto has_none = [](Audited audited) {
     const PowerLaw& law = audited.law(Scaled::input).step;
@@ -177,7 +177,7 @@ std::string convergence_sentence(const Audits& all) {
 }
 
 std::string composition_sentence(const Audits& all) {
-  constexpr Real kSmallest = 0.05;  // degrees: what prints as 0.0
+  constexpr Real kSmallest = 0.05;  // degrees: the largest angle that is printed as 0.0
   const auto is_equal = [](Audited one) { return one.linear_angle < kSmallest; };
   const AuditedOptimizer* worst = nullptr;
   for (const AuditedOptimizer& audited : all)

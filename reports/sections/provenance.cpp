@@ -50,7 +50,7 @@ Section builds_section(const Comparison& c) {
   commands.erase("");
   // A column a build, so that what differs stands side by side.
   Table& table = section.tables.emplace_back(
-      Table{.id = "builds", .columns = {""}, .align = "l" + std::string(builds.size(), 'p')});
+      Table{.id = "builds", .columns = {"what"}, .align = "l" + std::string(builds.size(), 'p')});
   for (std::size_t i = 0; i < builds.size(); ++i)
     table.columns.push_back(builds.size() == 1 ? "build" : fmt::format("build {}", i + 1));
   for (std::size_t term = 0; term < kTerms.size(); ++term) {
@@ -59,9 +59,9 @@ Section builds_section(const Comparison& c) {
     const auto is_known = [&](const Lines& build) { return !build[term].empty(); };
     if (std::ranges::any_of(builds, is_known)) table.rows.push_back(std::move(row));
   }
-  for (const std::string& command : commands) section.readings.push_back({"Asked for by", command});
-  section.readings.push_back({"One cell again", rerun_command(c.runs[0].record->request)});
-  section.readings.push_back({"The command of every other cell", words("provenance.commands")});
+  for (const std::string& command : commands) section.readings.push_back({"Requested by", command});
+  section.readings.push_back({"Repeat one cell", rerun_command(c.runs[0].record->request)});
+  section.readings.push_back({"Repeat any cell", words("provenance.commands")});
   return section;
 }
 

@@ -14,13 +14,6 @@
 namespace isoline::reports {
 namespace {
 
-Real doublings_of(Real a, Real b) {
-  const Real most = std::log2(kProfileEnd);
-  if (a == kNever && b == kNever) return 0;
-  if (a == kNever || b == kNever) return a == kNever ? most : -most;
-  return std::clamp(std::log2(std::max(a, 1.0)) - std::log2(std::max(b, 1.0)), -most, most);
-}
-
 // "gauss-newton, adam and 3 more"
 std::string names_text(const Comparison& c, const std::vector<std::size_t>& methods,
                        std::size_t most) {
@@ -58,8 +51,10 @@ std::string settings_text(const Comparison& c) {
   const std::size_t instances = distinct(seeds, instance_of), starts = distinct(seeds, start_of);
   const bool is_crossed = seeds.size() > std::max(instances, starts);
   if (seeds.size() > 1)
-    about += (about.empty() ? "" : "; ") + (is_crossed ? words("ranking.crossed", instances, starts)
-                                                       : words("ranking.starts", starts));
+    about += (about.empty() ? "" : "; ") +
+             (is_crossed ? words("ranking.crossed", instances, starts)
+                         : words(instances > 1 ? "ranking.instances" : "ranking.starts",
+                                 std::max(instances, starts)));
   return words(names < settings ? "ranking.settings" : "ranking.problems", settings, names,
                about.empty() ? "" : " (" + about + ")");
 }
@@ -91,7 +86,8 @@ std::string decision_sentence(const Comparison& c, const Decision& decision) {
   for (const Choice& choice : decision.choices)
     if (choice.varied == Varied::measure && choice.value == name_of(Measure::time) &&
         !choice.is_kept && !choice.first.empty())
-      text += " " + words("ranking.by-time", names_text(c, choice.first, 2), choice.first.size());
+      text += " " + words(c.is_any_timed_together ? "ranking.by-shared-time" : "ranking.by-time",
+                          names_text(c, choice.first, 2), choice.first.size());
   return text;
 }
 
@@ -144,44 +140,18 @@ std::string common_settings(const Comparison& c) {
 
 }  // namespace
 
-Real Pairing::typical() const { return doublings.empty() ? 1 : std::exp2(-median_of(doublings)); }
-
-std::array<Real, 2> Pairing::interval() const {
-  const MedianInterval interval = median_interval(doublings);
-  return {std::exp2(-interval.high), std::exp2(-interval.low)};
-}
-
-Pairing pairing_of(const Costs& costs, const Families& families, std::size_t a, std::size_t b) {
-  Pairing pairing;
-  for (const auto& rows : families) {
-    std::vector<Real> values;
-    bool is_solved = false;
-    for (const std::size_t row : rows) {
-      const auto &mine = costs[row][a], &other = costs[row][b];
-      if (!mine || !other) continue;
-      is_solved = is_solved || *mine < kNever || *other < kNever;
-      values.push_back(doublings_of(*mine, *other));
-    }
-    if (values.empty()) continue;
-    pairing.neither += !is_solved;
-    if (!is_solved) continue;
-    const Real middle = median_of(std::move(values));
-    pairing.doublings.push_back(middle);
-    ++(middle < 0 ? pairing.wins : middle > 0 ? pairing.losses : pairing.ties);
-  }
-  return pairing;
-}
-
 std::vector<MethodPair> all_pairs(const Comparison& c) {
   Costs costs = median_costs(c, kTightest);
-  for (std::size_t p = 0; p < costs.size(); ++p)
-    if (!is_ordered(c, p)) costs[p].assign(costs[p].size(), std::nullopt);
-  Families families;
-  for (const auto& [name, problems] : problems_by_name(c)) families.push_back(problems);
+  std::vector<std::string> families;
+  for (std::size_t p = 0; p < costs.size(); ++p) {
+    families.push_back(c.problems[p].name);
+    for (std::size_t s = 0; s < costs[p].size(); ++s)
+      if (!is_ordered(c, p) || !c.cell(p, s).inapplicable.empty()) costs[p][s].reset();
+  }
   std::vector<MethodPair> all;
   for (std::size_t a = 0; a < c.optimizers.size(); ++a)
     for (std::size_t b = a + 1; b < c.optimizers.size(); ++b)
-      all.push_back({a, b, pairing_of(costs, families, a, b)});
+      all.push_back({a, b, work_ratio(costs, families, a, b)});
   return all;
 }
 
@@ -202,7 +172,8 @@ std::vector<std::string> verdict(const Comparison& c) {
     return std::ranges::any_of(
         row, [](const Cell& cell) { return cell.headline[kTightest].is_solved(); });
   });
-  if (!is_any_solved) return {words("ranking.none-solved", tau_name(c))};
+  const bool are_all_unknown = std::ranges::all_of(c.problems, &ProblemAxis::lacks_least_loss);
+  if (!is_any_solved && !are_all_unknown) return {words("ranking.none-solved", tau_name(c))};
   std::vector<std::string> all;
   std::string left_out = left_out_text(c);
   if (!left_out.empty()) left_out = "Not ranked: " + left_out;
@@ -240,25 +211,38 @@ std::vector<Reading> ranking_facts(const Comparison& c) {
 }
 
 std::string left_out_text(const Comparison& c) {
-  std::vector<std::string> parts, ill_posed;
+  std::vector<std::string> parts, ill_posed, unknown;
   std::size_t sanity = 0;
   for (std::size_t p = 0; p < c.problems.size(); ++p) {
     sanity += is_sanity(c, p);
     if (is_ill_posed(c, p)) ill_posed.push_back(problem_name(c.problems[p]));
+    if (c.problems[p].lacks_least_loss()) unknown.push_back(problem_name(c.problems[p]));
   }
   if (sanity > 0) parts.push_back(words("ranking.sanity", sanity));
   if (!ill_posed.empty())
     parts.push_back(words("ranking.ill-posed", ill_posed.size(), first_of(ill_posed, 4)));
+  if (!unknown.empty())
+    parts.push_back(words("ranking.unknown", unknown.size(), first_of(unknown, 4)));
   return joined(parts, " ");
 }
 
 std::string unranked_sentence(const Comparison& c) {
   std::vector<std::string> names;
   for (std::size_t s = 0; s < c.optimizers.size(); ++s) {
-    const auto shared = static_cast<std::size_t>(std::ranges::count_if(
-        c.order.settings, [&](std::size_t p) { return c.cell(p, s).planned > 0; }));
-    if (c.optimizers[s].applicable > 0 && shared > 0 && shared < c.order.settings.size())
-      names.push_back(words("ranking.run-on", name_in_sentence(c.optimizers[s]), shared));
+    Order own{.settings = c.order.settings, .methods = c.order.methods};
+    std::erase_if(own.settings, [&](std::size_t p) { return c.cell(p, s).planned == 0; });
+    if (c.optimizers[s].applicable == 0 || own.settings.empty() ||
+        own.settings.size() == c.order.settings.size())
+      continue;
+    own.methods.push_back(s);
+    const std::vector<Ranked> beside =
+        standings_over(c, own, c.yardstick.by, c.yardstick.tightest().rung);
+    const Real score = std::ranges::find(beside, s, &Ranked::optimizer)->standing.score;
+    const auto ahead = std::ranges::count_if(beside, [&](const Ranked& other) {
+      return other.standing.score > score && !are_tied(other.standing.score, score);
+    });
+    names.push_back(words("ranking.run-on", name_in_sentence(c.optimizers[s]), own.settings.size(),
+                          ordinal(static_cast<std::size_t>(ahead) + 1), beside.size()));
   }
   return names.empty() ? "" : words("ranking.unranked", common_settings(c), joined(names));
 }
@@ -284,7 +268,7 @@ Table ranking_table(const Comparison& c) {
     const std::size_t s = c.order.methods[i];
     const OptimizerAxis& axis = c.optimizers[s];
     const Standing& standing = axis.tightest();
-    const bool is_tied = i > 0 && are_tied(standing.score, c.optimizers[s - 1].tightest().score);
+    const bool is_tied = i > 0 && are_tied(standing, c.optimizers[s - 1].tightest());
     if (!is_tied) rank = i + 1;
     TableCell name(optimizer_text(c, s));
     const results::Place* place = c.decision ? c.decision->place_of(s) : nullptr;
@@ -327,17 +311,12 @@ Table sanity_table(const Comparison& c) {
   return table;
 }
 
-// The error in x at a quarter, a half and all of the budget; the least at the end first.
-Table ill_posed_table(const Comparison& c) {
-  constexpr std::array<Real, 3> kShares = {0.25, 0.5, 1};
-  Table table = worded_table("ill-posed");
-  std::vector<std::size_t> settings;
-  for (std::size_t p = 0; p < c.problems.size(); ++p)
-    if (is_ill_posed(c, p)) settings.push_back(p);
-  for (const std::size_t p : settings) {
-    table.columns.push_back(words("ill-posed.setting", problem_name(c.problems[p]),
-                                  percent(c.problems[p].least_goal / x_goal(0, 1, 1))));
-  }
+// A row per method and a column per setting. show(cell, p, s) adds text and numbers to a cell of
+// the table; of the last number the least is bold, and the reading lists it.
+Table settings_table(const Comparison& c, const char* key, const std::vector<std::size_t>& settings,
+                     const auto& title, const auto& show) {
+  Table table = worded_table(key);
+  for (const std::size_t p : settings) table.columns.push_back(title(p));
   std::vector<Real> least(settings.size(), kNever);
   for (std::size_t s = 0; s < c.optimizers.size(); ++s) {
     std::vector<TableCell> row;
@@ -345,13 +324,7 @@ Table ill_posed_table(const Comparison& c) {
       const Cell& cell = c.cell(settings[i], s);
       TableCell& shown = row.emplace_back(cell.inapplicable.empty() ? "" : "n/a");
       if (!cell.is_measured()) continue;
-      std::vector<std::string> texts;
-      for (const Real share : kShares) {
-        const Real error = x_error_at(c, settings[i], s, share).median;
-        texts.push_back(error == kNever ? "✗" : fmt::format("{:.3g}", error));
-        shown.numbers.push_back({fmt::format("at_{:g}", share), error});
-      }
-      shown.text = joined(texts, " · ");
+      show(shown, settings[i], s);
       least[i] = std::min(least[i], shown.numbers.back().second);
     }
     if (std::ranges::any_of(row, [](const TableCell& cell) { return !cell.numbers.empty(); }))
@@ -365,7 +338,51 @@ Table ill_posed_table(const Comparison& c) {
   for (std::size_t i = 0; i < settings.size(); ++i)
     readings.push_back(fmt::format("{} {:.3g}", problem_name(c.problems[settings[i]]), least[i]));
   table.is_folded = true;
-  table.reading = words("ill-posed.reading", joined(readings));
+  table.reading = words(std::string(key) + ".reading", joined(readings));
+  return table;
+}
+
+// The error in x at a quarter, a half and all of the budget.
+Table ill_posed_table(const Comparison& c) {
+  constexpr std::array<Real, 3> kShares = {0.25, 0.5, 1};
+  std::vector<std::size_t> settings;
+  for (std::size_t p = 0; p < c.problems.size(); ++p)
+    if (is_ill_posed(c, p)) settings.push_back(p);
+  const auto title = [&](std::size_t p) {
+    return words("ill-posed.setting", problem_name(c.problems[p]),
+                 percent(c.problems[p].least_goal / x_goal(0, 1, 1)));
+  };
+  return settings_table(c, "ill-posed", settings, title,
+                        [&](TableCell& shown, std::size_t p, std::size_t s) {
+                          std::vector<std::string> texts;
+                          for (const Real share : kShares) {
+                            const Real error = x_error_at(c, p, s, share).median;
+                            texts.push_back(error == kNever ? "✗" : fmt::format("{:.3g}", error));
+                            shown.numbers.push_back({fmt::format("at_{:g}", share), error});
+                          }
+                          shown.text = joined(texts, " · ");
+                        });
+}
+
+// Final losses where the least loss is unknown, and their distances from the best of any run.
+Table losses_table(const Comparison& c) {
+  std::vector<std::size_t> settings;
+  for (std::size_t p = 0; p < c.problems.size(); ++p)
+    if (c.problems[p].lacks_least_loss()) settings.push_back(p);
+  const auto title = [&](std::size_t p) { return problem_name(c.problems[p]); };
+  Table table = settings_table(
+      c, "losses", settings, title, [&](TableCell& shown, std::size_t p, std::size_t s) {
+        const Cell& cell = c.cell(p, s);
+        const auto last = [](const Run& run) {
+          const std::vector<Real> left = losses_left(run);
+          return left.empty() ? kNever : left.back();
+        };
+        const Real distance = c.aggregate(cell.runs, last, cell.missing()).median;
+        shown.text = fmt::format("{} ({})", reached_figure(cell.loss.median),
+                                 distance == kNever ? "✗" : "+" + percent(distance));
+        shown.numbers = {{"distance", distance}, {"loss", cell.loss.median}};
+      });
+  table.is_folded = false;
   return table;
 }
 
@@ -376,8 +393,8 @@ Section standings_section(const Comparison& c) {
   for (std::string& sentence : verdict(c)) section.readings.push_back({"", std::move(sentence)});
   if (!c.order.settings.empty()) section.tables.push_back(ranking_table(c));
   if (!c.sanity.settings.empty()) section.tables.push_back(sanity_table(c));
-  if (Table table = ill_posed_table(c); !table.rows.empty())
-    section.tables.push_back(std::move(table));
+  for (Table table : {losses_table(c), ill_posed_table(c)})
+    if (!table.rows.empty()) section.tables.push_back(std::move(table));
   return section;
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/records/sheet.h"
+#include "core/results/advice.h"
 #include "core/results/ranking.h"
 #include "core/results/statistics.h"
 #include "reports/sections/claims.h"
@@ -71,6 +72,10 @@ std::vector<Reading> property_readings(const Audits& all);
 // The limits of so few problems, seeds or runs, one sentence each.
 std::vector<std::string> limits_of_evidence(const Comparison& comparison);
 
+// Sentences on a reader's means, and on the advice for them.
+std::string means_text(const Means& means);
+std::string advice_text(const Comparison& comparison, const Means& means, const Advice& advice);
+
 // The statistics. A new one is a function here, in one of the two lists of statistics.cpp.
 Table profile_table(const Comparison& comparison);
 Table leader_table(const Comparison& comparison);
@@ -112,24 +117,12 @@ const MeasuredPrices* prices_of(const ProblemAxis& problem);
 const MeasuredPrice* price_of(const MeasuredPrices& prices, std::string_view oracle);
 Real in_units(Measure by, Real value);  // as tables and axes have it: times in ms
 
-// Two methods over the families of problems that both were run on and one of them solves.
-struct Pairing {
-  // log2(cost of a / cost of b) a family, the median over its settings: within ±log2 kProfileEnd,
-  // which is also what solving against not solving counts; 0 on a setting that neither solves.
-  std::vector<Real> doublings;
-  std::size_t wins = 0, losses = 0, ties = 0;  // of a, over families
-  std::size_t neither = 0;                     // families that neither solves
-
-  Real typical() const;  // what b costs as a multiple of what a costs: 2^(−median); 1 of nothing
-  std::array<Real, 2> interval() const;  // of it: 95 % of that median
-};
-using Families = std::vector<std::vector<std::size_t>>;  // rows of costs
-Pairing pairing_of(const Costs& costs, const Families& families, std::size_t a, std::size_t b);
 struct MethodPair {
   std::size_t a = 0, b = 0;  // optimizers, a < b
-  Pairing pairing;
+  WorkRatio ratio;
 };
-// At the tightest tolerance by what the yardstick counts, over the problems that are not learned.
+// At the tightest tolerance by what the yardstick counts, over the settings that may be ranked and
+// to which both methods apply.
 std::vector<MethodPair> all_pairs(const Comparison& comparison);
 
 // 95 % over families of each optimizer's score, or its range over few; infinite where not ranked.

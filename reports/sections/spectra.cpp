@@ -44,7 +44,7 @@ std::vector<Seen> seen_on(const Comparison& c, std::size_t problem) {
   return all;
 }
 
-// σ₁/σ_r; nothing where the smallest is 0.
+// σ₁/σ_r, without a value if the smallest is 0.
 Real condition(const std::vector<Real>& sigma) {
   return sigma.back() > 0 ? sigma.front() / sigma.back() : kUnknown;
 }
@@ -111,7 +111,7 @@ Section spectra_section(const Comparison& c) {
   return section;
 }
 
-// Two options swept together, as heat maps: where the best stands, and how far around it is good.
+// Heat maps of two options that were varied together.
 
 namespace {
 
@@ -250,17 +250,16 @@ std::vector<SweepGrid> sweep_grids(const Comparison& c) {
   return all;
 }
 
-// Medians over seeds of what runs end at, infinite where one failed or is not finite.
+// Medians over seeds of the final values, infinite if a run failed or is not finite.
 Table heat_map(const Comparison& c, const SweepGrid& grid, std::size_t number) {
   Table table = worded_table("sweep", grid.optimizer, grid.problem, grid.row, grid.column);
   table.id = fmt::format("sweep-{}", number);
-  std::vector<std::vector<std::optional<Spread>>> medians;  // nothing where nothing was planned
+  std::vector<std::vector<std::optional<Spread>>> medians;  // no value if no run was planned
   Real least = kNever;
   std::size_t best_row = 0, best_column = 0, measured = 0, near = 0;
   std::size_t fewest = c.runs.size(), most = 0;  // seeds
   bool is_of_x = false;
-  std::string
-      best;  // an option of all of its runs that is not swept stands in the spec of the best
+  std::string best;  // the spec of the best run contains options that were not varied
   for (std::size_t r = 0; r < grid.rows.size(); ++r) {
     medians.emplace_back(grid.columns.size());
     for (std::size_t k = 0; k < grid.columns.size(); ++k) {

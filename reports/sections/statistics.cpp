@@ -1,4 +1,5 @@
-// The section of statistics, what its tables share, and its profiles: performance, data, runtime.
+// The section on statistics: functions that its tables share, and the performance, data and runtime
+// profiles.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -29,7 +30,7 @@ Section statistics_section(const Comparison& c) {
       "statistics", counted_name(c),
       c.yardstick.by == Measure::work ? ", which is equal on every machine" : "", cost_unit(c));
   for (std::string& sentence : limits_of_evidence(c))
-    section.readings.push_back({"What cannot be concluded", std::move(sentence)});
+    section.readings.push_back({words("statistics.limits"), std::move(sentence)});
   if (c.runs.empty()) {
     section.lead.clear();
     return section;

@@ -30,7 +30,7 @@ struct Rates {
   std::size_t optimizer = 0;
   std::size_t settings = 0, published = 0, at_edge = 0, never = 0;
   std::vector<const TunedRate*> tuned;
-  Real least = kNever, most = 0;  // values chosen
+  Real least = kNever, most = 0;  // chosen values
 };
 
 Rates rates_of(const Comparison& c, std::size_t s) {
@@ -65,10 +65,9 @@ std::vector<Real> best_of_curve(const Comparison& c, const Rates& rates) {
   for (const TunedRate* chosen : rates.tuned) {
     const TunedRate* rate = trials_of(c, *chosen);
     if (rate == nullptr || rate->work.empty()) continue;
-    const Real least = std::max(std::ranges::min(rate->work), 1.0);
     std::vector<Real> scores;
-    for (const Real work : rate->work)
-      scores.push_back(work < kNever ? score_of(std::max(work, 1.0) / least, kProfileEnd) : 0);
+    for (const auto& ratio : cost_ratios({rate->work.begin(), rate->work.end()}))
+      scores.push_back(score_of(*ratio, kProfileEnd));
     all.push_back(expected_best(scores));
     longest = std::max(longest, all.back().size());
   }
@@ -150,6 +149,7 @@ Table three_choices_table(const Comparison& c) {
 
 std::string rates_text(const Comparison& c) {
   std::set<std::string> methods, tuned, published, tunable;
+  std::size_t elsewhere = 0, rows = 0;
   bool is_left_out = false;
   for (std::size_t s = 0; s < c.optimizers.size(); ++s) {
     const std::string& method = c.optimizers[s].method;
@@ -161,16 +161,20 @@ std::string rates_text(const Comparison& c) {
       if (origin == Origin::tuned) {
         tuned.insert(method);
         is_left_out |= rate_of(c, p, s)->is_left_out();
+        elsewhere += !rate_of(c, p, s)->setting.empty();
+        ++rows;
       }
       if (origin == Origin::published) published.insert(method);
     }
   }
   if (tuned.empty() && published.empty()) return "";
   for (const std::string& method : tuned) published.erase(method);
-  // Older sheets do not say which options can be tuned.
+  // Older component metadata do not state which options can be tuned.
   const std::size_t fixed = tunable.empty() ? 0 : methods.size() - tunable.size();
   return words("tuning.methods", methods.size(), tuned.size(),
-               is_left_out ? words("tuning.others") : words("tuning.same", setting_noun(c)),
+               is_left_out      ? words("tuning.others")
+               : elsewhere == 0 ? words("tuning.same", setting_noun(c))
+                                : words("tuning.elsewhere", elsewhere, rows),
                published.empty() ? "" : fmt::format(", and {} published ones", published.size()),
                fixed == 0 ? "" : fmt::format(", {} with nothing to tune", fixed));
 }

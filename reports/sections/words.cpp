@@ -211,7 +211,10 @@ std::string shown_spec(std::string_view spec) {
   return out;
 }
 
-std::string multiple(Real ratio) { return fmt::format("{:.3g}×", ratio); }
+std::string multiple(Real ratio) {
+  constexpr Real kClose = 1.005;  // three digits would call two different numbers equal
+  return fmt::format("{:.{}g}×", ratio, ratio > 1 && ratio < kClose ? 5 : 3);
+}
 
 int shade_of(Real value, Real least) {
   const auto is_passed = [ratio = value / least](Real step) { return ratio > step; };
@@ -324,6 +327,7 @@ std::string matrix_text(const Comparison& c, const Cell& cell, std::size_t toler
   if (cell.planned == 0) return "";
   if (cell.runs.empty()) return "missing";
   if (!cell.is_measured()) return "n/a";
+  if (c.problems[c.runs[cell.runs[0]].problem].lacks_least_loss()) return "?";
   const Real median = cell.headline[tolerance].median;
   const bool is_shared = c.yardstick.by == Measure::time && !cell.is_timed_alone;
   return amount(c, median) + (is_shared && median < kNever ? "≈" : "");
@@ -333,20 +337,10 @@ bool is_complete(const Cell& cell, std::size_t tolerance) {
   return cell.headline[tolerance].unsolved == 0 && cell.failed == 0 && cell.missing() == 0;
 }
 
-std::string budget_options(const Request& request) {
-  const Budget& budget = request.budget;
-  std::string options = fmt::format("--iterations {}", budget.iterations);
-  if (budget.work < Budget{}.work) options += fmt::format(" --work {}", budget.work);
-  if (budget.seconds < Budget{}.seconds) options += fmt::format(" --time {}s", budget.seconds);
-  if (budget.target != Budget{}.target) options += fmt::format(" --target {}", budget.target);
-  if (request.threads != 1) options += fmt::format(" --threads {}", request.threads);
-  return options + " --rates none";
-}
-
 std::string rerun_arguments(const Request& request) {
-  return fmt::format("--problem {} --optimizer {} --seeds ={} {}", shell_word(request.problem.spec),
-                     shell_word(request.optimizer.spec), seed_text(request.seed),
-                     budget_options(request));
+  return fmt::format("--problem {} --optimizer {} --seeds ={} {} --rates none",
+                     shell_word(request.problem.spec), shell_word(request.optimizer.spec),
+                     seed_text(request.seed), budget_options(request));
 }
 
 std::string rerun_command(const Request& request) {
@@ -450,8 +444,10 @@ std::string origin_text(const Comparison& c, std::size_t p, std::size_t s) {
                                                       "published", "from a table"};
   const Origin origin = origin_of(c, p, s);
   if (origin == Origin::defaults || origin == Origin::given) return "";
-  return fmt::format("{}, {}", values_text(*request_of(c, p, s)),
-                     kNames[static_cast<std::size_t>(origin)]);
+  const TunedRate* rate = rate_of(c, p, s);
+  return fmt::format(
+      "{}, {}{}", values_text(*request_of(c, p, s)), kNames[static_cast<std::size_t>(origin)],
+      rate == nullptr || rate->setting.empty() ? "" : " on " + shown_spec(rate->setting));
 }
 
 std::string setting_text(const Comparison& c, std::size_t p, std::size_t s) {

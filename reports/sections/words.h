@@ -97,13 +97,13 @@ std::string status_text(const std::map<Status, std::size_t>& statuses);  // "tar
 // "4/5, 1 failed": runs that reached the tolerance of all runs.
 std::string count_text(const Cell& cell, std::size_t tolerance);
 bool is_complete(const Cell& cell, std::size_t tolerance);  // all did, so that it says nothing
-// The median of what the yardstick counts, ✗, "n/a", "missing", or nothing where none was planned.
+// The median of what the yardstick counts, ✗, "n/a", "missing", "?" where the least loss is
+// unknown, or nothing where none was planned.
 std::string matrix_text(const Comparison& comparison, const Cell& cell, std::size_t tolerance);
 
 // The command that asks for the same cell again: all its options explicit, no table of rates.
 std::string rerun_command(const Request& request);
 std::string rerun_arguments(const Request& request);  // what follows `run`
-std::string budget_options(const Request& request);   // "--iterations 1000 --rates none"
 
 // The yardstick.
 

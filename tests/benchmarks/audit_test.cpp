@@ -192,9 +192,9 @@ Catalog catalog_with_liars() {
 TEST(Audit, FlagsAFalseDeclaration) {
   const AuditedOptimizer found = audit_optimizer(catalog_with_liars(), "boaster");
   ASSERT_EQ(found.flags.size(), 3U);
-  EXPECT_EQ(found.flags[0], "called pullback without declaring it");
-  EXPECT_EQ(found.flags[1], "declares that it needs hessian, but never called it");
-  EXPECT_TRUE(found.flags[2].starts_with("declares that rescaled inputs do not change its path"));
+  EXPECT_TRUE(found.flags[0].starts_with("called pullback "));
+  EXPECT_NE(found.flags[1].find(" hessian,"), std::string::npos);
+  EXPECT_TRUE(found.flags[2].starts_with("declares that rescaled inputs "));
 }
 
 TEST(Audit, ACrashOrALeaveCostsItsOwnAuditAlone) {

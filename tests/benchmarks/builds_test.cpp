@@ -172,10 +172,12 @@ TEST(Builds, AnUntrackedSourceMakesTheTreeDirty) {
     EXPECT_EQ(std::system((command + " >/dev/null 2>&1").c_str()), 0) << command;
   };
   const auto is_dirty = [&] {
-    shell("cmake -DSOURCE=" + there + " -DOUTPUT=" + info +
+    shell("cmake -DSOURCE=" + there + "/core -DOUTPUT=" + info +
           " -DFILES= -P " ISOLINE_SOURCE_DIR "/cmake/BuildInfo.cmake");
     return read_text(info).find("kDirty = true") != std::string::npos;
   };
+  fs::create_directories(folder.path() / "core");  // as of the target that asks
+  std::ofstream(folder.path() / "core/CMakeLists.txt");
   std::ofstream(folder.path() / ".gitignore") << "build/\n";
   shell("git -C " + there + " init -q && git -C " + there + " add . && git -C " + there +
         " -c user.name=a -c user.email=a@example.org commit -q -m a");

@@ -146,7 +146,7 @@ TEST(ClaimsOfTheTree, SayOfThemselvesWhatTheirPapersDo) {
       EXPECT_EQ(published.value("runs", 0), 1);
     }
   }
-  EXPECT_EQ(toys, 24U);
+  EXPECT_EQ(toys, 27U);
   EXPECT_EQ(guessed, (std::set<std::string>{"sine-crossing", "sine-sip-level"}));
 }
 
@@ -315,16 +315,20 @@ void expect_rare(const std::vector<Claim>& claims, const std::vector<Record>& ru
       share.reproduced += judgement.verdict <= Verdict::reproduced ? 1.0 / times : 0;
       share.consistent += reports::is_supported(judgement.verdict) ? 1.0 / times : 0;
     }
-  Real sum = 0;
+  // Of two methods of which one is ahead, every second permutation says so: three deviations more.
+  const Real most = times > 1 ? 0.5 + 1.5 / std::sqrt(times) : 0.5;
+  Real sum = 0, variance = 0;  // of the shares, estimated from so many times
   std::string list;
   for (const auto& [claim, share] : shares) {
     sum += share.*kind;
+    variance += share.*kind * (1 - share.*kind) / times;
     if (share.consistent > 0)
       list += fmt::format("{} {:.2f} {:.2f}\n", claim, share.reproduced, share.consistent);
-    EXPECT_LE(share.consistent, 0.5) << claim;
+    EXPECT_LE(share.consistent, most) << claim;
   }
   EXPECT_GT(shares.size(), 35U);
-  EXPECT_LE(20 * sum, static_cast<Real>(shares.size())) << list;
+  const Real excess = sum - static_cast<Real>(shares.size()) / 20;
+  EXPECT_LE(excess, 2 * std::sqrt(variance)) << list;
 }
 
 // --- networks that were never trained, and steps that were never taken
@@ -367,8 +371,9 @@ TEST(Nulls, AtMostOneClaimInTwentyOutlivesNetworksThatWereNeverTrained) {
 // --- runs that take seconds, far shorter than the claims speak of
 
 struct Trained {
-  std::vector<Claim> claims =
-      claims_without({"heat", "poisson", "navier", "watch", "steps", "theorem", "batch"}, 1000, 6);
+  std::vector<Claim> claims = claims_without(
+      {"heat", "poisson", "navier", "watch", "steps", "theorem", "batch", "oscillators", "dipole"},
+      1000, 6);
   std::vector<Record> runs = FinishedMatrix(catalog(), cells_of(claims, true)).records;
 };
 

@@ -193,6 +193,20 @@ FinishedMatrix small_matrix() {
   return FinishedMatrix(catalog(), suite, Rates::builtin());
 }
 
+// At a rate of 1 the loss grows a thousandfold.
+TEST(Rates, OfHalfInverseGradientsOnAUnetLowerItsLoss) {
+  const auto block = [](const char* problem, const char* optimizer) -> MatrixBlock {
+    return {.problems = {std::string(problem) + "[mode=learn,N=16,batch=4]"},
+            .optimizers = {optimizer},
+            .budget = {.iterations = 5, .target = 0}};
+  };
+  const Suite suite{.name = "unet",
+                    .title = "",
+                    .blocks = {block("poisson", "hig-damped"), block("heat", "hig")}};
+  for (const Record& record : FinishedMatrix(catalog(), suite, Rates::builtin()).records)
+    EXPECT_LT(record.summary.loss, record.summary.start_loss) << title_of(record);
+}
+
 TEST(PerturbedRuns, AnswerTheSameCellsFromAnotherStartAndLeaveTheRecordsAsTheyWere) {
   const FinishedMatrix matrix = small_matrix();
   const auto once = perturbed(matrix.records), again = perturbed(matrix.records);
@@ -280,10 +294,9 @@ TEST(SameResult, TimesAndTheMachineAreNoDifference) {
   EXPECT_EQ(compare_results(a, b).difference, "message: \"\" against \"another\"");
 }
 
-// Suite `notebook` end to end, read back from the records it leaves. Origin of the values: the
-// table printed by the comparison notebook of the Physics-based Deep Learning book (single
-// precision: 1e-5), and the end points of Fig. 1 of Holl, Koltun, Thuerey (2022), recomputed from
-// the published script (1e-6).
+// Suite `notebook` end to end, read back from the records it leaves; what the notebook prints are
+// claims, which PapersPage judges. Origin of the values: the end points of Fig. 1 of Holl, Koltun,
+// Thuerey (2022), recomputed from the published script (1e-6).
 
 const FinishedMatrix& notebook() {
   static const FinishedMatrix all(catalog(), cells_of("notebook"));
@@ -301,53 +314,6 @@ Record record_of(const std::string& optimizer, const std::string& option, Real v
   }
   ADD_FAILURE() << "the suite has no " << optimizer << "[" << option << "=" << value << "]";
   return {};
-}
-
-// x1 and x2 after each step.
-void expect_iterates(const Record& record, const std::vector<Real>& printed) {
-  ASSERT_TRUE(record.trajectory.has_value());
-  const std::vector<std::vector<Real>>& x = record.trajectory->x;
-  ASSERT_EQ(2 * x.size(), printed.size() + 2) << title_of(record);
-  EXPECT_EQ(x[0], (std::vector<Real>{3, 3}));
-  for (std::size_t i = 0; i < printed.size(); ++i)
-    EXPECT_NEAR(x[i / 2 + 1][i % 2], printed[i], 1e-5) << title_of(record) << ", number " << i;
-}
-
-TEST(NotebookSuite, EachMethodTakesItsTenStepsAsPrinted) {
-  expect_iterates(record_of("gd", "rate", 0.01),
-                  {2.94,      1.9200001, 2.8812,    1.6368846, 2.823576,  1.4614503, 2.7671044,
-                   1.3365935, 2.7117622, 1.2410815, 2.657527,  1.1646168, 2.6043763, 1.1014326,
-                   2.5522888, 1.0479842, 2.501243,  1.0019454, 2.4512184, 0.96171147});
-  expect_iterates(
-      record_of("newton", "rate", 1.0 / 3),
-      {2.0,       2.6666667,  1.3333333,  2.3703704,  0.88888884, 2.1069958,  0.59259254,
-       1.8728852, 0.39506167, 1.6647868,  0.26337445, 1.4798105,  0.17558296, 1.315387,
-       0.1170553, 1.1692328,  0.07803687, 1.0393181,  0.05202458, 0.92383826});
-  expect_iterates(
-      record_of("sip", "step", 0.3, "analytic"),
-      {2.1,        2.5099802, 1.4699999,  2.1000001,  1.0289999,  1.7569861,  0.72029996,
-       1.47,       0.50421,   1.2298902,  0.352947,   1.029,      0.24706289, 0.86092323,
-       0.17294402, 0.7203,    0.12106082, 0.60264623, 0.08474258, 0.50421});
-  expect_iterates(
-      record_of("sip", "step", 0.3, "lbfgs"),
-      {2.09999967, 2.50998022, 1.46999859, 2.10000011, 1.02899871, 1.75698602, 0.72029824,
-       1.4699998,  0.50420733, 1.22988982, 0.35294448, 1.02899957, 0.24705997, 0.86092355,
-       0.17294205, 0.72030026, 0.12106103, 0.60264817, 0.08474171, 0.50421247});
-}
-
-// Of the first update with the diagonal, toward the origin; at most √2.
-Real alignment(const Record& record) {
-  const std::vector<std::vector<Real>>& x = record.trajectory.value().x;
-  const Real d1 = x.at(0)[0] - x.at(1)[0], d2 = x.at(0)[1] - x.at(1)[1];
-  return (d1 + d2) / std::hypot(d1, d2);
-}
-
-TEST(NotebookSuite, FirstUpdatesAlignWithTheDiagonalAsPrinted) {
-  constexpr Real kPrinted = 1e-6;
-  EXPECT_NEAR(alignment(record_of("gd", "rate", 0.01)), 1.053930, kPrinted);
-  EXPECT_NEAR(alignment(record_of("newton", "rate", 1.0 / 3)), 1.264911, kPrinted);
-  EXPECT_NEAR(alignment(record_of("sip", "step", 0.3, "analytic")), 1.356443, kPrinted);
-  EXPECT_NEAR(alignment(record_of("sip", "step", 0.3, "lbfgs")), 1.356443, kPrinted);
 }
 
 void expect_end(const Record& record, std::int64_t steps, Real x1, Real x2) {
@@ -370,17 +336,10 @@ TEST(Figure1Suite, CirclesAndLinesEndWhereTheScriptEndsThem) {
   expect_end(record_of("inverse-gradient", "rate", 0.5), 10, halved, 3 * std::pow(0.75, 10));
 }
 
-// A straight ray to the origin of y space: y1 and y2 shrink by one factor.
-TEST(Figure1Suite, PhysicsInversionIsAStraightRayInY) {
-  const Record record = record_of("sip", "step", 0.05, "analytic");
-  for (const std::vector<Real>& y : record.trajectory.value().y)
-    EXPECT_NEAR(y[1], 3 * y[0], 1e-12);  // rounding of a hundred steps
-}
-
 TEST(Figure5aSuite, KeepsThePathsOfTheSine) {
   std::size_t count = 0;
   for (const Record& record : notebook().records) {
-    if (record.request.problem.name != "sine") continue;
+    if (record.request.problem.spec != "sine[xi=1,phi=15]") continue;
     EXPECT_EQ(record.trajectory.value().x.size(), record.curve.iteration.size());
     ++count;
   }

@@ -44,7 +44,7 @@ TEST(Rates, AreForTheDefaultModeWhateverNestedOptionsSay) {
   EXPECT_EQ(rate("sine"), 0.5);
   EXPECT_EQ(rate("sine[xi=3]"), 0.5);
   EXPECT_EQ(rate("sine[mode=learn]"), 0.25);
-  EXPECT_EQ(rate("sine[network=mine[mode=odd]]"), 0.5);  // of a network that direct never makes
+  EXPECT_THROW(rate("sine[network=mine[mode=odd]]"), UsageError);  // which direct never makes
 }
 
 void expect_row_is_sound(const Json& row) {
@@ -176,7 +176,7 @@ TEST(Best, KeepsTheLesserOfTwoBySeedAndBySetOfOptions) {
 TEST(Best, AreFLOfTheProblemsThatDeclareNone) {
   for (const char* text : {"sine[mode=learn,xi=32]", "exponential[mode=learn]"})
     for (const std::uint64_t seed : {0U, 1U, 2U}) {
-      const std::optional<Real> known = BestLosses::builtin().find(problem(text), seed);
+      const std::optional<Real> known = BestLosses::known().find(problem(text), seed);
       ASSERT_TRUE(known.has_value()) << text << ", seed " << seed;
       EXPECT_GT(*known, 0);
       EXPECT_EQ(make_problem(catalog(), problem(text), seed).minimum(), known);
@@ -191,7 +191,7 @@ TEST(Best, GiveRunsWithoutADeclaredMinimumHitsThatAreExact) {
       cell_of("exponential[mode=learn]", "sip", {.iterations = 200, .target = 0});
   const Record record = executed(catalog(), request);
   ASSERT_TRUE(record.hits.has_value());
-  EXPECT_EQ(record.minimum, BestLosses::builtin().find(request.problem, 0));
+  EXPECT_EQ(record.minimum, BestLosses::known().find(request.problem, 0));
   Batch validation;
   make_problem(catalog(), request.problem, 0).draw_validation(validation);
   const Real silent = 0.5 * validation.target.squaredNorm() / 1024;  // L at y = 0
@@ -200,7 +200,7 @@ TEST(Best, GiveRunsWithoutADeclaredMinimumHitsThatAreExact) {
 
 TEST(Best, ArePartOfTheDigestOfTheirProblem) {
   const Component learned = problem("exponential[mode=learn]");
-  EXPECT_NE(BestLosses::builtin().losses_text(learned), "");
+  EXPECT_NE(BestLosses::known().losses_text(learned), "");
   EXPECT_NE(learned.sources, problem("exponential").sources);
   EXPECT_EQ(problem("exponential").sources, tree_sources().at("problems/exponential.cpp"));
 }
@@ -486,6 +486,22 @@ TEST(UsedRates, StandBesideThePlanWithTheTableTheyAreFrom) {
   EXPECT_TRUE(table["rows"][0]["source"].contains("grid"));
   EXPECT_EQ(table["rows"][1]["file"], "learn.json");
   EXPECT_TRUE(table["rows"][1]["source"].contains("paper"));
+  for (const Json& row : table["rows"]) EXPECT_FALSE(row.contains("setting")) << row;
+}
+
+// The rates of the sine are tuned at its defaults.
+TEST(UsedRates, OfAnotherSettingNameTheSettingThatTheyWereTunedOn) {
+  const TemporaryFolder folder;
+  const Suite suite{.name = "mine",
+                    .title = "",
+                    .blocks = {{.problems = {"sine[xi=20]"}, .optimizers = {"adam"}}}};
+  const Rates rates = Rates::builtin();
+  Store store(folder.path());
+  write_used_rates(rates, expand(catalog(), suite, rates), store);
+  const Json table = read_json(folder.path() / "rates.json");
+  EXPECT_EQ(schema_violations(table, schema("rates")), std::vector<std::string>{});
+  ASSERT_EQ(table["rows"].size(), 1U);
+  EXPECT_EQ(table["rows"][0]["setting"], "sine");
 }
 
 }  // namespace

@@ -447,8 +447,7 @@ class Judging : public testing::Test {
 TEST_F(Judging, APointThatIsNoneButInItsOwnProcessIsAFailure) {
   const Record record = record_after(asked("square", {}, "cheat", {{"deed", "target"}}));
   EXPECT_EQ(record.status, Status::failed);
-  EXPECT_NE(record.message.find("its loss is 90 on a new instance"), std::string::npos)
-      << record.message;
+  EXPECT_NE(record.message.find("its loss is 90 "), std::string::npos) << record.message;
   for (const auto& [tau, is_verified] : record.verified) EXPECT_EQ(is_verified, false) << tau;
 }
 

@@ -91,6 +91,10 @@ class Client(unittest.TestCase):
 
     def test_forward_alone_is_for_methods_without_derivatives(self):
         self.assertEqual(self.record(spec("forward"), "adam")["status"], "inapplicable")
+        by_differences = GIVEN + " --differences --aim x --start-scale own"
+        found = self.record(spec("forward", by_differences), "levenberg-marquardt")
+        self.assertTrue(found["found"]["1e-6"], found["message"])
+        self.assertGreater(found["prices"]["pullback"], 1)
         found = self.record(spec("forward"), "nlopt-neldermead")
         self.assertLess(found["summary"]["loss"], 1e-6)
 

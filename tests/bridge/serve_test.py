@@ -144,6 +144,15 @@ class Served(unittest.TestCase):
             ahead = caller.output("ApplyJacobian", name="residual", input=[x], vec=[3.0, 4.0])
             self.assertAlmostEqual(3 * back[0] + 4 * back[1], ahead[0] + 2 * ahead[1])
 
+    def test_a_name_of_another_site_is_refused(self):
+        with serving(self.folder, "rosenbrock") as caller:
+            for host, expected in [("evil.example", 403), ("localhost:80", 200), ("[::1]:80", 200), ("", 403)]:
+                connection = http.client.HTTPConnection("127.0.0.1", caller.port, timeout=PATIENCE)
+                connection.request("GET", "/Info", headers={"Host": host})
+                self.assertEqual(connection.getresponse().status, expected, host)
+                connection.close()
+            caller.output("Evaluate", **GOOD)
+
     def test_requests_that_no_good_client_makes(self):
         draw = random.Random(1)
         good = json.dumps(GOOD).encode()
@@ -167,8 +176,8 @@ class Served(unittest.TestCase):
                 self.assertEqual(caller.raw(method, path, good)[0], 404, path)
             with socket.create_connection(("127.0.0.1", caller.port), timeout=PATIENCE) as silent, \
                     socket.create_connection(("127.0.0.1", caller.port), timeout=PATIENCE) as large:
-                silent.sendall(b"POST /Evaluate HTTP/1.1\r\nContent-Length: 100\r\n\r\n{")
-                large.sendall(b"POST /Evaluate HTTP/1.1\r\nContent-Length: %d\r\n\r\n" % (1 << 30))
+                silent.sendall(b"POST /Evaluate HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Length: 100\r\n\r\n{")
+                large.sendall(b"POST /Evaluate HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Length: %d\r\n\r\n" % (1 << 30))
                 self.assertIn(b" 413 ", large.recv(4096)[:20])
                 self.assertEqual(caller.ask("Evaluate", **GOOD)[0], 200)
 

@@ -65,7 +65,7 @@ TEST(Train, MistakesAreOneSentenceAndLeaveNothing) {
            {"train 'sine[mode=direct]' --out x", "no network to train"},
            {"train sine --optimizer ceres-lbfgs --out x", "data=N"},
            {"infer net.json --input wide.csv --output x", "takes 2"},
-           {"infer net.json --input holes.csv --output x.npy", "'nan' is no finite number"},
+           {"infer net.json --input holes.csv --output x.npy", "'nan' is not "},
            {"infer net.json --input good.csv --output x.txt", ".npy or .csv"},
            {"infer good.csv --input good.csv --output x.npy", "not a trained network"},
            {"infer net.json --input missing.npy --output x.npy", "missing.npy"}}) {

@@ -114,7 +114,7 @@ TEST_F(Shards, TakeOverWhatOtherDivisionsHaveDone) {
 TEST_F(Shards, OfAPlanThatIsNotThePredictedOneAreRefused) {
   plan("--shards 3 --out out");
   shell.expect("./isoline run --problem sine --optimizer gd --out out --shard 1/3",
-               {.exit_code = 1, .err = {"predicts another plan"}});
+               {.exit_code = 1, .err = {"another plan"}});
 }
 
 // --- status
@@ -196,7 +196,7 @@ TEST_F(Exchange, AFileThatTheManifestLacksOrThatIsMissingIsNamed) {
   shell.expect("./isoline validate results",
                {.exit_code = 2,
                 .out = {"0123456789abcdef-0123456789abcdef.json is not in SHA256SUMS",
-                        "is missing, and SHA256SUMS lists it"}});
+                        "is missing, but SHA256SUMS"}});
 }
 
 TEST_F(Exchange, AnArchiveIsNoResultFolder) {
@@ -246,6 +246,13 @@ TEST_F(Report, ByAnyMeasureAtAnyToleranceTellsWhichInItsJson) {
   shell.expect("./isoline validate results/report/report.json");
 }
 
+TEST_F(Report, KeepsTheProblemsThatAreNamed) {
+  shell.expect("./isoline report results --out one --problem square");
+  const std::string table = read_text(shell.folder() / "one" / "report.csv");
+  EXPECT_TRUE(contains(table, "square,gd") && !contains(table, "rosenbrock,")) << table;
+  shell.expect("./isoline report results --problem sine", {.exit_code = 1});
+}
+
 TEST_F(Report, AToleranceBetweenTwoIsTheNextStricterOneAndSaysSo) {
   shell.expect("./isoline report results --tolerance 5e-5",
                {.err = {"4e-5, the next stricter one"}});
@@ -272,6 +279,38 @@ TEST(BestVerb, KeepsTheLeastLossOfRunsThatDeclareNoneAndNoOther) {
   shell.expect("./isoline validate best.json");
   shell.expect("./isoline best out --out best.json", {.out = {"improved: 0\n"}});
   EXPECT_EQ(read_json(shell.folder() / "best.json"), table);
+  // Runs that read the table have an f_L; those that do not are compared by their losses.
+  const auto solved_with = [&](const std::string& given, const std::string& out) {
+    shell.expect(
+        "./isoline run --problem 'brown-dennis[m=10]' --optimizer gd,levenberg-marquardt --rates "
+        "none --work 500 --seeds 2 --quiet --out " +
+        out + given);
+    for (const auto& file : std::filesystem::directory_iterator(shell.folder() / out / "runs"))
+      EXPECT_EQ(read_json(file.path()).value("best_known", false), !given.empty());
+    return read_json(shell.folder() / out / "report/report.json").at("ranked").size();
+  };
+  EXPECT_EQ(solved_with("", "plain"), 0U);
+  EXPECT_EQ(solved_with(" --best best.json", "known"), 1U);
+}
+
+// A record may come from someone else.
+TEST(Records, StartNoCommandUntilTheyAreTrusted) {
+  const Shell shell;
+  const fs::path started = shell.folder() / "started";
+  write_text(shell.folder() / "mine.py",
+             "import isoline\nopen('started', 'w').close()\n"
+             "isoline.problem(lambda x: [x[0] - 1], [3], jacobian=lambda x: [[1]])\n");
+  shell.expect(
+      "./isoline run --problem 'process[command=\"python3 mine.py\"]' --optimizer gd --out out "
+      "--iterations 5 --quiet --no-report");
+  ASSERT_TRUE(fs::remove(started));
+  shell.expect("./isoline best out --out best.json && ./isoline report out");
+  const std::string named = "python3 mine.py";
+  shell.expect("./isoline replay out/runs/*.json", {.exit_code = 1, .err = {named}});
+  shell.expect("./isoline baseline out --out base.json", {.exit_code = 1, .err = {named}});
+  EXPECT_FALSE(fs::exists(started));
+  shell.expect("./isoline replay --trust out/runs/*.json");
+  EXPECT_TRUE(fs::exists(started));
 }
 
 // The gate of this repository on runs of the built program: it fails on each planted fault, with
@@ -335,18 +374,18 @@ TEST_F(PlantedFault, InADefaultFailsTheGate) {
   });
   expect_fault(kWorse,
                "worse: adam: default of epsilon 1e-8 → 0.01 (2 cells); 2 cells of adam on ");
-  gate({.exit_code = kWorse, .out = {"another source of the optimizer (2 cells of adam on "}});
+  gate({.exit_code = kWorse, .out = {"the optimizer's source (2 cells of adam on "}});
 }
 
 TEST_F(PlantedFault, InAFormulaFailsTheGate) {
   change_records("gd", [](Record& record) { end_at(record, record.summary.loss * (1 + 1e-5)); });
-  expect_fault(kWorse, "worse: 2 cells of gd on ");
+  expect_fault(kWorse, "worse: 2 cells of gd");
 }
 
 TEST_F(PlantedFault, AMissingOptimizerFailsTheGate) {
   fs::remove_all(shell.folder() / "new");
   ASSERT_EQ(shell(kRun + "--optimizer adam,gd --out new").exit_code, 0);
-  expect_fault(kWorse, "worse: NEW lacks 2 cells of newton on ");
+  expect_fault(kWorse, "NEW lacks 2 cells of newton");
   write_text(shell.folder() / "allowed.json",
              R"({"schema": "isoline.allowed/1",
                  "cells": [{"optimizer": "newton", "reason": "it moved out"}]})");
@@ -355,12 +394,12 @@ TEST_F(PlantedFault, AMissingOptimizerFailsTheGate) {
 
 TEST_F(PlantedFault, ACellThatAClockCutFailsTheGate) {
   change_records("newton", [](Record& record) { record.is_nondeterministic = true; });
-  expect_fault(kNotComparable, "a clock or a kill ended it in NEW");
+  expect_fault(kNotComparable, "ended it in NEW");
 }
 
 TEST_F(PlantedFault, BetterResultsPass) {
   change_records("gd", [](Record& record) { end_at(record, record.summary.loss * 0.5); });
-  gate({.out = {"Comparison: better, nothing worse"}});
+  gate({.out = {"Comparison: better, "}});
 }
 
 TEST_F(PlantedFault, InARecordIsFoundByValidate) {

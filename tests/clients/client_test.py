@@ -182,7 +182,24 @@ class ProblemsWithoutNumPy(Problems):
 
 @unittest.skipUnless(HAS_NUMPY, "NumPy is not installed")
 class ProblemsWithNumPy(Problems):
-    pass
+    def test_takes_a_column_of_an_array(self):
+        text = "import isoline, numpy as np\nM = np.arange(6.).reshape(3, 2)\n" \
+            "isoline.problem(lambda x: (M * x)[:, -1], M[:2, 0], jacobian=lambda x: M)"
+        with self.program(text) as program:
+            said = json.loads(program.greet("problem", seed=0)[1])
+            self.assertEqual(said["start"], [0, 2])
+            self.assertEqual(program.ask(2, 0, [1, 2]), [2, 6, 10])
+            self.assertEqual(program.ask(5, 0, []), [0, 2, 4, 1, 3, 5])
+
+    def test_refuses_what_doubles_cannot_hold(self):
+        for result, word in [("np.array([1j])", b"complex"), ("None", b"return is missing"),
+                             ("[1, None]", b"None"), ("['1']", b"real numbers"),
+                             ("np.ma.masked_array([1., 2.], [0, 1])", b"masked")]:
+            text = f"import isoline, numpy as np\nisoline.problem(lambda x: {result}, [1])"
+            with self.program(text) as program:
+                status, why = program.greet("problem", seed=0)
+                self.assertEqual(status, 1, result)
+                self.assertIn(word, why)
 
 
 del Problems  # what the two share is no test by itself

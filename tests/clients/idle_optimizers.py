@@ -18,6 +18,8 @@ elif mode == "raises":
     raise ValueError("the step is no number")
 elif mode == "leaves":
     sys.exit(4)
+elif mode == "forgets":
+    p.value(p.x0)
 elif mode == "talks":
     p.report(p.x0)
     print("what I think of it")

@@ -56,7 +56,7 @@ def misbehave(x):
         ready, written = os.pipe()
         if os.fork() == 0:
             os.setsid()
-            with open(sys.argv[2], "w") as file:
+            with open(sys.argv[2].removeprefix("file="), "w") as file:
                 file.write(str(os.getpid()))
             os.write(written, b".")
             time.sleep(600)
@@ -72,6 +72,17 @@ def forward(x):
         state[0] += 1e-9
     if mode == "is-not-finite" and x[0] < -0.5:
         return [float("nan"), float("inf")]
+    if mode == "returns-nothing":
+        return None
+    if mode == "returns-text":
+        return ["1", "2"]
+    if mode == "edits-itself" and calls == 3:
+        with open(__file__, "a") as file:
+            file.write("#")
+    if mode == "changes-its-argument":
+        a, b = x
+        x[0] = x[1] = 0.0
+        return [10 * (b - a * a), 1 - a]
     return [10 * (x[1] - x[0] * x[0]) + state[0], 1 - x[0]]
 
 
@@ -80,4 +91,5 @@ def jacobian(x):
     return [[-20 * sign * x[0], 10], [-1, 0]]
 
 
-isoline.problem(forward, [1.2, 1], minimum=0.0, jacobian=jacobian, name=mode)
+minimum = float("nan") if mode == "has-no-finite-minimum" else 0.0
+isoline.problem(forward, [1.2, 1], minimum=minimum, jacobian=jacobian, name=mode)

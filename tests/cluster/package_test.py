@@ -46,9 +46,12 @@ class Package(unittest.TestCase):
         client = [name for name in files if name.startswith("usr/share/isoline/python/")]
         self.assertIn("usr/share/isoline/python/isoline.py", client)
         self.assertTrue(all(name.endswith(".py") for name in client), client)
-        files = [name for name in files if name not in client]
-        self.assertEqual(files, ["usr/bin/isoline", "usr/share/doc/isoline/copyright"])
-        with open(f"{self.folder}/root/{files[1]}", encoding="utf-8") as text:
+        guide = [name for name in files if name.startswith("usr/share/doc/isoline/docs/")]
+        self.assertIn("usr/share/doc/isoline/docs/running-a-matrix.md", guide)
+        files = [name for name in files if name not in client + guide]
+        self.assertEqual(files, ["usr/bin/isoline"] + [f"usr/share/doc/isoline/{name}" for name in (
+            "CHANGELOG.md", "README.md", "copyright")])
+        with open(f"{self.folder}/root/{files[-1]}", encoding="utf-8") as text:
             notice = text.read()
         self.assertIn("GNU General Public License", notice)
         self.assertIn("MIT", notice)

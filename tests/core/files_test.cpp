@@ -1,6 +1,7 @@
 // Files under hostile names, temporary files of other programs, and the formats NPY and JSON.
 #include "core/files.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -8,6 +9,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <array>
 #include <cmath>
 #include <csignal>
 #include <cstring>
@@ -16,6 +18,7 @@
 
 #include "core/errors.h"
 #include "core/json.h"
+#include "core/output.h"
 #include "core/records/json_view.h"
 #include "core/records/npy.h"
 #include "core/records/record.h"
@@ -52,7 +55,7 @@ TEST(Files, DevicesFoldersAndLinksInACircleAreRefused) {
   expect_said(complaint_about(folder.path()), "it is a folder");
   fs::create_symlink(folder.path() / "b", folder.path() / "a");
   fs::create_symlink(folder.path() / "a", folder.path() / "b");
-  expect_said(complaint_about(folder.path() / "a"), "Too many levels of symbolic links");
+  expect_said(complaint_about(folder.path() / "a"), "symbolic links");
   fs::create_symlink("/dev/zero", folder.path() / "endless.json");
   expect_said(complaint_about(folder.path() / "endless.json"), "it is a device");
   expect_said(complaint_about(folder.path() / "absent"), "no such file");
@@ -167,6 +170,48 @@ TEST(Files, AFailedWriteLeavesTheOldFileAndNoOther) {
 }
 
 // A limit on the size of files stands in for a full disk: write() fails half-way in both.
+TEST(Files, OfAUserAreWrittenThroughWhatIsNoFileAndNeverInThePlaceOfAnothers) {
+  const TemporaryFolder owned;
+  const fs::path file = owned.path() / "file", link = owned.path() / "link";
+  write_output("/dev/null", "mark 1", "mark");
+  EXPECT_EQ(fs::status("/dev/null").type(), fs::file_type::character);
+  write_output(file, "mark 1", "mark");
+  fs::create_symlink("file", link);
+  write_output(link, "mark 2", "mark");
+  EXPECT_TRUE(fs::is_symlink(link));
+  EXPECT_EQ(read_text(file), "mark 2");
+  const fs::path pipe = owned.path() / "pipe";
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  const int reader = open(pipe.c_str(), O_RDONLY | O_NONBLOCK);
+  write_output(pipe, "mark 3", "mark");
+  std::array<char, 16> got{};
+  EXPECT_EQ(read(reader, got.data(), got.size()), 6);
+  close(reader);
+  EXPECT_TRUE(fs::is_fifo(pipe));
+  write_text(file, "a letter of mine");
+  EXPECT_THROW(write_output(file, "mark 4", "mark"), UsageError);
+  EXPECT_EQ(read_text(file), "a letter of mine");
+  EXPECT_THROW(write_output(owned.path(), "mark 5", "mark"), UsageError);
+}
+
+TEST(Files, ThatTheSystemDoesNotOpenAreToldFromDamagedOnes) {
+  const pid_t child = fork();
+  if (child == 0) {
+    const rlimit none{0, 0};
+    setrlimit(RLIMIT_NOFILE, &none);
+    try {
+      read_text("/proc/self/exe");
+    } catch (const AccessError&) {
+      _exit(0);
+    } catch (...) {
+    }
+    _exit(1);
+  }
+  int status = 0;
+  ASSERT_EQ(waitpid(child, &status, 0), child);
+  EXPECT_EQ(status, 0);
+}
+
 TEST(Files, AFullDiskIsAnErrorAndLeavesNothingBehind) {
   const TemporaryFolder owned;
   const std::filesystem::path& folder = owned.path();
@@ -242,7 +287,7 @@ TEST(Npy, SurvivesTheRoundTripAtEveryRank) {
 
 TEST(Npy, RefusesWhatItCannotTakeWithOneSentence) {
   const std::string good = by_numpy();
-  EXPECT_NE(refusal_of("hello").find("no .npy file"), std::string::npos);
+  EXPECT_NE(refusal_of("hello").find("not a .npy file"), std::string::npos);
   EXPECT_NE(refusal_of(good.substr(0, good.size() - 3)).find("bytes of numbers"),
             std::string::npos);
   std::string complex = good;
@@ -281,11 +326,11 @@ TEST(Npy, HeadersThatCannotBeAreRefusedBeforeRoomIsMade) {
          {"(4294967296, 4294967296)", "(9223372036854775807, 2)", "(3, 6148914691236517206)",
           "(0, 9223372036854775807, 9223372036854775807)"})
       expect(shaped(shape, order), 16, "more numbers than a file");
-  expect(shaped("(1000000000000,)"), 16, "it holds 16 bytes");
-  expect(shaped("(2305843009213693952,)"), 0, "it holds 0 bytes");  // of 8: 0 bytes in 64 bits
+  expect(shaped("(1000000000000,)"), 16, "it contains 16 bytes");
+  expect(shaped("(2305843009213693952,)"), 0, "it contains 0 bytes");  // of 8: 0 bytes in 64 bits
   for (const char* shape : {"(-1,)", "(-2, -2)", "(99999999999999999999,)", "(1.5,)", "(x,)",
                             "(1 2)", "(,)", "5", "[5]", "(True,)"})
-    expect(shaped(shape), 16, "its header must be like");
+    expect(shaped(shape), 16, "its header must ");
   std::string many = "(";
   for (int i = 0; i < 100; ++i) many += "1,";
   expect(shaped(many + ")"), 8, "more than 64");
@@ -335,6 +380,12 @@ TEST(Numbers, SurviveTheRoundTripToTheLastBit) {
 
 std::string complaint_of_json(const std::string& text) {
   return refusal([&] { parse_json(text, "given.json"); });
+}
+
+TEST(Json, IsRefusedInWordsWithoutTheNamesOfItsLibrary) {
+  const std::string complaint = complaint_of_json("\x93NUMPY");
+  EXPECT_EQ(complaint.find("exception"), std::string::npos) << complaint;
+  EXPECT_NE(complaint.find("line 1"), std::string::npos) << complaint;
 }
 
 // 200,000 levels overflow the stack of a function that copies, compares or writes such a tree.

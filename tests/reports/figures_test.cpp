@@ -128,7 +128,7 @@ TEST(Figures, LearnedTablesNameWhereLossAndErrorRankDifferently) {
   const Compared comparison(records);
   const std::vector<Table> all = learned_section(comparison).tables;
   ASSERT_EQ(all.size(), 2U);
-  EXPECT_TRUE(has(all[0].reading, "sip has both the least error"));
+  EXPECT_TRUE(has(all[0].reading, "sip has both"));
   EXPECT_TRUE(has(all[1].reading, "rank methods differently"));
   EXPECT_NE(markdown_report(document_of(comparison)).find(all[1].reading.substr(0, 40)),
             std::string::npos);
@@ -183,10 +183,9 @@ TEST(Sweeps, DrawTheMediansOverSeedsOfAllThatDiffersInTwoOptions) {
   EXPECT_EQ(map.rows[1][0].text, "1");
   EXPECT_EQ(map.rows[1][1].text, "3");
   EXPECT_EQ(map.rows[1][1].shade, 1) << "within a factor of two";
-  EXPECT_EQ(map.reading,
-            "The least median, 1.5, is at kappa = 0.5 and rate = 1; 6 of 6 settings lie within "
-            "a factor of two of it.");
-  EXPECT_TRUE(has(map.caption, "median over 3 seeds, 100 iterations each"));
+  for (const char* part : {" 1.5", "kappa = 0.5", "rate = 1;", "6 of 6 settings"})
+    EXPECT_TRUE(has(map.reading, part)) << part;
+  EXPECT_TRUE(has(map.caption, "3 seeds, 100 iterations"));
 }
 
 TEST(Sweeps, CountWhatDivergedAsInfinite) {
@@ -236,11 +235,12 @@ TEST(Sweeps, SpectraShowWhatTheStartSeesAndWhatStepsMakeOfIt) {
   record.spectrum = {.iterations = {0, 1}, .sigma = {{10, 1, 1e-7}, {20, 4, 2}}};
   const Section section = spectra_section(Compared({record}));
   ASSERT_EQ(section.plots.size(), 2U);
-  EXPECT_EQ(section.plots[0].reading,
-            "At the start 2 of 3 lie above 1e-6 of the largest; where gd ended, 3.");
+  EXPECT_TRUE(has(section.plots[0].reading, " 2 of 3 "));
+  EXPECT_TRUE(has(section.plots[0].reading, " of gd, 3."));
   EXPECT_EQ(section.plots[0].series.size(), 2U);
   EXPECT_EQ(section.plots[0].series[1].y, (std::vector<Real>{20, 4, 2}));
-  EXPECT_EQ(section.plots[1].reading, "From 1e8 at the start to 10 where gd ended.");
+  EXPECT_TRUE(has(section.plots[1].reading, "From 1e8 "));
+  EXPECT_TRUE(has(section.plots[1].reading, " to 10 "));
   for (const Plot& plot : section.plots) {
     EXPECT_TRUE(plot.is_log_x && plot.is_log_y) << plot.id;
     EXPECT_TRUE(has(plot.caption, "norm")) << plot.id << " names none";

@@ -107,10 +107,11 @@ TEST(RankedSettings, HalfAndTwiceThePriceOfEachOracleAreOtherChoices) {
   std::map<std::string, bool> kept;
   for (const Choice& choice : c.decision->choices)
     if (choice.varied == Varied::prices) kept[choice_text(choice)] = choice.is_kept;
-  EXPECT_EQ(kept, (std::map<std::string, bool>{{"with jacobian at half price", false},  // 10 and 7
-                                               {"with jacobian at twice the price", true},
-                                               {"with forward at twice the price", false},
-                                               {"with forward at half price", true}}));
+  EXPECT_EQ(kept,
+            (std::map<std::string, bool>{{"with jacobian at half its cost", false},  // 10 and 7
+                                         {"with jacobian at twice its cost", true},
+                                         {"with forward at twice its cost", false},
+                                         {"with forward at half its cost", true}}));
 }
 
 // A tenth of a second of forwards within 0.4; the run whose Jacobians have no price is left out.

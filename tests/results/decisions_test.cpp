@@ -136,13 +136,33 @@ TEST(Decision, NamesTheChoicesThatWouldPutAnotherFirst) {
   const auto decision = decide(evidence);
   ASSERT_EQ(decision->places[0].method, 0U);
   EXPECT_FALSE(is_kept(*decision, Varied::profile_end, "16"));
-  EXPECT_TRUE(is_kept(*decision, Varied::profile_end, "64"));
   EXPECT_TRUE(is_kept(*decision, Varied::measure, "time"));
   EXPECT_FALSE(is_kept(*decision, Varied::tolerance, "0.1"));
   EXPECT_TRUE(is_kept(*decision, Varied::family, "a"));
   EXPECT_FALSE(is_kept(*decision, Varied::family, "c"));
   EXPECT_TRUE(is_kept(*decision, Varied::seed, "0"));
   EXPECT_FALSE(is_kept(*decision, Varied::seed, "1"));
+}
+
+// The end that ranks is not another choice.
+TEST(Decision, IsHeldAgainstOtherChoicesOnly) {
+  std::vector<std::string> ends;
+  const auto decision = decide(clear_lead(6, 3));
+  for (const Choice& choice : decision->choices)
+    if (choice.varied == Varied::profile_end) ends.push_back(choice.value);
+  EXPECT_EQ(ends, (std::vector<std::string>{"16", "256"}));
+}
+
+// The second is the first again, so that their difference alone would call anything detectable.
+TEST(Decision, CallsDetectableWhatAMiddlingRivalShows) {
+  Evidence evidence{.families = families_apart(8)};
+  for (std::size_t p = 0; p < 8; ++p)
+    evidence.costs.push_back({10, 10, p % 2 == 0 ? 20 : 80, p % 2 == 0 ? 80 : 320});
+  const auto decision = decide(evidence);
+  ASSERT_EQ(decision->places[1].score, 1);
+  const Real each =
+      detectable_mean(deviation_of({0, 2 / 6.0, 0, 2 / 6.0, 0, 2 / 6.0, 0, 2 / 6.0}), 8);
+  EXPECT_NEAR(decision->detectable, each, kRounding);
 }
 
 // Of two families each method is best on one by as much. A sample that draws the first twice (a

@@ -1,0 +1,46 @@
+// What a reader has, and which method suits it: the report has the advice for every choice, and this
+// looks it up.
+const SIZES = ['any', 'up to 10', '11 to 100', 'more than 100'], BUDGETS = ['any', '10000', '1000', '100'];
+const LEVELS = ['forward', 'gradient', 'jacobian', 'hessian'];  // in the order of DATA.advice
+const means = {level: 0, inverse: 0, size: 0, budget: 0};
+
+const adviceNow = () => DATA.advice[((2 * means.level + means.inverse) * SIZES.length + means.size) * BUDGETS.length + means.budget];
+
+function readMeans(asked) {
+  const place = (all, key) => Math.max(0, all.indexOf(asked.get(key)));
+  const [level, inverse] = (asked.get('have') ?? '').split(' ');
+  Object.assign(means, {level: Math.max(0, LEVELS.indexOf(level)), inverse: inverse === 'inverse' ? 1 : 0, size: place(SIZES, 'unknowns'), budget: place(BUDGETS, 'budget')});
+}
+
+function writeMeans(asked) {
+  if (means.level + means.inverse > 0) asked.set('have', LEVELS[means.level] + (means.inverse ? ' inverse' : ''));
+  if (means.size > 0) asked.set('unknowns', SIZES[means.size]);
+  if (means.budget > 0) asked.set('budget', BUDGETS[means.budget]);
+}
+
+function drawAdvice(place) {
+  const [text, settings, flat] = adviceNow() ?? [worded('choose-large'), 0, []], rows = [];
+  for (let i = 0; i < flat.length; i += 6) {
+    const [s, solved, , score, work, isInGroup] = flat.slice(i, i + 6);
+    const row = element('tr', {className: isInGroup ? 'tied' : ''}, cellWith(String(i / 6 + 1)), element('th', {scope: 'row'}, ...nameOfMethod(s)), cellWith(String(solved), `/${settings}`), cellWith(figure(work ?? Infinity)), cellWith(score.toFixed(2)));
+    row.dataset.s = s;
+    rows.push(row);
+  }
+  const table = element('table', {className: 'advised'});
+  filledTable(table, worded('choose-caption'), [element('tr', {}, ...worded('choose-columns').split(' | ').map((head) => element('th', {scope: 'col'}, head)))], rows);
+  place.replaceChildren(element('p', {className: 'verdict'}, text), ...rows.length === 0 ? [] : [scrolled(table)]);
+}
+
+function liveChoose(place) {
+  const answer = element('div', {className: 'answer'}), draw = () => drawAdvice(answer);
+  answer.setAttribute('aria-live', 'polite');
+  const choose = (key) => (value) => {
+    means[key] = Number(value);
+    writeAddress();
+    draw();
+  };
+  const choices = (key, caption, names) => newSwitch(caption, Object.fromEntries(names.map((name, i) => [i, name])), String(means[key]), choose(key));
+  place.replaceChildren(choices('level', 'Simulator', ['forward only', '+ gradient', '+ Jacobian', '+ Hessian']), choices('inverse', 'Local inverse', ['no', 'yes']),
+      choices('size', 'Unknowns', SIZES), choices('budget', 'Forward solves', BUDGETS), answer);
+  live(answer, draw);
+}

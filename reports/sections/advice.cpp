@@ -1,0 +1,51 @@
+// The sentences of an advice: which method suits a reader's means.
+#include "core/results/advice.h"
+
+#include "reports/sections/sections.h"
+#include "reports/sections/words.h"
+
+namespace isoline::reports {
+
+std::string means_text(const Means& means) {
+  std::string text =
+      words("means." + std::string(kDerivativeNames[std::size_t(means.derivatives)]));
+  if (means.has_inverse) text += words("means.inverse");
+  const bool is_bounded = means.most_unknowns < Means{}.most_unknowns;
+  if (is_bounded && means.least_unknowns > 0)
+    text += words("means.between", means.least_unknowns, means.most_unknowns);
+  else if (is_bounded)
+    text += words("means.most", means.most_unknowns);
+  else if (means.least_unknowns > 0)
+    text += words("means.least", means.least_unknowns);
+  return means.budget < kNever ? text + words("means.budget", means.budget) : text;
+}
+
+std::string advice_text(const Comparison& c, const Means& means, const Advice& advice) {
+  const auto name = [&](const Advised& one) {
+    const OptimizerAxis& axis = c.optimizers[one.optimizer];
+    return shown_spec(axis.name_of_all());
+  };
+  std::size_t physics = 0;
+  for (const std::size_t p : advice.settings) physics += c.problems[p].group() == "physics";
+  std::string text;
+  if (advice.ranked.empty()) {
+    text = words("advice.none", means_text(means), tau_name(c), advice.settings.size());
+  } else {
+    const Advised& first = advice.ranked[0];
+    std::vector<std::string> group;
+    for (const Advised& one : advice.ranked)
+      if (one.is_in_group && &one != &first) group.push_back(name(one));
+    text = words("advice.first", means_text(means), name(first), first.solved,
+                 advice.settings.size(), physics, tau_name(c));
+    if (first.work < kNever) text += " " + words("advice.work", figure(first.work));
+    text += " " + (group.empty() ? words("advice.alone", advice.ranked.size())
+                                 : words("advice.group", first_of(std::move(group), 3)));
+  }
+  std::vector<std::string> partial;
+  for (const Advised& one : advice.partial)
+    partial.push_back(words("advice.on", name(one), one.settings, one.solved));
+  return partial.empty() ? text
+                         : text + " " + words("advice.partial", first_of(std::move(partial), 3));
+}
+
+}  // namespace isoline::reports
