@@ -1,6 +1,5 @@
 // Parses the command line with CLI11, which no other file uses, and states what is wrong with it.
 #include <fmt/format.h>
-#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
@@ -13,6 +12,7 @@
 #include <sstream>
 
 #include "benchmarks/cli/verb.h"
+#include "benchmarks/run/progress.h"
 #include "core/errors.h"
 #include "core/records/provenance.h"
 #include "core/spec.h"
@@ -191,15 +191,14 @@ struct WrappedHelp : CLI::Formatter {
   std::string make_help(const CLI::App* app, std::string name,
                         CLI::AppFormatMode mode) const override {
     constexpr std::size_t kUsual = 80, kLeast = 50;
-    winsize size{};
-    const bool is_wide = ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col >= kLeast;
+    const std::size_t columns = terminal_width(STDOUT_FILENO);
+    const std::size_t most = columns >= kLeast ? columns : kUsual;
     std::istringstream lines(CLI::Formatter::make_help(app, std::move(name), mode));
     std::string text;
     for (std::string line; std::getline(lines, line);)
       text += line.starts_with("  isoline ")
                   ? line + '\n'
-                  : broken(line, line.starts_with(' ') ? get_column_width() : 0,
-                           is_wide ? size.ws_col : kUsual);
+                  : broken(line, line.starts_with(' ') ? get_column_width() : 0, most);
     return text;
   }
 };

@@ -36,16 +36,16 @@ std::optional<double> TimeLeft::at(double now) const {
   return std::max(0.0, left - (now - last_));
 }
 
+std::size_t terminal_width(int descriptor) {
+  constexpr std::size_t kUsual = 80;
+  winsize size{};
+  return ioctl(descriptor, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : kUsual;
+}
+
 namespace {
 
 double seconds_since(std::int64_t nanoseconds) {
   return 1e-9 * static_cast<double>(monotonic_nanoseconds() - nanoseconds);
-}
-
-std::size_t terminal_width() {
-  constexpr std::size_t kUsual = 80;
-  winsize size{};
-  return ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : kUsual;
 }
 
 void clear_line() { std::fputs("\r\x1b[K", stderr); }  // the only control sequence that we emit
@@ -106,7 +106,7 @@ void Progress::show(bool now) {
   shown_ = monotonic_nanoseconds();
   if (style_ == Style::live) {
     clear_line();
-    say(stderr, cut(printable(line()), terminal_width() - 1));
+    say(stderr, cut(printable(line()), terminal_width(STDERR_FILENO) - 1));
     std::fflush(stderr);
     is_dirty_ = true;
   } else {

@@ -7,6 +7,9 @@
 
 namespace isoline::benchmarks {
 
+// Columns of the terminal at an open file; 80 where there is no terminal.
+std::size_t terminal_width(int descriptor);
+
 // Cells are weighed by their predicted times; cells without a prediction get the mean. Finished
 // cells correct the predictions of the rest.
 class TimeLeft {
