@@ -66,8 +66,9 @@ Table terms_table(const Evidence& evidence, const std::string& id) {
   for (std::size_t i = 0; i < evidence.terms.size(); ++i) {
     const EvidenceTerm& term = evidence.terms[i];
     const auto [low, high] = std::ranges::minmax(term.runs, {}, &EvidenceRun::figure);
+    const char* otherwise = evidence.is_over_time ? "at equal processor time" : "at the end";
     table.rows.push_back(
-        {names[i], term.iteration ? fmt::format("at iteration {}", *term.iteration) : "at the end",
+        {names[i], term.iteration ? fmt::format("at iteration {}", *term.iteration) : otherwise,
          TableCell(figure(term.level), {{"median", term.level}}), figure(low.figure),
          figure(high.figure), std::to_string(term.runs.size())});
   }
@@ -200,7 +201,7 @@ std::vector<Reading> claim_notes(const Judgement& judgement) {
         {"Not refutable", words("claim.survives", joined(judgement.survives, " and "))});
   if (judgement.fact != judgement.id)
     notes.push_back({"Fact", fmt::format("Counts as one fact with {}.", judgement.fact)});
-  if (!judgement.caveat.empty()) notes.push_back({"Caveat", judgement.caveat});
+  for (const std::string& caveat : judgement.caveats) notes.push_back({"Caveat", caveat});
   return notes;
 }
 

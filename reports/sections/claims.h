@@ -190,7 +190,8 @@ struct OtherReading {
 };
 
 struct Judgement {
-  std::string id, sentence, source, quantity, published, caveat;
+  std::string id, sentence, source, quantity, published;
+  std::vector<std::string> caveats;
   std::string paper, place;  // of the source: "Someone (2022)", "Figure 1"
   std::string fact;          // the claim whose fact this one restates, or itself
   Verdict verdict = Verdict::not_comparable;

@@ -401,8 +401,7 @@ void measure_in(Judgement& out, const Measured& from) {
   for (const std::string& cell : std::set<std::string>(out.cells.begin(), out.cells.end()))
     out.seconds += from.runs.at(cell)->summary.processor_seconds;
   const bool is_known = take(out, from);
-  if (set.contains("deviation"))
-    out.caveat = set["deviation"].get<std::string>() + (out.caveat.empty() ? "" : " ") + out.caveat;
+  if (set.contains("deviation")) out.caveats.insert(out.caveats.begin(), set["deviation"]);
   out.evidence = evidence_of(claim, set.at("terms"), from.runs, from.iterations());
   for (std::size_t i = 0; i < out.contrasts.size(); ++i)
     out.contrasts[i].evidence = evidence_of(
@@ -430,7 +429,7 @@ Judgement judge_one(const Json& claim, const ByCell& runs) {
     if (claim["source"].contains(part))
       out.source += ", " + claim["source"][part].get<std::string>();
   out.place = claim["source"].value("figure", claim["source"].value("section", ""));
-  out.caveat = claim.value("caveat", "");
+  if (claim.contains("caveat")) out.caveats = {claim["caveat"]};
   out.published = published_text(claim);
   out.reading = reading_text(claim);
   out.is_of_one_run = claim.at("published").contains("runs");

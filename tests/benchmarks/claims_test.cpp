@@ -65,6 +65,18 @@ TEST(ClaimsOfTheTree, ReuseTheCellsOfTheSuites) {
             << claim.id << ": " << request.problem.spec << " × " << request.optimizer.spec;
 }
 
+TEST(ClaimsOfTheTree, AreDecidedInPartByTheDefaultSuiteAlone) {
+  const std::set<std::string> quick = cells_of_suites({"quick"});
+  std::set<std::string> facts;
+  for (const Claim& claim : claims())
+    for (const Claim::Cells& cells : claim.cells)
+      if (!cells.requests.empty() && std::ranges::all_of(cells.requests, [&](const Request& one) {
+            return quick.contains(cell_digest(one));
+          }))
+        facts.insert(claim.json->value("fact", claim.id));
+  EXPECT_GE(facts.size(), 9U);
+}
+
 TEST(ClaimsOfTheTree, DecideAtLeastTwelveByTheCellsOfTheShortSuites) {
   std::size_t decided = 0;
   for (const Claim& claim : claims()) {

@@ -134,6 +134,19 @@ class Page(InBrowser):
         self.assertEqual(settled,
                          ["Not significantly worse than the best", "Robustness", "Not run"])
 
+    def test_terms_of_the_glossary_open_beside_their_columns(self):
+        self.assertLessEqual(len(self.browser.run("return Object.keys(DATA.terms)")), 25)
+        tip = "return document.getElementById('tip').hidden ? null : " \
+              "document.querySelector('#tip b').innerText"
+        self.browser.wait("return document.querySelector('#standings-table thead') !== null")
+        seen = self.browser.run(
+            "return [...document.querySelectorAll('#standings-table thead th')].map((head) => {"
+            "head.dispatchEvent(new PointerEvent('pointerover', {bubbles: true}));"
+            f"const seen = (() => {{{tip}}})();"
+            "head.dispatchEvent(new PointerEvent('pointerout', {bubbles: true})); return seen;})")
+        self.assertGreaterEqual({"score", "solved", "wins", "median slowdown"} & set(seen),
+                                {"score", "solved", "wins", "median slowdown"})
+
     def test_curves_and_planes_are_drawn(self):
         for name in ("rosenbrock", "beale"):
             p = self.problem(name)
@@ -540,7 +553,8 @@ class Claims(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.folder = tempfile.TemporaryDirectory()
-        claims = ["notebook-gd-table", "notebook-newton-distance", "notebook-start-loss"]
+        claims = ["notebook-gd-table", "notebook-newton-distance", "notebook-start-loss",
+                  "exponential-rescaled-over-adam"]
         subprocess.run([sys.argv[1], "claims", *claims, "--out", cls.folder.name],
                        check=True, capture_output=True)
         subprocess.run([sys.argv[1], "report", cls.folder.name], check=True, capture_output=True)
@@ -582,6 +596,21 @@ class Claims(unittest.TestCase):
                 self.assertEqual(page.complaints(), [])
             finally:
                 page.close()
+
+    def test_the_first_tab_counts_the_verdicts(self):
+        page = browser.Browser()
+        try:
+            page.open(self.address)
+            counts = re.findall(r"\d+", page.run("return document.querySelector('.checked').innerText"))
+        finally:
+            page.close()
+        facts = {claim["fact"]: claim["verdict"] for claim in self.json["claims"]
+                 if not claim["verification"]}
+        groups = (("reproduced", "consistent"), ("stronger than published",),
+                  ("partly", "at odds", "not reproduced"))
+        self.assertGreater(int(counts[0]), 0)
+        self.assertEqual([int(count) for count in counts],
+                         [sum(verdict in group for verdict in facts.values()) for group in groups])
 
     def test_records_are_linked_and_the_command_repeats_the_claim(self):
         page = browser.Browser()
