@@ -356,6 +356,8 @@ TEST_F(Replay, OfRecordsOfThisBuildIsEqualAndWritesNothing) {
   EXPECT_EQ(count_records(out), 12U);
   shell.expect("./isoline validate out");
   shell.expect("./isoline replay out", {.exit_code = 1});
+  write_text(shell.folder() / "x.npy", "\x93NUMPY");
+  shell.expect("./isoline replay x.npy", {.exit_code = 1, .err = {"x.npy is binary, not JSON"}});
 }
 
 TEST_F(Replay, NamesTheFirstDifferenceInTheCurveOrBesideIt) {
