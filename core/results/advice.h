@@ -33,9 +33,12 @@ struct Advised {
   bool is_in_group = false;   // not significantly worse than the best
 };
 struct Advice {
-  std::vector<std::size_t> settings;  // of that size
-  std::vector<Advised> ranked;        // run on all of them, best first; none where none solves any
-  std::vector<Advised> partial;       // run on some
+  std::size_t of_size = 0;  // settings of that size
+  // Those that count: all of that size, or those of a method that was run on some alone and solves
+  // more of them than the first of the others.
+  std::vector<std::size_t> settings;
+  std::vector<Advised> ranked;   // run on all that count, best first; none where none solves any
+  std::vector<Advised> partial;  // run on some
 };
 // On direct problems whose x the data determine. What a method needs is what its runs were counted
 // to ask for.

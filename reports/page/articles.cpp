@@ -53,7 +53,7 @@ std::string deeds_html(const Comparison& c, std::size_t s) {
     }
   }
   std::string html;
-  for (const auto& [term, items] : {std::pair("wins", &won),
+  for (const auto& [term, items] : {std::pair("least work on", &won),
                                     {"does not solve", &unsolved},
                                     {"failed on", &failed},
                                     {"not applicable to", &inapplicable}})

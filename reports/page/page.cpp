@@ -110,7 +110,8 @@ std::string published_html(const Document& document) {
       "<p class=checked>{} <a href=\"#claims\">{}</a> · <a href=\"#figures\">{}</a></p>",
       html_text(words("page.published", count(Verdict::reproduced, Verdict::consistent),
                       count(Verdict::stronger, Verdict::stronger),
-                      count(Verdict::partly, Verdict::not_reproduced))),
+                      count(Verdict::partly, Verdict::not_reproduced),
+                      count(Verdict::too_short, Verdict::not_comparable))),
       html_text(words("page.each-claim")), html_text(words("page.all-figures")));
   const Judgement* best = nullptr;
   for (const Judgement& one : document.claims)

@@ -41,6 +41,8 @@ std::string advice_text(const Comparison& c, const Means& means, const Advice& a
     text += " " + (group.empty() ? words("advice.alone", advice.ranked.size())
                                  : words("advice.group", first_of(std::move(group), 3)));
   }
+  if (advice.settings.size() < advice.of_size)
+    text += " " + words("advice.shared", advice.settings.size(), advice.of_size);
   std::vector<std::string> partial;
   for (const Advised& one : advice.partial)
     partial.push_back(words("advice.on", name(one), one.settings, one.solved));

@@ -165,10 +165,11 @@ namespace {
 std::string denominators(const Comparison& c) {
   const std::size_t shown = shown_optimizers(c, kMostLines);
   std::size_t runs = 0, failed = 0;
-  for (std::size_t s = 0; s < shown; ++s) {
-    runs += c.optimizers[s].runs;
-    failed += c.optimizers[s].failed;
-  }
+  for (std::size_t s = 0; s < shown; ++s)
+    for (const std::size_t p : c.order.settings) {
+      runs += c.cell(p, s).is_measured() ? c.cell(p, s).runs.size() : 0;
+      failed += c.cell(p, s).failed;
+    }
   return words("plot.denominators", shown, c.order.methods.size(),
                counted_settings(c, c.order.settings.size()), failed, runs);
 }

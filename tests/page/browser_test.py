@@ -433,6 +433,18 @@ class Page(InBrowser):
 
     # --- two methods
 
+    def test_a_figure_of_the_ranking_opens_its_settings_and_then_their_records(self):
+        self.browser.wait("return document.querySelector('#standings-table tbody td') !== null")
+        self.browser.click("#standings-table tbody tr:first-child td:nth-child(5)")
+        rows = self.browser.wait("return [...document.querySelectorAll('#drawer .settings-of tbody tr')]"
+                                 ".map((row) => row.innerText.split('\t'))")
+        count = self.browser.run(STANDINGS)[0][4]
+        self.assertEqual(count, f"{sum(row[1] != '✗' and row[1] != 'n/a' for row in rows)}"
+                                f"/{len(rows)}")
+        self.browser.click("#drawer .settings-of tbody tr td")
+        self.assertGreater(self.browser.run("return document.querySelectorAll('#drawer li a').length"),
+                           2)
+
     def test_a_pair_has_the_figures_of_the_report(self):
         pairs = {(pair[0], pair[1]): pair[2:] for pair in self.json["pairs"]}
         names = [optimizer["optimizer"] for optimizer in self.json["optimizers"]]
@@ -607,7 +619,8 @@ class Claims(unittest.TestCase):
         facts = {claim["fact"]: claim["verdict"] for claim in self.json["claims"]
                  if not claim["verification"]}
         groups = (("reproduced", "consistent"), ("stronger than published",),
-                  ("partly", "at odds", "not reproduced"))
+                  ("partly", "at odds", "not reproduced"),
+                  ("too short", "undecidable", "not comparable"))
         self.assertGreater(int(counts[0]), 0)
         self.assertEqual([int(count) for count in counts],
                          [sum(verdict in group for verdict in facts.values()) for group in groups])
