@@ -37,6 +37,8 @@ Catalog builtin_catalog();  // everything in problems/ and optimizers/
 void add_plugin(Catalog& catalog, const std::string& path);
 
 // A component as a request names it, its options complete.
+// The options of the problem itself, and the features that all problems have.
+OptionTable options_with_features(const ProblemEntry& entry);
 Component complete_problem(const Catalog& catalog, const std::string& name,
                            const OptionValues& options);
 Component complete_problem(const Catalog& catalog, const Spec& spec);
