@@ -235,8 +235,6 @@ struct Wanted {
   OptionValues options;
 };
 
-const OptionTable& options_with_features(const OptimizerEntry& entry) { return entry.options; }
-
 template <class Registered>
 std::vector<Wanted> wanted_in(const Registered& registry, const std::string& text) {
   std::vector<Wanted> all;
