@@ -34,6 +34,15 @@ Problem::Problem(ProblemParts parts) : parts_(std::move(parts)) {
           "a field over time needs its history, of two rows at least, and no other field has one");
 }
 
+ProblemParts Problem::parts() && {
+  if (!is_learned()) {
+    parts_.input = std::move(batch_.input);
+    parts_.context = std::move(batch_.context);
+    parts_.target = std::move(batch_.target);
+  }
+  return std::move(parts_);
+}
+
 // L at y = 0 if there is a signal y*, otherwise at the standard start; f_L itself if it is more
 // than rounding compared with that.
 Real Problem::loss_scale(const Batch& batch) const {

@@ -100,6 +100,7 @@ struct ProblemParts {
 class Problem {
  public:
   explicit Problem(ProblemParts parts);
+  ProblemParts parts() &&;  // to make another problem of
 
   Index unknowns() const { return parts_.start.drawn.size(); }  // n
   Index inputs() const { return parts_.physics->inputs(); }     // k

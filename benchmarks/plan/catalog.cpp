@@ -13,6 +13,7 @@
 #include "core/options.h"
 #include "core/records/provenance.h"
 #include "optimizers/optimizer.h"
+#include "problems/features.h"
 #include "problems/problem.h"
 
 namespace isoline::benchmarks {
@@ -112,6 +113,37 @@ Component complete(const Entry& entry, const OptionValues& given) {
   return component;
 }
 
+// Features stand behind the options of the problem itself, and only where they differ from the
+// defaults.
+Component complete_with_features(const ProblemEntry& entry, const OptionValues& given) {
+  ProblemEntry featured = entry;
+  featured.options = options_with_features(entry);
+  Component problem = complete(featured, given);
+  for (const OptionField& field : problems::feature_table(entry.options))
+    if (problem.options.at(field.name) == field.standard) problem.options.erase(field.name);
+  return problem;
+}
+
+// With the data of another model, that is the problem with these options instead.
+Problem made_with_features(const ProblemEntry& entry, const Component& problem,
+                           std::uint64_t seed) {
+  const Draw draw(seed, problem.name);
+  OptionValues own, features;
+  for (const auto& [name, value] : problem.options) {
+    const bool is_own =
+        std::ranges::find(entry.options, name, &OptionField::name) != entry.options.end();
+    (is_own ? own : features).set(name, value);
+  }
+  Problem plain = entry.make(own, draw);
+  std::optional<Matrix> target;
+  if (const std::string model = features.text("model"); !model.empty()) {
+    OptionValues other = own;
+    other.set_all(options_of(parse_spec(entry.name + "[" + model + "]")));
+    target = entry.make(complete_options(entry.options, entry.name, other), draw).target();
+  }
+  return problems::with_features(std::move(plain), features, draw, target);
+}
+
 // The sources of a method and of the method inside it.
 std::string digest_of(const Catalog& catalog, const OptimizerEntry& entry,
                       const OptionValues& options, bool is_learning) {
@@ -150,6 +182,12 @@ void require_no_learning(const ProblemEntry& entry, const OptionValues& options)
 
 }  // namespace
 
+OptionTable options_with_features(const ProblemEntry& entry) {
+  OptionTable all = entry.options;
+  for (OptionField& field : problems::feature_table(entry.options)) all.push_back(std::move(field));
+  return all;
+}
+
 Catalog builtin_catalog() {
   Catalog catalog;
   problems::register_problems(catalog.problems);
@@ -172,7 +210,7 @@ Component complete_problem(const Catalog& catalog, const std::string& name,
                            const OptionValues& options) {
   const ProblemEntry& entry = catalog.problems.at(name);
   if (asks_to_learn(options)) require_learnable(catalog, entry);
-  Component problem = complete(entry, options);
+  Component problem = complete_with_features(entry, options);
   if (can_learn(entry) && !problem.is_learned) require_no_learning(entry, problem.options);
   if (problem.is_learned) {
     const std::string network = parse_spec(problem.options.text(kNetworkOption)).name;
@@ -204,16 +242,14 @@ Component complete_optimizer(const Catalog& catalog, const Spec& spec) {
 }
 
 Problem make_problem(const Catalog& catalog, const Component& problem, std::uint64_t seed) {
-  const ProblemEntry& entry = catalog.problems.at(problem.name);
-  Problem made = entry.make(problem.options, Draw(seed, problem.name));
+  Problem made = made_with_features(catalog.problems.at(problem.name), problem, seed);
   const std::optional<Real> best = BestLosses::known().find(problem, seed);
   if (best && !made.minimum()) made.set_minimum(*best);
   return made;
 }
 
 bool declares_minimum(const Catalog& catalog, const Component& problem, std::uint64_t seed) {
-  const ProblemEntry& entry = catalog.problems.at(problem.name);
-  return entry.make(problem.options, Draw(seed, problem.name)).minimum().has_value();
+  return made_with_features(catalog.problems.at(problem.name), problem, seed).minimum().has_value();
 }
 
 }  // namespace isoline::benchmarks

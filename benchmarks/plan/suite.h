@@ -20,6 +20,7 @@ using Json = nlohmann::json;
 struct MatrixBlock {
   std::vector<std::string> problems, optimizers;
   std::vector<std::string> except_problems, except_optimizers;  // names
+  std::vector<std::string> features = {};  // of each problem in turn: "plain", "noise=0.01"
   std::vector<std::uint64_t> seeds = {0};
   Budget budget;
   int threads = 1;

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "core/oracle.h"
+#include "core/spec.h"
 
 namespace isoline::results {
 namespace {
@@ -55,6 +56,13 @@ bool can_run(const Comparison& c, const Cell& cell, const Means& means) {
          });
 }
 
+// Whether its data are as noisy as the reader's.
+bool has_noise(const ProblemAxis& problem, Real noise) {
+  constexpr Real kNear = 3;
+  const Real of = options_of(parse_spec(problem.spec)).number("noise", 0);
+  return noise == 0 ? of == 0 : of >= noise / kNear && of <= noise * kNear;
+}
+
 // Classical and toy problems count where there is little physics of that size.
 std::vector<std::size_t> settings_of_size(const Comparison& c, const Means& means) {
   std::vector<std::size_t> settings;
@@ -62,7 +70,7 @@ std::vector<std::size_t> settings_of_size(const Comparison& c, const Means& mean
     const ProblemAxis& problem = c.problems[p];
     const Index unknowns = problem.sheet == nullptr ? 0 : problem.sheet->unknowns;
     if (!problem.is_learned && !problem.is_ill_posed() && unknowns >= means.least_unknowns &&
-        unknowns <= means.most_unknowns)
+        unknowns <= means.most_unknowns && has_noise(problem, means.noise))
       settings.push_back(p);
   }
   std::set<std::string> physics;

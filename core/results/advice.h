@@ -21,7 +21,11 @@ struct Means {
   bool has_inverse = false;  // a local inverse of the physics
   Index least_unknowns = 0, most_unknowns = std::numeric_limits<Index>::max();
   Real budget = kNever;  // of work, in forward solves
+  Real noise = 0;  // in the data, over their rms: settings with up to three times less or more
 };
+// The classes of unknowns that a reader chooses from: up to 10, 11 to 100, more than 100.
+inline constexpr std::array<std::array<Index, 2>, 3> kSizeClasses = {
+    {{0, 10}, {11, 100}, {101, Means{}.most_unknowns}}};
 
 // A method under one name, whatever it saw on each setting.
 struct Advised {

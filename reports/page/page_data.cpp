@@ -239,7 +239,7 @@ std::string script_words(std::string_view prefix) {
 // and each once with its text, its settings and [optimizer, solved, settings, score, median work,
 // whether in the group] of its methods, one after the other.
 constexpr std::array<std::array<Index, 2>, 4> kSizes = {
-    {{0, Means{}.most_unknowns}, {0, 10}, {11, 100}, {101, Means{}.most_unknowns}}};
+    {{0, Means{}.most_unknowns}, kSizeClasses[0], kSizeClasses[1], kSizeClasses[2]}};
 constexpr std::array<Real, 4> kBudgets = {kNever, 10'000, 1'000, 100};
 
 std::string advice_json(const Comparison& c) {

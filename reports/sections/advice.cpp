@@ -17,6 +17,7 @@ std::string means_text(const Means& means) {
     text += words("means.most", means.most_unknowns);
   else if (means.least_unknowns > 0)
     text += words("means.least", means.least_unknowns);
+  if (means.noise > 0) text += words("means.noise", 100 * means.noise);
   return means.budget < kNever ? text + words("means.budget", means.budget) : text;
 }
 

@@ -21,6 +21,42 @@ const std::string kMatrix =
     "--problem square,rosenbrock,beale --optimizer gd,adam,newton,ceres-lm --seeds 2 "
     "--iterations 40 ";
 
+// A choice is that of the report: methods that need more than the user has are not named.
+TEST(Choose, NamesAMethodThatNeedsNoMoreThanTheUserHas) {
+  const Shell shell;
+  shell.expect(
+      "./isoline run --problem rosenbrock,beale,square,scaling --optimizer "
+      "nlopt-bobyqa,gd,newton,gauss-newton --iterations 300 --out out --no-report --quiet");
+  const auto chosen = [&](const std::string& have) {
+    return shell.expect("./isoline choose out --have " + have).out;
+  };
+  EXPECT_TRUE(contains(chosen("forward"), "nlopt-bobyqa")) << chosen("forward");
+  EXPECT_FALSE(contains(chosen("forward"), "newton"));
+  EXPECT_FALSE(contains(chosen("gradient"), "gauss-newton"));
+  EXPECT_TRUE(contains(chosen("forward,jacobian"), "gauss-newton"));
+  shell.expect("./isoline choose out --noise 0.01", {.exit_code = 1, .err = {"1 % noise"}});
+  shell.expect("./isoline choose out --have wings", {.exit_code = 1});
+}
+
+// A feature belongs to the setting; its default is the plain problem.
+TEST(Features, AreOptionsOfEveryProblemAndFactorsOfASuite) {
+  const Shell shell;
+  const auto cells = [&](const std::string& problem) {
+    return shell.expect("./isoline run --problem '" + problem + "' --optimizer gd --dry-run --all")
+        .out;
+  };
+  EXPECT_TRUE(contains(cells("burgers[N=8,noise=0]"), "burgers[N=8] "));
+  EXPECT_TRUE(contains(cells("burgers[noise=1e-2,N=8]"), "burgers[N=8,noise=0.01]"));
+  shell.expect("./isoline run --problem 'burgers[N=8,noise=-1]' --optimizer gd",
+               {.exit_code = 1, .err = {"noise must be"}});
+  write_text(shell.folder() / "s.json",
+             R"({"schema": "isoline.suite/1", "name": "s", "matrix": [{"problems": ["burgers[N=8]"],
+                 "features": ["plain", "noise=0.01", "scale=100,rotate=yes", "model=\"viscosity=0.2\""],
+                 "optimizers": ["gauss-newton", "gd"], "budget": {"iterations": 20}}]})");
+  shell.expect("./isoline run s.json --out out --no-report", {.out = {"8 cells: 8 run"}});
+  EXPECT_EQ(shell.expect("./isoline replay out/runs/*.json").out.find("differ"), std::string::npos);
+}
+
 // A plan in parts, in the folder `out`.
 class Shards : public testing::Test {
  protected:
