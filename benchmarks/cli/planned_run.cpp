@@ -89,13 +89,12 @@ void declare_what_is_done(VerbArguments& verb, RunArguments& given) {
 }
 
 void declare_run(VerbArguments& verb, RunArguments& given) {
-  constexpr int kLeastMegabytes = 256;  // the libraries' own arrays take half of it
   declare_cells(verb, given);
   verb.whole("--jobs", given.jobs, "Number of cells at a time (default: one per core)", kJobs);
   verb.flag("--exclusive", given.exclusive, "One cell at a time, for reliable times");
   verb.whole("--repeat", given.repeat, "Timings per cell", {1, 1000});
   verb.memory("--memory", given.memory_bytes,
-              "Memory limit of a cell, 256MB or more (default: 4GB)", kLeastMegabytes);
+              "Memory limit of a cell, 256MB or more (default: 4GB)", 256);
   declare_what_is_done(verb, given);
   verb.flag("--no-report", given.no_report, "Do not write a report");
   verb.flag("--uncertified", given.uncertified,
