@@ -73,7 +73,7 @@ class VerbArguments {
   Argument real(const char* name, double& value, const Range& range, const char* about);
   void seed(const char* name, std::uint64_t& value, const char* about);
   void time(const char* name, double& seconds, const char* about);
-  void memory(const char* name, std::int64_t& bytes, const char* about);
+  void memory(const char* name, std::int64_t& bytes, const char* about, int least_megabytes = 16);
   void plugins();  // --plugin, of the session
 
  private:

@@ -56,8 +56,8 @@ void require_certified(const Catalog& catalog, std::vector<Request>& requests, c
     const std::string reason = broken.value_or("it cannot be checked: " + failure);
     require(reason.empty() || options.uncertified, [&] {
       return fmt::format(
-          "{} fails its checks and does not run: {}; `isoline check` lists all, and --uncertified "
-          "runs it with a mark",
+          "{} fails its checks and does not run: {}; `isoline check` lists them, and --uncertified "
+          "runs it nevertheless",
           request->problem.spec, reason);
     });
     if (!reason.empty()) uncertified.insert(request->problem.spec);

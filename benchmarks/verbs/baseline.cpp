@@ -51,7 +51,7 @@ std::vector<reports::Study> perturbed_studies(const BaselineArguments& given, Se
 int run(const BaselineArguments& given, Session& session) {
   reports::Study study = reports::read_study({given.folders.begin(), given.folders.end()});
   std::erase_if(study.runs, [](const Record& run) { return run.imported.has_value(); });
-  require(!study.runs.empty(), "there are no records to remember");
+  require(!study.runs.empty(), "there are no records for a baseline");
   if (!given.out.empty()) require_ours(given.out, reports::kBaselineSchema);
   if (given.perturbations > 0)
     for (const Record& run : study.runs) require_trust(given.trust, run);

@@ -32,8 +32,8 @@ void declare(VerbArguments& verb, ReplayArguments& given) {
   verb.texts("RECORD", given.records,
              "Records of `isoline run`: files in runs/; with --sample result folders")
       .required();
-  verb.text("--sample", given.sample, "Replay a random sample of the records: 1%, or 20 of them");
-  verb.seed("--seed", given.seed, "Seed of the sample; 0: a new one each time, which is printed");
+  verb.text("--sample", given.sample, "Replay a random sample of the records, such as 1% or 20");
+  verb.seed("--seed", given.seed, "Seed of the sample; 0: a new seed each time, which is printed");
   verb.memory("--memory", given.memory_bytes, "Memory limit of a cell (default: 4GB)");
   verb.flag("--trust", given.trust, kTrust);
   verb.plugins();
@@ -56,7 +56,7 @@ std::string difference_of_builds(const Record& record, const Request& request) {
 std::string comparison_text(const Comparison& found) {
   if (!found.difference.empty()) return "differs: " + found.difference;
   if (found.is_up_to_there)
-    return fmt::format("equal up to iteration {}, where a clock or a kill ended one of them",
+    return fmt::format("equal up to iteration {}, where a time limit or a signal ended one of them",
                        found.iterations);
   return fmt::format("equal, {} iteration{}", found.iterations, found.iterations == 1 ? "" : "s");
 }
@@ -89,7 +89,7 @@ int replay(const std::string& path, const ReplayArguments& given, Session& sessi
   if (run_all(session.catalog(), {request}, store, options).is_interrupted) return kInterrupted;
   std::optional<Record> again = store.find(request);
   if (!again) {
-    say(stdout, fmt::format("{}: not comparable: it was killed from outside\n", title));
+    say(stdout, fmt::format("{}: not comparable: another program killed it\n", title));
     return kNotComparable;
   }
   again->cell = record.cell;  // compared above
@@ -149,8 +149,8 @@ void register_replay(VerbRegistry& registry) {
                    "  isoline replay results/quick --sample 1%",
        .notes =
            "The cell runs in its own process, with the problem, options, seed, budget and threads of "
-           "the record. `replay` does not write any file. If a clock or a kill ended a run, it is "
-           "compared up to the last common iteration.\n"
+           "the record. `replay` does not write any file. If a time limit or a signal ended a run, it "
+           "is compared up to the last common iteration.\n"
            "Exit codes: 0 equal; 2 different, and the first difference is printed; 4 not comparable: "
            "another build computed the record (its parts are printed), or a component is missing."},
       declare, run));

@@ -40,7 +40,7 @@ void declare(VerbArguments& verb, TrainArguments& given) {
   verb.seed("--seed", given.seed, "Seed of the start and of the samples");
   verb.whole("--threads", given.threads, "Threads of the libraries", kThreads);
   verb.time("--time", given.seconds,
-            "Time limit of training: 10s, 2m; at twice that, it is killed");
+            "Time limit of training: 10s, 2m; after twice this time, the process is killed");
   verb.memory("--memory", given.memory_bytes, "Memory limit (default: 4GB)");
   verb.flag("--quiet", given.quiet, "Show no progress");
   verb.plugins();

@@ -394,10 +394,10 @@ def problem(
     truth: the x that produced the target.
     drawn: the start of this seed(), instead of one that Isoline samples near `start`.
     bounds=(lower, upper): numbers or lists; Isoline does not call forward outside them.
-    aim="x": the user wants the true x, not only a small loss.
+    aim="x": the success criterion is the error in x, not the loss.
     start_scale="own": starts of other seeds differ by a tenth of each unknown, not of max(1, |x|).
     x_error(x) -> number: the distance to the nearest solution; without it, that to `truth`.
-    x_floor: the error in x that noisy data cannot better; up to 1.1 of it, x counts as found.
+    x_floor: the smallest error in x that noise in the data permits; up to 1.1 times that is solved.
     """
     line, greeting = _greeted()
     try:
@@ -516,7 +516,7 @@ class optimizer:
     """An optimizer that Isoline runs: x0, and the oracles of L and of r = (y − y*)/√B.
 
     needs: the required derivatives, of "pullback", "jacobian", "pushforward", "hessian_product".
-    least_squares=True: the method minimizes ½‖r‖², whatever the loss of the problem is.
+    least_squares=True: the method minimizes ½‖r‖², so it does not apply to problems with another loss.
     reports=True: the script calls report(x) once per iteration. Otherwise each new best point counts
     as one iteration.
     When the run is over, every method raises Stop, which exits the script.

@@ -53,9 +53,9 @@ class ForeignCells : public testing::Test {
 
 TEST_F(ForeignCells, FailWithWhatTheOtherDid) {
   expect_failed("closes", "; it is still running");
-  expect_failed("leaves", "code 3, and last printed: I have");
+  expect_failed("leaves", "code 3, and last printed");
   expect_failed("half-a-frame", "it exited with code 0");
-  expect_failed("a-huge-frame", "linearize with 9223372036854775808 bytes instead of 16");
+  expect_failed("a-huge-frame", "9223372036854775808 bytes instead of 16");
   expect_failed("a-huge-complaint", "9223372036854775808 bytes; at most 65536");
   expect_failed("another-verb", "a frame of verb 99");
   expect_failed("two-answers", "sent an unsolicited frame");
@@ -110,11 +110,7 @@ TEST_F(ForeignCells, AreRunOnlyWhereTheProblemIsCertified) {
     return refusal([&] { run_plan(catalog(), "trial", {request}, folder.path(), options, {}); });
   };
   const std::string sign = complaint("has-a-wrong-sign"), random = complaint("is-random");
-  EXPECT_NE(
-      sign.find("fails its checks and does not run: 'the remainder after J v is of second order' "
-                "is violated"),
-      std::string::npos)
-      << sign;
+  EXPECT_NE(sign.find("'the remainder after J"), std::string::npos) << sign;
   EXPECT_NE(random.find("gives the same bits"), std::string::npos) << random;
   EXPECT_NE(complaint("raises").find("cannot be checked"), std::string::npos)
       << "no certificate, no cells";
@@ -216,8 +212,7 @@ TEST_F(ForeignCells, OfAnOptimizerKeepWhatItClaimsAndPrintsAndFailWithWhatItDid)
       << "it called no oracle and returned an x that was never evaluated";
   const Record refused = record_of_method("asks-what-it-did-not-declare");
   EXPECT_EQ(refused.status, Status::failed);
-  EXPECT_EQ(refused.message,
-            "the method called the oracle 'jacobian', which it does not declare as needed");
+  EXPECT_NE(refused.message.find("'jacobian'"), std::string::npos) << refused.message;
   EXPECT_NE(record_of_method("raises").message.find("ValueError: the step"), std::string::npos);
   EXPECT_NE(record_of_method("leaves").message.find("it exited with code 4"), std::string::npos);
   EXPECT_NE(record_of_method("forgets").message.find("ended without finish"), std::string::npos);

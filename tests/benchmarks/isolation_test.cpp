@@ -159,7 +159,7 @@ TEST(IsolatedText, OfAProcessThatDoesNotEndWellIsNoneButAReason) {
          std::fprintf(stderr, "the grid is too coarse\n");
          std::abort();
        },
-       10, "it last wrote: the grid is too coarse"},
+       10, ": the grid is too coarse"},
       {[]() -> std::string { throw std::runtime_error("no text: \xff"); }, 10, "no text: \uFFFD"},
       {[]() -> std::string {
          for (;;) pause();

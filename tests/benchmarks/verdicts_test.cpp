@@ -482,7 +482,7 @@ TEST_F(Judging, AJudgeThatHangsIsGivenUp) {
   const Verdict verdict =
       verdicts_on({1}, "hang", {.startup_seconds = kPatience, .hard_seconds = kPatience}).at(0);
   EXPECT_FALSE(verdict.judged.has_value());
-  EXPECT_EQ(verdict.failure, "it took more than 0.2 s");
+  EXPECT_TRUE(verdict.failure.ends_with("more than 0.2 s")) << verdict.failure;
 }
 
 TEST_F(Judging, ManyPointsOfOneProblemAreJudgedByOneProcess) {

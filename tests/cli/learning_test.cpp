@@ -109,9 +109,8 @@ TEST(Network, OfSizesThatCannotBeIsRefusedBeforeThereIsRoomForThem) {
                            "1000000000000000000000000000000", "\"many\""})
     for (const char* name : {"parameters", "statistics"}) {
       rewrite(shell, "x.json", [&](Json& json) { json[name] = parse_json(size, "size"); });
-      const Finished refused =
-          shell.expect("./isoline infer x.json --input y.csv --output x.npy",
-                       {.exit_code = 1, .err = {"x.json is not a trained network: ", name}});
+      const Finished refused = shell.expect("./isoline infer x.json --input y.csv --output x.npy",
+                                            {.exit_code = 1, .err = {"x.json is not", name}});
       EXPECT_EQ(count_lines(refused.err), 1U) << refused.err;
       for (const char* foreign : {"stoll", "bad_alloc", "max_size", "json.exception"})
         EXPECT_FALSE(contains(refused.err, foreign)) << refused.err;
@@ -129,7 +128,7 @@ TEST(Network, WithStatisticsOfAnotherNetworkIsRefused) {
     json["mean_statistics"] = {0.5};
   });
   shell.expect("./isoline infer x.json --input y.npy --output x.npy",
-               {.exit_code = 1, .err = {"1 statistics, but its network has"}});
+               {.exit_code = 1, .err = {"1 statistics, but"}});
 }
 
 TEST(Infer, IsEndedAtItsLimitsAndSaysSo) {
@@ -138,10 +137,10 @@ TEST(Infer, IsEndedAtItsLimitsAndSaysSo) {
   write_npy(shell.folder() / "y.npy", {{2'000'000, 2}, std::vector<Real>(4'000'000, 0.1)});
   const std::string infer = "./isoline infer net.json --input y.npy --output x.npy ";
   shell.expect(infer + "--time 1ms",
-               {.exit_code = 2, .err = {"x.npy was not written: it took more than"}});
+               {.exit_code = 2, .err = {"x.npy was not written", "took more than"}});
 #ifndef ISOLINE_SANITIZE  // which the address space is not limited under
   shell.expect(infer + "--memory 16MB",
-               {.exit_code = 2, .err = {"x.npy was not written: it ran out of memory"}});
+               {.exit_code = 2, .err = {"x.npy was not written", "out of memory"}});
 #endif
   EXPECT_FALSE(fs::exists(shell.folder() / "x.npy"));
   shell.expect(infer);
@@ -155,7 +154,7 @@ TEST(Train, IsEndedAtItsLimitsLikeACell) {
   shell.expect(
       "./isoline train 'poisson[N=64,batch=64,network=unet[levels=3]]' --iterations 5 "
       "--memory 16MB --out m.json",
-      {.exit_code = 2, .err = {"no network was written: memory: "}});
+      {.exit_code = 2, .err = {"no network was written: "}});
 #endif
   EXPECT_FALSE(fs::exists(shell.folder() / "m.json"));
 }

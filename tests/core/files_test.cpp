@@ -325,7 +325,7 @@ TEST(Npy, HeadersThatCannotBeAreRefusedBeforeRoomIsMade) {
     for (const char* shape :
          {"(4294967296, 4294967296)", "(9223372036854775807, 2)", "(3, 6148914691236517206)",
           "(0, 9223372036854775807, 9223372036854775807)"})
-      expect(shaped(shape, order), 16, "more numbers than a file");
+      expect(shaped(shape, order), 16, "more numbers than");
   expect(shaped("(1000000000000,)"), 16, "it contains 16 bytes");
   expect(shaped("(2305843009213693952,)"), 0, "it contains 0 bytes");  // of 8: 0 bytes in 64 bits
   for (const char* shape : {"(-1,)", "(-2, -2)", "(99999999999999999999,)", "(1.5,)", "(x,)",

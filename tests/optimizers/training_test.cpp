@@ -49,12 +49,11 @@ TEST(Sip, NetworkStepsGoTowardTheSameTarget) {
 
 TEST(Sip, SaysWhichInverseAProblemLacks) {
   EXPECT_EQ(why("sip[inverse=damped]", make("heat[N=4]")), "");
-  EXPECT_EQ(why("sip[inverse=damped]", make("sine")),
-            "inverse=damped, and the physics has an inverse, but not a damped one");
+  EXPECT_TRUE(why("sip[inverse=damped]", make("sine")).ends_with("not a damped one"));
   EXPECT_NE(why("sip[inverse=damped]", make("box3d")).find("local inverse"), std::string::npos);
   EXPECT_NE(why("sip[inverse=newton]", far_root()).find("second derivatives"), std::string::npos);
-  EXPECT_EQ(why("sip[inverse=newton]", make("exponential[n=9]")),
-            "inverse=newton is for up to 8 inputs of the physics, which has 9");
+  EXPECT_NE(why("sip[inverse=newton]", make("exponential[n=9]")).find("8 inputs"),
+            std::string::npos);
 }
 
 TEST(Sip, RefusesABadNetworkOptimizer) {
@@ -229,10 +228,11 @@ std::vector<std::string> series_names(const Trace& trace) {
   return names;
 }
 
-// The last value of a series.
+// The last value of the series whose name begins so.
 Real shown(const Outcome& outcome, const std::string& name) {
   const std::vector<std::string> names = series_names(*outcome.trace);
-  const auto found = std::ranges::find(names, name);
+  const auto found =
+      std::ranges::find_if(names, [&](const std::string& each) { return each.starts_with(name); });
   EXPECT_NE(found, names.end()) << name;
   return outcome.trace->last.series[found - names.begin()];
 }
@@ -431,11 +431,10 @@ TEST(Sip, FallsBackToTheGradientWhereTheInverseFails) {
   const std::string rest = "network-optimizer=gd[rate=0.1]]";
   const Outcome moved = run(problem, "sip[fallback=gradient," + rest, iterations(1)),
                 stayed = run(problem, "sip[" + rest, iterations(1));
-  EXPECT_EQ(shown(moved, "samples moved along the gradient"), 1);
+  EXPECT_EQ(shown(moved, "samples moved"), 1);
   const Real pull = 0.1 * 2 * 1 * (1 + 1) / 4;  // at x = 1, of the mean over four, at that rate
   EXPECT_LE((moved.theta - stayed.theta + pull * Eigen::Vector2d(1, 1)).norm(), 1e-14);
-  EXPECT_EQ(shown(run(problem, "sip[fallback=gradient," + rest, iterations(3)),
-                  "samples moved along the gradient"),
+  EXPECT_EQ(shown(run(problem, "sip[fallback=gradient," + rest, iterations(3)), "samples moved"),
             3);
 }
 

@@ -185,9 +185,9 @@ TEST(Curves, TheGapIsWhatIsLeftOfTheDescent) {
 }
 
 TEST(Comparison, TwoGridsOfOneEquationAreOneProblem) {
-  EXPECT_EQ(headline(Compared(
-                {record_of({.problem = "heat[N=8]"}), record_of({.problem = "heat[N=16]"})})),
-            "1 optimizer on 1 problem (2 settings), 1 seed, 2 cells");
+  EXPECT_TRUE(has(headline(Compared(
+                      {record_of({.problem = "heat[N=8]"}), record_of({.problem = "heat[N=16]"})})),
+                  "1 problem (2 settings), 1 seed"));
   EXPECT_TRUE(has(headline(Compared({record_of({}), record_of({.problem = "heat"}),
                                      record_of({.problem = "heat", .seed = 1})})),
                   "at most 2 seeds"));

@@ -144,7 +144,7 @@ std::vector<Fault> figure_faults() {
        true},
       {"error in x × 100", in_one([](Record& r) { r.summary.x_error *= 100; }), kCaught, kCaught,
        true},
-      {"error in x × 100, to the end of the curve",
+      {"error in x × 100",
        in_one(honest([](Record& r) { end_in_x_at(r, 100 * r.summary.x_error); })), kBad, kBad},
       {"better loss with worse x", in_one(honest([](Record& r) {
          end_at(r, 0.9 * r.summary.loss);
@@ -219,10 +219,10 @@ std::vector<Fault> criterion_faults() {
       {"cost of a Jacobian 4 → 1, work following", in_all(honest(jacobian_for_one)), kApart,
        kApart},
       {"cost alone", in_one([](Record& r) { r.prices[kJacobian] = 1; }), kApart, kApart, true},
-      {"cost, by a change of the problem's source",
-       in_all(rebuilt("problem", honest(jacobian_for_one))), kApart, kApart},
-      {"aim x → loss, by a change of the problem's source",
-       in_one_of_x(rebuilt("problem", loss_sought)), kApart, kApart},
+      {"cost, from another source", in_all(rebuilt("problem", honest(jacobian_for_one))), kApart,
+       kApart},
+      {"aim x → loss, from another source", in_one_of_x(rebuilt("problem", loss_sought)), kApart,
+       kApart},
   };
 }
 

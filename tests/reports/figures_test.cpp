@@ -182,7 +182,7 @@ TEST(Sweeps, DrawTheMediansOverSeedsOfAllThatDiffersInTwoOptions) {
   EXPECT_TRUE(map.rows[0][2].is_best);
   EXPECT_EQ(map.rows[1][0].text, "1");
   EXPECT_EQ(map.rows[1][1].text, "3");
-  EXPECT_EQ(map.rows[1][1].shade, 1) << "within a factor of two";
+  EXPECT_EQ(map.rows[1][1].shade, 1) << "within a factor 2";
   for (const char* part : {" 1.5", "kappa = 0.5", "rate = 1;", "6 of 6 settings"})
     EXPECT_TRUE(has(map.reading, part)) << part;
   EXPECT_TRUE(has(map.caption, "3 seeds, 100 iterations"));

@@ -6,6 +6,7 @@
 #include <map>
 
 #include "core/files.h"
+#include "core/oracle.h"
 #include "core/results/ranking.h"
 #include "reports/report.h"
 #include "reports/sections/sections.h"
@@ -67,7 +68,7 @@ Study two_meanings() {
   for (const auto& [problem, work] :
        {std::pair{"p", 0}, std::pair{"q", 0}, std::pair{"r", 20}, std::pair{"s", 20}}) {
     Record record = record_of({.problem = problem, .optimizer = "sip", .work_per_hit = work});
-    if (work == 0) record.privileges = {"exact inverse of the physics"};
+    if (work == 0) record.privileges = {std::string(name_of(Privilege::exact_inverse))};
     study.runs.push_back(std::move(record));
   }
   return study;

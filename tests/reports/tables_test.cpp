@@ -143,7 +143,7 @@ TEST(LossWithoutX, IsCountedByMethodWithTheConditionNumberBeside) {
   EXPECT_EQ(at(table, "newton", "loss, not x"), "1");
   EXPECT_EQ(at(table, "newton", "x not near"), "0");
   EXPECT_EQ(at(table, "newton", "worst conditioned"), "q (singular)");
-  EXPECT_TRUE(has(table.reading, " 3 reach a loss of 1e-6, and 1")) << table.reading;
+  EXPECT_TRUE(has(table.reading, " 3 reach a loss of 1e-6")) << table.reading;
 }
 
 TEST(LossWithoutX, SaysWhereNeitherCanBeTold) {
@@ -233,7 +233,8 @@ TEST(Costs, StandBesideTheRawCounts) {
   const Compared c(Study{.runs = {counted()}, .sheets = {priced("square", 2.5)}});
   const Table table = calls_table(c);
   EXPECT_EQ(at(table, "gd", "pullback"), "30");
-  EXPECT_TRUE(has(table.reading, " 60 forward solves at nominal cost, and 105 ")) << table.reading;
+  for (const char* part : {" 60 forward solves", " 105 "})
+    EXPECT_TRUE(has(table.reading, part)) << table.reading;
   EXPECT_TRUE(has(prices_table(c).rows[0].back().text, "1 : 2.5 [2.5–2.5]"));
   const Json cell = parse_json(json_report(document_of(c)), "report.json").at("cells")[0];
   EXPECT_EQ(cell.at("costs").at("1e-6").at("median"), 105);
@@ -320,8 +321,9 @@ struct Shown {
   }
   const TableCell& cell(std::size_t row, const std::string& column) const {
     const Table& table = section.tables.at(0);
-    const auto at = std::ranges::find(table.columns, column) - table.columns.begin();
-    return table.rows.at(row).at(static_cast<std::size_t>(at));
+    const auto at = std::ranges::find_if(
+        table.columns, [&](const std::string& name) { return name.starts_with(column); });
+    return table.rows.at(row).at(static_cast<std::size_t>(at - table.columns.begin()));
   }
   std::string text(std::size_t row, const std::string& column) const {
     return cell(row, column).text;
@@ -332,7 +334,7 @@ struct Shown {
   }
 };
 
-constexpr const char* kSolved = "solver to that error, ms";
+constexpr const char* kSolved = "solver to that error";
 
 // 300·2⁻⁶ s of training and 2⁻¹⁰ s each, against 2⁻⁶ s more than that.
 TEST(Amortized, TrainingPaysFromSoManyInstancesAsItsTimeHoldsSavings) {
@@ -477,7 +479,7 @@ TEST(AuditTable, TellsThePageWhichMethodARowIsAbout) {
 TEST(AuditTable, IsReadForANewcomer) {
   const std::vector<Reading> readings = property_readings(samples());
   ASSERT_EQ(readings.size(), 6U);
-  EXPECT_TRUE(has(readings[0].text, " large ones are needed: gd"));
+  EXPECT_TRUE(has(readings[0].text, " needed: gd"));
   EXPECT_TRUE(has(readings[0].text, "L is zero."));
   EXPECT_TRUE(has(readings[2].text, "(order 2): gd"));
   EXPECT_TRUE(has(readings.back().text, "gd declares"));
