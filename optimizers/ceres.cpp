@@ -1,6 +1,7 @@
 // The adapter to Ceres (Agarwal, Mierle et al., ceres-solver.org): its trust-region methods on r =
 // (y − y*)/√B, with dense QR, and its line searches on L. Each iteration of its own loop, rejected
-// or not, is reported to the meter. Its tolerances are zero: it stops where a step changes nothing.
+// or not, is reported to the meter. Its tolerances are options, 0 by default: it stops where a step
+// changes nothing.
 #include <ceres/ceres.h>
 #include <glog/logging.h>
 
@@ -64,7 +65,9 @@ struct ResidualBlock final : ceres::CostFunction {
   }
 };
 
-// L and its gradient.
+// L and its gradient. A point fails as a whole where a gradient overflows beside a finite L: Ceres'
+// search for the Wolfe conditions aborts the process at such a point, but steps back from a failed
+// one.
 struct LossFunction final : ceres::FirstOrderFunction {
   Evaluation& evaluation;
   mutable Vector slope;  // (n), ∇L
@@ -72,12 +75,14 @@ struct LossFunction final : ceres::FirstOrderFunction {
   explicit LossFunction(Evaluation& shared) : evaluation(shared) {}
   int NumParameters() const override { return static_cast<int>(evaluation.f.unknowns()); }
   bool Evaluate(const double* theta, double* loss, double* gradient) const override {
-    return evaluation.at(theta, [&](Linearization& at) {
+    slope.setZero();
+    const bool is_known = evaluation.at(theta, [&](Linearization& at) {
       *loss = at.loss();
       if (!gradient) return;
       at.gradient(slope);
       Map<Vector>(gradient, slope.size()) = slope;
     });
+    return is_known && is_finite(slope);
   }
 };
 
@@ -101,7 +106,6 @@ template <class Options>
 void set_common(Options& options, Watch& watch) {
   FLAGS_minloglevel = google::GLOG_FATAL;  // our record states Ceres' warnings
   options.max_num_iterations = std::numeric_limits<int>::max();
-  options.function_tolerance = options.gradient_tolerance = options.parameter_tolerance = 0;
   options.logging_type = ceres::SILENT;
   options.update_state_every_iteration = true;
   options.callbacks.push_back(&watch);
@@ -155,6 +159,24 @@ class Ceres final : public Optimizer {
   const Options options_;
 };
 
+// The options of every method here: its own, then the tolerances.
+OptionTable with_tolerances(OptionTable own) {
+  const std::pair<const char*, const char*> tolerances[] = {
+      {"function-tolerance", "it stops where the loss changes by no more than this share"},
+      {"gradient-tolerance", "it stops where no component of the gradient is larger"},
+      {"parameter-tolerance", "it stops where the step is no longer than this share of ‖θ‖"}};
+  for (const auto& [name, text] : tolerances)
+    own.push_back({name, Real{0}, between(0, 1), {}, text});
+  return own;
+}
+
+template <class Options>
+void set_tolerances(const OptionValues& options, Options& out) {
+  out.function_tolerance = options.number("function-tolerance", 0);
+  out.gradient_tolerance = options.number("gradient-tolerance", 0);
+  out.parameter_tolerance = options.number("parameter-tolerance", 0);
+}
+
 constexpr const char* kRadiusNote = "Invariant while its Gauss-Newton steps lie within the radius.";
 constexpr const char* kRejectsNote = "Steps that raise the loss are still rejected, then damped.";
 
@@ -203,7 +225,7 @@ OptimizerEntry entry_of(const TrustRegion& m) {
           .needs_same_samples = true,
           .most_unknowns = 4096,
           .most_rank = 2048,  // dense QR
-          .options = m.is_wide_open ? OptionTable{} : OptionTable{radius_field()},
+          .options = with_tolerances(m.is_wide_open ? OptionTable{} : OptionTable{radius_field()}),
           .tunable = m.is_wide_open ? Tunable{} : Tunable{.option = "radius", .factor = 10},
           .make = [m](const OptionValues& options, const OptimizerRegistry&) {
             ceres::Solver::Options o;
@@ -220,6 +242,7 @@ OptimizerEntry entry_of(const TrustRegion& m) {
                 m.is_wide_open ? o.max_trust_region_radius
                                : options.number("radius", o.initial_trust_region_radius);
             if (m.is_wide_open) o.min_relative_decrease = 0;
+            set_tolerances(options, o);
             return std::make_unique<Ceres<ceres::Solver::Options>>(o);
           }};
 }
@@ -268,7 +291,7 @@ OptimizerEntry entry_of(const LineSearch& method) {
           .needs = {Oracle::forward, Oracle::pullback},
           .needs_same_samples = true,
           .most_unknowns = method.most_unknowns,
-          .options = {curvature_field()},
+          .options = with_tolerances({curvature_field()}),
           .tunable = {.option = "curvature", .below = 6, .factor = 1.5},
           .make = [direction = method.direction](const OptionValues& options,
                                                  const OptimizerRegistry&) {
@@ -276,6 +299,7 @@ OptimizerEntry entry_of(const LineSearch& method) {
             o.line_search_direction_type = direction;
             o.line_search_sufficient_curvature_decrease =
                 options.number("curvature", o.line_search_sufficient_curvature_decrease);
+            set_tolerances(options, o);
             return std::make_unique<Ceres<ceres::GradientProblemSolver::Options>>(o);
           }};
 }

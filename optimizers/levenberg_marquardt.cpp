@@ -40,6 +40,7 @@ struct NielsenDamping {
 };
 
 constexpr Real kEpsilon = std::numeric_limits<Real>::epsilon();
+constexpr Real kUnbounded = std::numeric_limits<Real>::infinity();
 constexpr Index kLeastSquared = 64;  // of min(m·B, n): below, QR takes no longer than Cholesky
 
 // d = argmin ‖J d − b‖² + μ‖D d‖² for any μ. By QR of J and the damping below or beside it; or by
@@ -68,6 +69,7 @@ class DampedLeastSquares {
     }
     if (scale_.size() != n) scale_.setZero(n);
     if (scaling == "more") scale_ = scale_.cwiseMax(norms_);
+    if (scaling == "fading") scale_ = (scale_ / 2).cwiseMax(norms_);
     if (scaling == "none") scale_.setOnes();
     if (scaling == "jacobian") scale_ = norms_;
     // A parameter that has done nothing yet has no scale, and no step.
@@ -75,8 +77,9 @@ class DampedLeastSquares {
     if (is_layered_) inverse_ = inverse_(order_).eval();
     const Index size = is_wide() ? rows_ : rows_ + n;
     if (right_.size() != size) right_.setZero(size);
-    right_.head(rows_) = b;
+    set_right(b);
   }
+  void set_right(const Vector& b) { right_.head(rows_) = b; }
   // d and J d; false where they are not finite.
   bool solve(Real mu, std::string_view factorization, Vector& d, Vector& Jd) {
     const bool is_large = std::min(rows_, scale_.size()) >= kLeastSquared;
@@ -182,7 +185,9 @@ class DampedLeastSquares {
       scaled_.setZero(rows_ + n, n);
       scaled_.topRows(rows_) = J_;
       scaled_.bottomRows(n).diagonal() = root * scale_;
-      if (!least_squares(scaled_, right_, kEpsilon, d)) return false;
+      // Columns may differ by any factor in scale. The damping alone bounds the step along them.
+      constexpr Real kNoneIsDependent = std::numeric_limits<Real>::min();
+      if (!least_squares(scaled_, right_, kNoneIsDependent, d)) return false;
       moved_.noalias() = scaled_.topRows(rows_) * d;
       return true;
     }
@@ -218,7 +223,7 @@ class DampedLeastSquares {
 };
 
 struct LevenbergMarquardt {
-  Real initial_damping = 1e-4, rate = 1;
+  Real initial_damping = 1e-4, rate = 1, acceleration = 0;
   std::string damping = "adaptive", factorization = "auto", scaling = "more";
 
   struct State {
@@ -227,14 +232,15 @@ struct LevenbergMarquardt {
     NielsenDamping damping;
     bool has_point = false;
     Linearization at, trial;
-    Vector step, candidate;  // (n)
-    Vector Jd, residual;     // (m·B)
+    Vector step, candidate, bend;   // (n), of the acceleration
+    Vector Jd, residual, Jbend;     // (m·B)
+    Real last_length = kUnbounded;  // ‖D d‖ of the last step that only rounding could judge
   };
   static void persist(State& s, Archive& archive) {
     s.squares.persist(archive);
     s.spectral.persist(archive);
     s.damping.persist(archive);
-    archive(s.has_point);
+    archive(s.has_point, s.last_length);
   }
 
   State init(Meter&, const Vector&) const {
@@ -254,18 +260,29 @@ struct LevenbergMarquardt {
       accept(f, s);
     }
     if (!s.squares.solve(s.damping.mu, factorization, s.step, s.Jd)) return Status::stalled;
+    const Real predicted = predicted_decrease(s);
+    if (acceleration > 0 && !accelerate(f, theta, s)) {
+      f.reject_step();
+      return s.damping.reject();
+    }
     s.candidate = theta + s.step;
     if (s.candidate == theta && !f.has_fresh_batches()) return Status::converged;
     f.linearize(s.candidate, s.trial);
-    const Real gain = gain_ratio(f, s);
-    if (!(gain > 0)) {
+    const Real actual = s.squares.misfit() - 0.5 * (s.trial.y() - f.target()).squaredNorm();
+    const Real rounding = f.has_fresh_batches() ? 0 : rounding_of_misfit(s);
+    const bool is_rounding = predicted <= rounding && std::abs(actual) <= rounding;
+    if (is_rounding) {
+      const Real length = std::sqrt(s.squares.squared_length(s.step));
+      if (!(length <= s.last_length / 2)) return Status::converged;
+      s.last_length = length;
+    } else if (!(actual > 0 && predicted > 0)) {
       f.reject_step();
       return s.damping.reject();
     }
     theta = s.candidate;
     std::swap(s.at, s.trial);
     if (!f.has_fresh_batches()) accept(f, s);
-    s.damping.accept(gain);
+    s.damping.accept(is_rounding ? 1 : actual / predicted);
     return Status::running;
   }
 
@@ -284,12 +301,36 @@ struct LevenbergMarquardt {
     s.has_point = true;
   }
 
-  // Actual over predicted decrease of ½‖r‖², the latter ½‖J d‖² + μ‖D d‖² without cancellation.
-  Real gain_ratio(Meter& f, const State& s) const {
-    const Real after = 0.5 * (s.trial.y() - f.target()).squaredNorm();
-    const Real predicted =
-        0.5 * s.Jd.squaredNorm() + s.damping.mu * s.squares.squared_length(s.step);
-    return (s.squares.misfit() - after) / predicted;
+  // Of ½‖r‖²: ½‖J d‖² + μ‖D d‖², without cancellation.
+  static Real predicted_decrease(const State& s) {
+    return 0.5 * s.Jd.squaredNorm() + s.damping.mu * s.squares.squared_length(s.step);
+  }
+
+  // Of ½‖r‖² in r = y − y*, whose components have rounding errors of ε|y|. Where a step and its
+  // prediction change ½‖r‖² by less, the loss cannot judge it; x, which depends on the gradient,
+  // still becomes more accurate as long as steps become shorter.
+  static Real rounding_of_misfit(const State& s) {
+    return kEpsilon * (s.squares.misfit() + s.residual.norm() * s.at.y().lpNorm<Eigen::Infinity>());
+  }
+
+  // Geodesic acceleration, Transtrum and Sethna (2012): d ← d + a, a = argmin ‖J a + ½ r''‖² +
+  // μ‖D a‖² with r'' the second derivative of r along d, by one more evaluation. False where
+  // 2‖D a‖ > α‖D d‖: the model does not hold as far as d.
+  bool accelerate(Meter& f, const Vector& theta, State& s) const {
+    constexpr Real kShare = 0.1, kAccurate = 1e-2;  // of d, and of J d
+    const Real error = kEpsilon * s.at.y().norm() / (kShare * kShare);
+    if (error > kAccurate * s.Jd.norm()) return true;
+    s.candidate = theta + kShare * s.step;
+    f.linearize(s.candidate, s.trial);
+    s.Jbend = (s.Jd - (s.trial.y() - s.at.y()).reshaped() / kShare) / kShare;
+    if (!is_finite(s.Jbend)) return false;
+    s.squares.set_right(s.Jbend);
+    const bool is_solved = s.squares.solve(s.damping.mu, factorization, s.bend, s.Jbend);
+    s.squares.set_right(s.residual);
+    const Real bound = acceleration * acceleration * s.squares.squared_length(s.step);
+    if (!is_solved || !(4 * s.squares.squared_length(s.bend) <= bound)) return false;
+    s.step += s.bend;
+    return true;
   }
 
   static Factorization spectral_factorization(const std::string& factorization) {
@@ -301,15 +342,18 @@ void fields(LevenbergMarquardt& o, auto& field) {
   field("initial-damping", o.initial_damping, above(0),
         "damping μ at the start, in units of D²; where it is fixed, μ as a share of the mean "
         "diagonal of JJᵀ");
+  field("acceleration", o.acceleration, at_least(0),
+        "of damping=adaptive: α of geodesic acceleration, which adds to d the a of second order "
+        "where 2‖D a‖ ≤ α‖D d‖, else rejects the step; 0: none");
   field("damping", o.damping, Choices{"adaptive", "fixed"},
         "by the gain of each step, or always the same");
   field("rate", o.rate, above(0), "of damping=fixed: step length η");
   field("factorization", o.factorization, Choices{"auto", "orthogonal", "cholesky"},
         "by QR, or by Cholesky of the smaller Gram matrix, which of networks of dense layers is "
         "formed layer by layer; auto: by size and accuracy");
-  field("scaling", o.scaling, Choices{"more", "none", "jacobian"},
-        "of damping=adaptive: D of the largest norms that J's columns have had, as Moré has it; 1; "
-        "or of the norms they have now");
+  field("scaling", o.scaling, Choices{"more", "fading", "none", "jacobian"},
+        "of damping=adaptive: D of the largest norms that J's columns have had, as Moré has it; of "
+        "these, halved at each step; 1; or of the norms they have now");
 }
 
 // Levenberg-Marquardt by products, for problems too large for a Jacobian: θ ← θ + d,

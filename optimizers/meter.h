@@ -197,6 +197,7 @@ class Meter {
   void keep_point();
   bool is_spectrum_due(bool is_last) const;
   void keep_spectrum(bool is_last);
+  void keep_uncertainty();
   void show();        // the result of training
   void prepare();     // samples and limits
   void set_scales();  // by which this run's targets are measured; after the start's loss

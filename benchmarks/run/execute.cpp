@@ -111,6 +111,21 @@ Spectrum spectrum_of(const Trace::Spectra& kept) {
   return spectrum;
 }
 
+std::optional<Uncertainty> uncertainty_of(const Trace::Uncertainty& kept) {
+  if (kept.unknowns == 0) return std::nullopt;
+  const auto first = [&](const double* values) {
+    return std::vector<Real>(values, values + kept.unknowns);
+  };
+  Uncertainty known{.x = first(kept.x),
+                    .standard_deviation = first(kept.deviation),
+                    .correlation = {},
+                    .variance = kept.variance,
+                    .degrees_of_freedom = kept.degrees_of_freedom,
+                    .condition = kept.condition};
+  for (int i = 0; i < kept.unknowns; ++i) known.correlation.push_back(first(kept.correlation[i]));
+  return known;
+}
+
 Curve curve_of(const Trace& trace) {
   Curve curve;
   curve.iteration = column_of(trace, &TracePoint::iteration);
@@ -360,6 +375,7 @@ Record record_of(const Request& request, const Trace& trace) {
                              .truth = grid_of(trace.shown_truth)};
   record.fields = fields_of(trace.frames);
   if (trace.spectra.are_wanted) record.spectrum = spectrum_of(trace.spectra);
+  record.uncertainty = uncertainty_of(trace.uncertainty);
   record.privileges = lines_of(trace.privileges);
   record.foreign = {request.problem.foreign, request.optimizer.foreign};
   record.is_nondeterministic = trace.stopped_by_clock || record.status == Status::timeout ||

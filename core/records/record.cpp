@@ -45,6 +45,12 @@ void require_equal_columns(const Record& record) {
   if (record.spectrum)
     require(record.spectrum->iterations.size() == record.spectrum->sigma.size(),
             "the numbers of its spectra and of their iterations differ");
+  if (const auto& known = record.uncertainty) {
+    const char* whose = "standard deviations";
+    require_length(known->x.size(), whose, known->standard_deviation);
+    require_length(known->x.size(), whose, known->correlation);
+    for (const auto& row : known->correlation) require_length(known->x.size(), whose, row);
+  }
   if (!record.hits) return;
   const Hits& hits = *record.hits;
   const std::size_t targets = hits.target.size();
@@ -212,6 +218,15 @@ void fields(Like<Spectrum> auto& spectrum, auto& field) {
   field("sigma", spectrum.sigma);
 }
 
+void fields(Like<Uncertainty> auto& known, auto& field) {
+  field("x", known.x);
+  field("standard_deviation", known.standard_deviation);
+  field("correlation", known.correlation);
+  field("variance", known.variance);
+  field("degrees_of_freedom", known.degrees_of_freedom);
+  field("condition", known.condition);
+}
+
 void fields(Like<Foreign> auto& foreign, auto& field) {
   field("door", foreign.door, R"({"enum": ["process", "umbridge", "plugin"]})");
   field("command", foreign.command);
@@ -274,6 +289,8 @@ void fields(Like<Record> auto& record, auto& field) {
                  R"({"description": "x at some iterations, in the .npy file beside the record"})");
   field.optional("spectrum", record.spectrum,
                  R"({"description": "Singular values of J, if --spectrum was set"})");
+  field.optional("uncertainty", record.uncertainty,
+                 R"({"description": "Of a least-squares solution: x and its covariance"})");
   field("privileges", record.privileges);
   field.optional("foreign", record.foreign,
                  R"({"description": "Components that other programs computed"})");

@@ -1,4 +1,5 @@
-// The singular values of J along runs that kept them, and two options that were swept together.
+// The singular values of J along runs that kept them, with the standard deviations of x, and two
+// options that were swept together.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -108,6 +109,7 @@ Section spectra_section(const Comparison& c) {
     section.plots.push_back(values_plot(plot("plot-spectrum"), seen));
     section.plots.push_back(conditions_plot(plot("plot-conditioning"), seen));
   }
+  section.tables = uncertainty_tables(c);
   return section;
 }
 

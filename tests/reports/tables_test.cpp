@@ -1,4 +1,5 @@
 // Tables of statistics, costs, amortized training and the audit: cases computed by hand.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -6,6 +7,8 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "core/errors.h"
+#include "core/files.h"
 #include "core/json.h"
 #include "core/results/study.h"
 #include "core/seeds.h"
@@ -26,6 +29,54 @@ TEST(Tables, DataProfileCountsForwardSolvesAndKeepsFailures) {
   EXPECT_EQ(at(table, "a", "≤ 100"), "33 %");
   EXPECT_EQ(at(table, "a", "≤ 1000"), "67 %");
   EXPECT_EQ(at(table, "a", "n problems"), "3");
+}
+
+Record regression_of(const char* optimizer, const char* dataset, Index start, Real x_error) {
+  Record record = record_of({.problem = "nist", .optimizer = optimizer});
+  record.request.problem.options = {{"dataset", std::string(dataset)}, {"start", start}};
+  record.request.problem.spec = fmt::format("nist[dataset={},start={}]", dataset, start);
+  record.cell = digest(record.request.problem.spec + optimizer);
+  record.summary.x_error = x_error;
+  return record;
+}
+
+// Digits 8, 5 and 3 by one method, 9 and of an error above 1 by the other; eleven are certified.
+TEST(Tables, CertifiedDigitsAreThoseOfTheWorstParameter) {
+  const Compared c({regression_of("lm", "Rat42", 1, 1e-8), regression_of("lm", "Rat42", 2, 1e-5),
+                    regression_of("lm", "BoxBOD", 1, 1e-3), regression_of("gd", "Rat42", 1, 7),
+                    regression_of("gd", "BoxBOD", 2, 1e-13)});
+  const Table table = certified_table(c);
+  EXPECT_EQ(at(table, "lm", "mean LRE"), "5.33");
+  EXPECT_EQ(at(table, "lm", "solved"), "2");
+  EXPECT_EQ(at(table, "lm", "accurate"), "1");
+  EXPECT_EQ(at(table, "lm", "Rat42"), "8.0 / 5.0");
+  EXPECT_EQ(at(table, "gd", "mean LRE"), "5.50");
+  EXPECT_EQ(at(table, "gd", "BoxBOD"), "11.0");
+  EXPECT_EQ(table.rows[0][0].text, "gd");
+  EXPECT_EQ(table.rows.size(), 2U + 6);
+  EXPECT_EQ(certified_table(Compared(study_of({{"p", "a", 1}}))).id, "");
+}
+
+TEST(Tables, StandardDeviationsAreOfTheBestRunOfAProblem) {
+  Record best = record_of({.problem = "square", .optimizer = "gd"});
+  best.uncertainty = {.x = {1, 2},
+                      .standard_deviation = {0.1, 0.2},
+                      .correlation = {{1, -0.5}, {-0.5, 1}},
+                      .variance = 4,
+                      .degrees_of_freedom = 7,
+                      .condition = 3};
+  Record other = record_of({.problem = "square", .optimizer = "adam", .work_per_hit = 9});
+  other.uncertainty = best.uncertainty;
+  other.uncertainty->x = {5, 6};
+  const std::vector<Table> tables = uncertainty_tables(Compared({best, other}));
+  ASSERT_EQ(tables.size(), 1U);
+  EXPECT_EQ(at(tables[0], "x1", "x"), "1");
+  EXPECT_EQ(at(tables[0], "x2", "standard deviation"), "0.2");
+  EXPECT_EQ(at(tables[0], "x2", "strongest correlation"), "-0.5 with x1");
+  EXPECT_EQ(record_from_text(file_text(best), "").uncertainty->correlation,
+            best.uncertainty->correlation);
+  best.uncertainty->x.pop_back();
+  EXPECT_THROW(record_from_text(file_text(best), ""), UsageError);
 }
 
 // A loss from −1 to −5 with f_L = −5, read off the curve, as of records without hits.
