@@ -31,10 +31,13 @@ enum class Family {
   ceres,
   nlopt,
   nlopt_derivative_free,
+  minpack,
+  gsl,
   foreign
 };
-inline constexpr std::array<std::string_view, 7> kFamilyNames = {
-    "first-order", "curvature", "inversion", "ceres", "nlopt", "nlopt-derivative-free", "foreign"};
+inline constexpr std::array<std::string_view, 9> kFamilyNames = {
+    "first-order",           "curvature", "inversion", "ceres",  "nlopt",
+    "nlopt-derivative-free", "minpack",   "gsl",       "foreign"};
 inline std::string_view name_of(Family family) {
   return kFamilyNames[static_cast<std::size_t>(family)];
 }

@@ -83,6 +83,7 @@ Table choices_table(const Comparison& comparison);
 Table variation_table(const Comparison& comparison);  // empty where no instances and starts cross
 Table loss_without_x_table(const Comparison& comparison);
 Table data_profile_table(const Comparison& comparison);
+Table simplex_profile_table(const Comparison& comparison);  // of Moré and Wild
 Table restart_table(const Comparison& comparison);
 Table calls_table(const Comparison& comparison);
 Table prices_table(const Comparison& comparison);

@@ -35,7 +35,8 @@ class Package(unittest.TestCase):
 
     def test_it_depends_on_what_the_program_links_and_on_no_compiler(self):
         needed = self.field("Depends")
-        for library in ["libfftw3", "libopenblas", "liblapacke", "libnlopt", "libceres", "libdnnl"]:
+        for library in ["libfftw3", "libopenblas", "liblapacke", "libnlopt", "libceres", "libdnnl",
+                        "libcminpack", "libgsl"]:
             self.assertIn(library, needed)
         for tool in ["g++", "gcc", "cmake", "-dev"]:
             self.assertNotIn(tool, needed.replace("libgcc", ""))

@@ -456,7 +456,7 @@ TEST(Libraries, TakeTheOptionThatIsTuned) {
     if (option.empty() || (!name.starts_with("ceres-") && !name.starts_with("nlopt-"))) continue;
     const Real standard = options_of_spec(entry, name).number(option, 0);
     const auto end = [&](const std::string& spec) {
-      return run(make("rosenbrock"), spec, {.iterations = 30, .work = 200, .target = 0}).theta;
+      return run(make("rosenbrock"), spec, {.iterations = 10, .work = 200, .target = 0}).theta;
     };
     const std::string given = name + '[' + option + '=';
     EXPECT_EQ(end(given + std::to_string(standard) + ']'), end(name)) << name;

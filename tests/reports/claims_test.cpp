@@ -560,8 +560,25 @@ TEST(Quantities, AShareCountsSeedsOfTheAlternativeThatSpeaksForTheMethod) {
   EXPECT_EQ(measure("share", {worst}, "test").value, 0.75);
 }
 
+// Of the pairs of a run's digits and another's, 1e-2 … 1e-13 of x_scale 10 and not finite.
+TEST(Quantities, DigitsAreThoseOfTheErrorInXAndTheirMeansAreCompared) {
+  Record record = record_of({});
+  record.x_scale = 10;
+  const auto digits = [&](Real error) {
+    record.curve.x_error.assign(record.curve.iteration.size(), error);
+    return figure_of(record, {.column = "digits"});
+  };
+  EXPECT_NEAR(digits(1e-3), 4, 1e-12);  // rounding
+  EXPECT_EQ(digits(1e-13), 11);
+  EXPECT_EQ(digits(0), 11);
+  EXPECT_EQ(digits(1e3), 0);
+  EXPECT_EQ(digits(std::nan("")), 0);
+  EXPECT_EQ(
+      measure("mean_difference", {{.figures = {{9, 4}}}, {.figures = {{5, 2}}}}, "test").value, 3);
+}
+
 TEST(Quantities, SignedOnesAreTiedAtZeroAndRatiosAtOne) {
-  for (const char* kind : {"slope", "ratio_slope", "order", "trend"})
+  for (const char* kind : {"slope", "ratio_slope", "order", "trend", "mean_difference"})
     EXPECT_EQ(neutral_of(kind), 0) << kind;
   EXPECT_EQ(neutral_of("ratio"), 1);
   for (const char* kind : {"value", "greatest", "share"})
