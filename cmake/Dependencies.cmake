@@ -21,6 +21,7 @@ endfunction()
 
 # Named directly, not through the system's BLAS alternatives, which differ between machines.
 isoline_library(Isoline::lapacke "openblas;lapacke" lapacke.h)
+isoline_library(Isoline::cholmod "cholmod" suitesparse/cholmod.h)
 isoline_library(Isoline::fftw "fftw3" fftw3.h)
 isoline_library(Isoline::onednn "dnnl" oneapi/dnnl/dnnl.hpp)  # its own package requires OpenCL
 isoline_library(Isoline::random123 "" Random123/philox.h)

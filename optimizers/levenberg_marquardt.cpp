@@ -16,6 +16,7 @@
 #include "core/decompose.h"
 #include "core/product.h"
 #include "optimizers/optimizer.h"
+#include "optimizers/sparse_least_squares.h"
 #include "optimizers/spectral_step.h"
 
 namespace isoline::optimizers {
@@ -47,17 +48,25 @@ constexpr Index kLeastSquared = 64;  // of min(m·B, n): below, QR takes no long
 // Cholesky of the smaller Gram matrix of A = J D⁻¹, which is formed once for all μ, and by the
 // layers of a network where they are known. What squaring A costs in digits is given back by
 // corrections, each from the residual by A itself; Björck (1996), section 6.6.5. Where they do not
-// converge QR is left.
+// converge QR is left. A sparse J is factorized as such.
 class DampedLeastSquares {
  public:
+  void start(const Meter& f) {
+    is_sparse_ = f.is_sparse();
+    if (is_sparse_) sparse_.start(*f.sparse_pattern());
+  }
   // Scaling and factorization as the method's options have them.
   void set(Meter& f, Linearization& at, const Vector& b, std::string_view scaling) {
     const Index n = f.unknowns();
     rows_ = b.size();
     has_gram_ = false;
     // An audit grants both, and J serves any problem.
-    is_layered_ = !f.is_granted(Oracle::jacobian);
-    if (is_layered_) {
+    is_layered_ = !is_sparse_ && !f.is_granted(Oracle::jacobian);
+    if (is_sparse_) {
+      norms_.resize(n);
+      f.sparse_pattern()->squared_columns(at.sparse_jacobian().data(), norms_);
+      norms_ = norms_.cwiseSqrt();
+    } else if (is_layered_) {
       layered_.take(at);
       layered_.order(f.layout(), order_);
       layered_.squared_columns(pulled_);
@@ -75,6 +84,7 @@ class DampedLeastSquares {
     // A parameter that has done nothing yet has no scale, and no step.
     inverse_ = (scale_.array() > 0).select(scale_.cwiseInverse(), 1);
     if (is_layered_) inverse_ = inverse_(order_).eval();
+    if (is_sparse_) sparse_.set(at.sparse_jacobian(), inverse_);
     const Index size = is_wide() ? rows_ : rows_ + n;
     if (right_.size() != size) right_.setZero(size);
     set_right(b);
@@ -82,6 +92,11 @@ class DampedLeastSquares {
   void set_right(const Vector& b) { right_.head(rows_) = b; }
   // d and J d; false where they are not finite.
   bool solve(Real mu, std::string_view factorization, Vector& d, Vector& Jd) {
+    if (is_sparse_) {
+      if (!sparse_.solve(mu, right_.head(rows_), step_, Jd)) return false;
+      d = (scale_.array() > 0).select(step_.cwiseProduct(inverse_), 0);
+      return true;
+    }
     const bool is_large = std::min(rows_, scale_.size()) >= kLeastSquared;
     const bool squares = factorization == "cholesky" || (factorization == "auto" && is_large);
     if (squares && by_cholesky(mu)) {
@@ -104,6 +119,7 @@ class DampedLeastSquares {
   void persist(Archive& archive) {
     archive(rows_, is_layered_, J_, right_, scale_, inverse_, order_);
     layered_.persist(archive);
+    sparse_.persist(archive);
   }
 
  private:
@@ -210,6 +226,8 @@ class DampedLeastSquares {
   Index rows_ = 0;  // m·B
   bool is_layered_ = false, has_gram_ = false;
   LayeredJacobian layered_;
+  bool is_sparse_ = false;
+  SparseLeastSquares sparse_;
   Eigen::Matrix<Index, Eigen::Dynamic, 1> order_;  // (n) in θ of the layers' parameters
   Matrix J_;                                       // (m·B, n), unless it is layered
   Vector right_;                                   // b, with n zeros below where J is not wide
@@ -243,8 +261,9 @@ struct LevenbergMarquardt {
     archive(s.has_point, s.last_length);
   }
 
-  State init(Meter&, const Vector&) const {
+  State init(Meter& f, const Vector&) const {
     State s;
+    s.squares.start(f);
     s.damping.mu = initial_damping;
     s.spectral = SpectralStep(spectral_factorization(factorization));
     return s;
@@ -334,6 +353,7 @@ struct LevenbergMarquardt {
   }
 
   static Factorization spectral_factorization(const std::string& factorization) {
+    if (factorization == "sparse") return Factorization::automatic;
     return factorization == "orthogonal" ? Factorization::qr : factorization_named(factorization);
   }
 };
@@ -348,9 +368,10 @@ void fields(LevenbergMarquardt& o, auto& field) {
   field("damping", o.damping, Choices{"adaptive", "fixed"},
         "by the gain of each step, or always the same");
   field("rate", o.rate, above(0), "of damping=fixed: step length η");
-  field("factorization", o.factorization, Choices{"auto", "orthogonal", "cholesky"},
-        "by QR, or by Cholesky of the smaller Gram matrix, which of networks of dense layers is "
-        "formed layer by layer; auto: by size and accuracy");
+  field("factorization", o.factorization, Choices{"auto", "orthogonal", "cholesky", "sparse"},
+        "by QR; by Cholesky of the smaller Gram matrix, which of networks of dense layers is "
+        "formed layer by layer; or by sparse Cholesky of a sparse J, after elimination of blocks "
+        "where the problem declares them, of damping=adaptive; auto: by size and accuracy");
   field("scaling", o.scaling, Choices{"more", "fading", "none", "jacobian"},
         "of damping=adaptive: D of the largest norms that J's columns have had, as Moré has it; of "
         "these, halved at each step; 1; or of the norms they have now");
@@ -454,6 +475,8 @@ OracleSet needs_of_levenberg_marquardt(const OptionValues& options, const Proble
   if (options.text("damping") == "fixed")
     return needs_of(LevenbergMarquardt::spectral_factorization(factorization), tikhonov_filter(1),
                     problem);
+  if (factorization == "sparse" || (factorization == "auto" && is_solved_sparse(problem)))
+    return {Oracle::forward, Oracle::sparse_jacobian};
   const bool is_wide = problem.residuals() < problem.unknowns();
   const bool squares = factorization == "cholesky" ||
                        (factorization == "auto" && problem.residuals() >= kLeastSquared);

@@ -50,7 +50,7 @@ void Meter::linearize(VectorRef theta, Linearization& at) {
   charge_forward(theta);
   at.meter_ = this;
   at.problem_ = &problem_;
-  at.has_jacobian_ = at.has_hessian_ = false;
+  at.has_jacobian_ = at.has_hessian_ = at.has_sparse_ = false;
   problem_.forward(theta, *samples_, at.point_);
   see(at.point_.loss);
   if (problem_.is_learned() && !has_seen_batch_) note_batch(at.point_);
@@ -60,7 +60,7 @@ void Meter::linearize_physics(BatchRef x, Linearization& at) {
   charge(Oracle::forward);
   at.meter_ = this;
   at.problem_ = &problem_;
-  at.has_jacobian_ = at.has_hessian_ = false;
+  at.has_jacobian_ = at.has_hessian_ = at.has_sparse_ = false;
   problem_.physics_forward(x, *samples_, at.point_);
 }
 

@@ -143,6 +143,28 @@ class Examination {
           product_limit(), product_reason());
   }
 
+  void sparse_jacobian() {
+    if (!offers(Oracle::sparse_jacobian)) return;
+    const SparsePattern& pattern = *problem_.sparse_pattern();
+    const Vector v = direction();
+    const Matrix u = cotangent();
+    Vector values, Jv(problem_.residuals()), JTu(problem_.unknowns());
+    problem_.sparse_jacobian(values, at_);
+    pattern.multiply(values.data(), v, Jv);
+    pattern.multiply_transposed(values.data(), u.reshaped(), JTu);
+    if (offers(Oracle::pushforward)) {
+      const Vector pushed = push(v, at_).reshaped();
+      add("J v by the sparse values is J v by the product",
+          relative((Jv - pushed).norm(), pushed.norm()), product_limit(), product_reason());
+    }
+    if (offers(Oracle::pullback)) {
+      const Vector pulled = pull(u, at_);
+      add("Jᵀu by the sparse values is Jᵀu by the product",
+          relative(sized(JTu - pulled).norm(), sized(pulled).norm()), product_limit(),
+          product_reason());
+    }
+  }
+
   void curvature() {
     const Index k = problem_.inputs();
     if (!offers(Oracle::curvature) || !is_dense_feasible(k * k * problem_.samples())) return;
@@ -392,6 +414,7 @@ std::vector<Finding> examine_at(const Problem& problem, StartScale scale, Random
     if (has.has_pullback && !has.has_pushforward) examination.taylor_of_pullback();
     if (has.has_pullback) examination.gradient();
     examination.jacobian();
+    examination.sparse_jacobian();
     examination.hessian_product();
   }
   if (problem.has_identity_network()) {

@@ -2,6 +2,7 @@
 // problem is one with the identity network. Const: what depends on θ lives in a Point.
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <concepts>
 #include <functional>
@@ -148,6 +149,14 @@ class Problem {
   void draw_validation(Batch& out) const { draw("validation", 0, parts_.samples.validation, out); }
 
   OracleSet offers() const;
+  // Rows and columns of an oracle's dense matrix, and whether it takes at most 1 GiB.
+  std::array<Index, 2> dense_shape(Oracle oracle) const;
+  bool is_dense_feasible(Oracle oracle) const;
+  // Where J is sparse: its pattern, else nothing.
+  const SparsePattern* sparse_pattern() const {
+    const bool is_of_theta = has_identity_network() && samples() == 1;
+    return is_of_theta ? parts_.physics->sparse_pattern() : nullptr;
+  }
   OracleCounts prices() const;  // declared, in forwards
 
   void forward(VectorRef theta, const Batch& batch, Point& at) const;
@@ -181,7 +190,11 @@ class Problem {
   void layer_moments(BatchRef w, std::vector<LayerMoments>& out, VectorOut JTw, Point& at) const {
     parts_.network->layer_moments(pulled_to_x(w, at), out, JTw, at.network);
   }
-  void jacobian(Matrix& J, Point& at) const;          // (m·B, n)
+  void jacobian(Matrix& J, Point& at) const;  // (m·B, n)
+  void sparse_jacobian(Vector& values, Point& at) const {
+    values.resize(parts_.physics->sparse_pattern()->values());
+    parts_.physics->sparse_jacobian(values, at.physics);
+  }
   void sensitivity(Matrix& dy_dx, Point& at) const {  // (m, k·B)
     dy_dx.resize(outputs(), at.x().size());
     parts_.physics->jacobian(dy_dx, at.physics);

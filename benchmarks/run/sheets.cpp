@@ -51,6 +51,7 @@ struct Room {
   Matrix y, x;  // (m, B), (k, B)
   Vector gradient;
   Matrix J, H, dy_dx, bent;
+  Vector sparse;
   std::vector<networks::LayerFactor> factors;
   std::vector<networks::LayerMoments> moments;
   Workspace space;
@@ -61,6 +62,7 @@ const std::map<Oracle, std::function<void(const Problem&, Point&, Room&)>> kCall
     {Oracle::pullback, [](auto& p, auto& at, auto& r) { p.pullback(r.w, r.gradient, at); }},
     {Oracle::pushforward, [](auto& p, auto& at, auto& r) { p.pushforward(r.v, r.y, at); }},
     {Oracle::jacobian, [](auto& p, auto& at, auto& r) { p.jacobian(r.J, at); }},
+    {Oracle::sparse_jacobian, [](auto& p, auto& at, auto& r) { p.sparse_jacobian(r.sparse, at); }},
     {Oracle::hessian, [](auto& p, auto& at, auto& r) { p.hessian(r.H, at); }},
     {Oracle::curvature,
      [](auto& p, auto& at, auto& r) {

@@ -25,6 +25,7 @@ bool can_ask(const Means& means, Oracle oracle) {
       return means.derivatives >= Derivatives::gradient;
     case Oracle::pushforward:
     case Oracle::jacobian:
+    case Oracle::sparse_jacobian:
     case Oracle::sensitivity:
       return means.derivatives >= Derivatives::jacobian;
     case Oracle::hessian:

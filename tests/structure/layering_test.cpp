@@ -188,6 +188,7 @@ TEST(Layering, EveryFileStandsInTheNamespaceOfItsRoom) {
 const std::vector<std::pair<std::string, std::string>> kDoors = {
     {"fftw3.h", R"(core/fourier\.cpp|benchmarks/micro/.*\.cpp)"},
     {"lapacke.h", R"(core/decompose\.cpp|benchmarks/micro/.*\.cpp)"},
+    {"suitesparse/", R"(core/sparse\.cpp)"},
     {"openblas_config.h", R"(core/(decompose|threads)\.cpp)"},
     {"cblas.h", R"(core/(product|threads)\.cpp)"},
     {"oneapi/dnnl/", R"(core/convolution\.cpp)"},
