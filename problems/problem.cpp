@@ -34,6 +34,17 @@ Problem::Problem(ProblemParts parts) : parts_(std::move(parts)) {
           "a field over time needs its history, of two rows at least, and no other field has one");
 }
 
+void Problem::set_target(const Matrix& target) {
+  batch_.target = target;
+  batch_.truth.resize(0, 0);
+  parts_.aim = Aim::loss;
+  parts_.minimum = parts_.scale = parts_.x_scale = std::nullopt;
+  parts_.minimum_error = 0;
+  parts_.truth.reset();
+  parts_.x_error = nullptr;
+  parts_.x_floor = nullptr;
+}
+
 // L at y = 0 if there is a signal y*, otherwise at the standard start; f_L itself if it is more
 // than rounding compared with that.
 Real Problem::loss_scale(const Batch& batch) const {
