@@ -320,12 +320,12 @@ void Meter::measure(VectorRef theta) {
 
 bool Meter::has_stalled() {
   constexpr Real kStallDecrease = 1e-12;
-  constexpr std::int64_t kStallIterations = 100;
+  const std::int64_t most = budget_.stall.value_or(kStallIterations);
   if (stall_loss_ - best_loss_ > kStallDecrease * std::abs(stall_loss_)) {
     stall_loss_ = best_loss_;
     stall_iteration_ = iteration_;
   }
-  return iteration_ - stall_iteration_ >= kStallIterations;
+  return most > 0 && iteration_ - stall_iteration_ >= most;
 }
 
 // `judged_` holds the loss at the last kept iteration, which is this one for the first hundred.

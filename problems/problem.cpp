@@ -47,6 +47,17 @@ ProblemParts Problem::parts() && {
   return std::move(parts_);
 }
 
+void Problem::set_target(const Matrix& target) {
+  batch_.target = target;
+  batch_.truth.resize(0, 0);
+  parts_.aim = Aim::loss;
+  parts_.minimum = parts_.scale = parts_.x_scale = std::nullopt;
+  parts_.minimum_error = 0;
+  parts_.truth.reset();
+  parts_.x_error = nullptr;
+  parts_.x_floor = nullptr;
+}
+
 // L at y = 0 if there is a signal y*, otherwise at the standard start; f_L itself if it is more
 // than rounding compared with that.
 Real Problem::loss_scale(const Batch& batch) const {

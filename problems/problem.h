@@ -116,6 +116,10 @@ class Problem {
   Aim aim() const { return parts_.aim; }
   std::optional<Real> minimum() const { return parts_.minimum; }
   void set_minimum(Real loss) { parts_.minimum = loss; }  // the best known, where none is declared
+  // Of a direct problem: the start and the target of its user, of the sizes of its own. What is
+  // known of the solution for its own target does not hold for another one.
+  void set_start(Vector start) { parts_.start.drawn = std::move(start); }
+  void set_target(const Matrix& target);
   Real minimum_error() const { return parts_.minimum_error; }
   const std::optional<Matrix>& truth() const { return parts_.truth; }  // of a direct problem
   const auto& window() const { return parts_.window; }

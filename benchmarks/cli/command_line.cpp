@@ -411,6 +411,12 @@ void VerbArguments::whole(const char* name, std::int64_t& value, const char* abo
   whole_number(verb_, name, value, about, range);
 }
 
+void VerbArguments::whole_or_never(const char* name, std::int64_t& value, const char* about) {
+  number(verb_, name, "N|never", value, about, [](auto& of, auto& text) {
+    return text == "never" ? std::int64_t{0} : read_whole(of, text, {});
+  });
+}
+
 Argument VerbArguments::real(const char* name, double& value, const Range& range,
                              const char* about) {
   return Argument(*number(verb_, name, "FLOAT", value, about,

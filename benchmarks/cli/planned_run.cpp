@@ -40,6 +40,9 @@ void override_blocks(const RunArguments& given, Suite& suite) {
     if (given.work > 0) block.budget.work = given.work;
     if (given.target >= 0) block.budget.target = given.target;
     if (given.seconds > 0) block.budget.seconds = given.seconds;
+    if (given.stall >= 0)
+      block.budget.stall =
+          given.stall == kStallIterations ? std::nullopt : std::optional(given.stall);
     if (given.threads > 0) block.threads = given.threads;
   }
 }
@@ -67,6 +70,11 @@ void declare_cells(VerbArguments& verb, RunArguments& given) {
   verb.real("--target", given.target, between(0, 1),
             "Tolerance at which a run stops, relative to the scale of the loss or, if the success "
             "criterion is x, to the norm of x* (default: 1e-10)");
+  verb.whole_or_never("--stall", given.stall,
+                      "Iterations without progress after which a cell ends (default: 100)");
+  verb.text("--start", given.start, "Start of every problem: a .npy or .csv file of n numbers");
+  verb.text("--target-data", given.target_data,
+            "Target y* of every problem: a .npy or .csv file of m numbers");
   verb.whole("--threads", given.threads, "Threads of the libraries within a cell", kThreads);
   verb.text("--rates", given.rates, "Table of tuned rates: builtin, none or a file").shown();
   verb.text(
@@ -133,6 +141,8 @@ PlannedRun planned_run(const RunArguments& given, const Catalog& catalog) {
                      .optimizers = {given.optimizer.empty() ? "*" : given.optimizer}}};
   }
   override_blocks(given, suite);
+  if (!given.start.empty()) suite.problem_options.set(kStartOption, given.start);
+  if (!given.target_data.empty()) suite.problem_options.set(kTargetOption, given.target_data);
   Rates rates = Rates::named(given.rates);
   const std::uint64_t most = given.allow_large ? kMostWhereLarge : kMostCells;
   const PlanSize size = size_of(catalog, suite);

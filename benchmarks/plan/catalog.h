@@ -50,6 +50,10 @@ Component complete_optimizer(const Catalog& catalog, const std::string& name,
                              const OptionValues& options);
 Component complete_optimizer(const Catalog& catalog, const Spec& spec);
 
+// The entry of a method with the options that another program declares.
+OptimizerEntry entry_of(const Catalog& catalog, const std::string& optimizer,
+                        const OptionValues& given);
+
 // With the best loss known for f_L, where it declares none.
 Problem make_problem(const Catalog& catalog, const Component& problem, std::uint64_t seed);
 bool declares_minimum(const Catalog& catalog, const Component& problem, std::uint64_t seed);

@@ -41,6 +41,9 @@ Budget budget_from(const Json& json) {
   budget.work = amount_in(json, "work", budget.work);
   if (json.contains("seconds")) budget.seconds = real_of(json["seconds"]);
   budget.target = json.value("target", budget.target);
+  if (json.contains("stall"))
+    budget.stall = json["stall"].is_string() ? 0 : amount_in(json, "stall", kStallIterations);
+  if (budget.stall == kStallIterations) budget.stall.reset();  // the cell of the standard
   return budget;
 }
 
@@ -53,16 +56,17 @@ std::vector<std::uint64_t> seeds_from(const Json& json) {
 
 MatrixBlock block_from(const Json& json) {
   const std::vector<std::string> none;
-  return {.problems = json.at("problems"),
-          .optimizers = json.at("optimizers"),
-          .except_problems = json.value("except_problems", none),
-          .except_optimizers = json.value("except_optimizers", none),
-          .features = json.value("features", none),
-          .seeds = seeds_from(json),
-          .budget = budget_from(json.value("budget", Json::object())),
-          .threads = json.value("threads", 1),
-          .hard_seconds = json.value("hard_seconds", 0.0),
-          .rates = json.value("rates", "")};
+  MatrixBlock block{.problems = json.at("problems"),
+                    .optimizers = json.at("optimizers"),
+                    .except_problems = json.value("except_problems", none),
+                    .except_optimizers = json.value("except_optimizers", none),
+                    .features = json.value("features", none),
+                    .seeds = seeds_from(json),
+                    .threads = json.value("threads", 1),
+                    .hard_seconds = json.value("hard_seconds", 0.0),
+                    .rates = json.value("rates", "")};
+  block.budget = budget_from(json.value("budget", Json::object()));
+  return block;
 }
 
 bool is_selector(const std::string& text) { return text == "*" || text.starts_with('@'); }
@@ -190,11 +194,14 @@ std::vector<Request> expand(const Catalog& catalog, const Suite& suite, const Ra
     // All problems that share a row of rates use one component.
     std::map<std::pair<const Spec*, const Rates::Row*>, Component> optimizers;
     for (const Spec& problem_spec : featured_problems(catalog, block, most)) {
-      const Component problem = complete_problem(catalog, problem_spec);
+      OptionValues options = options_of(problem_spec);
+      options.set_all(suite.problem_options);
+      const Component problem = complete_problem(catalog, problem_spec.name, options);
       std::map<std::string, const Rates::Row*> rows;  // null: no row, or the suite uses defaults
       for (const Spec& spec : specs) {
         const auto [row, is_first] = rows.try_emplace(spec.name);
-        if (is_first && block.rates != "none")
+        const bool has_rates = catalog.optimizers.at(spec.name).needs_argument.empty();
+        if (is_first && has_rates && block.rates != "none")
           row->second = rates.find(problem, spec.name, block.rates);
         const auto [optimizer, is_new] = optimizers.try_emplace({&spec, row->second});
         if (is_new) optimizer->second = with_rates(catalog, spec, row->second);

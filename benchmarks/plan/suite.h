@@ -33,6 +33,7 @@ struct MatrixBlock {
 struct Suite {
   std::string name, title;
   std::vector<MatrixBlock> blocks;
+  OptionValues problem_options = {};  // of every problem, besides those of its spec
 };
 
 // The spec's own options, and those of the row that it leaves open; the row may be null.

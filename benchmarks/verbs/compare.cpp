@@ -1,6 +1,7 @@
 // isoline compare BASE NEW: lists what has become worse and better.
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "benchmarks/cli/terminal.h"
@@ -45,6 +46,10 @@ int run(const CompareArguments& given, Session&) {
     require_valid(read_json(given.allowed), "allowed", given.allowed);
     options.allowed = reports::read_allowed(given.allowed);
   }
+  if (std::error_code unknown; std::filesystem::is_regular_file(given.before, unknown))
+    if (const Json json = read_json(given.before);
+        json.is_object() && json.value("schema", Json()) == reports::kBaselineSchema)
+      require_valid(json, "baseline", given.before);
   options.listener = progress_on_terminal("reading records");
   const reports::GateResult result = reports::compare_results(given.before, given.after, options);
   say(stdout, given.as_json       ? reports::gate_json(result)

@@ -36,15 +36,24 @@ struct Described {
   OptionValues options;  // the given values, and defaults for the others
 };
 
+// With the options that another program declares.
+OptionTable options_of(OptionTable registered, const Component& component) {
+  if (component.foreign)
+    registered.insert(registered.end(), component.foreign->options.begin(),
+                      component.foreign->options.end());
+  return registered;
+}
+
 Described described_as_problem(const Catalog& catalog, const Spec& spec) {
   const Component problem = complete_problem(catalog, spec);
-  return {problem_sheet(catalog, problem), catalog.problems.at(spec.name).options, problem.options};
+  return {problem_sheet(catalog, problem),
+          options_of(catalog.problems.at(spec.name).options, problem), problem.options};
 }
 
 Described described_as_optimizer(const Catalog& catalog, const Spec& spec) {
   const Component optimizer = complete_optimizer(catalog, spec);
-  return {optimizer_sheet(catalog, optimizer), catalog.optimizers.at(spec.name).options,
-          optimizer.options};
+  return {optimizer_sheet(catalog, optimizer),
+          options_of(catalog.optimizers.at(spec.name).options, optimizer), optimizer.options};
 }
 
 Described described(const Catalog& catalog, const Spec& spec) {

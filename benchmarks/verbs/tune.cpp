@@ -101,15 +101,19 @@ TuningPlan plan_of(const Catalog& catalog, const TuneArguments& given) {
   for (const Request& cell :
        given.suite.empty() ? cells_named(catalog, given) : cells_of(catalog, given)) {
     const std::string& name = cell.optimizer.name;
-    const optimizers::Tunable& tunable = catalog.optimizers.at(name).tunable;
-    if (tunable.option.empty() || !known.emplace(cell.problem.spec, name).second) continue;
+    const bool is_foreign = !catalog.optimizers.at(name).needs_argument.empty();
+    const std::string& known_as = is_foreign ? cell.optimizer.spec : name;
+    const auto tunable = entry_of(catalog, name, cell.optimizer.options).tunable.option;
+    if (tunable.empty() || !known.emplace(cell.problem.spec, known_as).second) continue;
     families.insert(cell.problem.name);
     // A common grid is around the defaults, whatever was published for a problem.
     const Rates::Row* row = given.leaves_out ? nullptr : rates.find(cell.problem, name);
     plan.pairs.push_back({.problem = cell.problem,
                           .optimizer = name,
                           .budget = cell.budget,
-                          .options = row && !row->is_from_grid ? row->options : OptionValues()});
+                          .options = is_foreign                  ? cell.optimizer.options
+                                     : row && !row->is_from_grid ? row->options
+                                                                 : OptionValues()});
   }
   require(!plan.pairs.empty(), "tune: none of these methods has an option to tune");
   require(!given.leaves_out || families.size() > 1,
@@ -125,7 +129,11 @@ void write_table(const TuneArguments& given, const TuningPlan& plan,
   const auto add = [&](const Json& some) {
     for (const Json& row : some) rows[{row.at("problem"), row.at("optimizer")}] = json_text(row);
   };
-  if (std::filesystem::exists(table)) add(read_json(table).at("rows"));
+  if (std::filesystem::exists(table)) {
+    const Json earlier = read_json(table);
+    require_valid(earlier, "rates", table.string());
+    add(earlier.at("rows"));
+  }
   add(new_rows);
   const Budget& budget = plan.pairs[0].budget;
   Json grid{{"points", plan.grid ? plan.grid->values.size() : kGridValues},

@@ -181,6 +181,24 @@ def seed():
     return int(_greeted()[1].get("seed", 0))
 
 
+_declared, _tunable, _has_introduced = [], None, False
+
+
+def option(name, default, doc="", tunable=False):
+    """The value of an option of this script: of process[command="python3 mine.py",name=value].
+
+    Its type, a number, a whole number, true or false, or text, is that of the default. Call it
+    before problem() or optimizer(). `tunable`: `isoline tune` chooses this option of an optimizer.
+    """
+    global _tunable
+    if _has_introduced:
+        raise Refused(f"option {name} must be declared before problem() or optimizer() is called")
+    given = _greeted()[1].get("options", {})
+    _declared.append({"name": name, "default": default, "doc": doc})
+    _tunable = name if tunable else _tunable
+    return given.get(name, default)
+
+
 def _refuse(line, why):
     """Isoline shows the reason in the place of a description."""
     line.send(HELLO, FAILED, _text(why))
@@ -188,6 +206,7 @@ def _refuse(line, why):
 
 
 def _introduce(line, greeting, role, said):
+    global _has_introduced
     if greeting["role"] != role:
         article = "an" if role == "optimizer" else "a"
         wrong = f"this script is {article} {role}; use it as such, not as {greeting['role']}"
@@ -202,7 +221,10 @@ def _introduce(line, greeting, role, said):
         role=role,
         interpreter=f"{platform.python_implementation()} {platform.python_version()}",
         packages=packages,
+        options=_declared or None,
+        tunable=_tunable,
     )
+    _has_introduced = True
     for name, words in said.items():
         if isinstance(words, str):
             said[name] = words.encode(errors="replace").decode()  # JSON has no single surrogates

@@ -32,6 +32,9 @@ class Invariants {
       : record_(record), curve_(record.curve), summary_(record.summary) {
     const bool is_own = !record.imported && record.status != Status::inapplicable;
     const bool broke_off = is_failure(record.status) || record.status == Status::interrupted;
+    const std::string cell = cell_digest(record.request);
+    hold(cell == record.cell, "its cell is {}, but the digest of its request is {}", record.cell,
+         cell);
     hold(
         record.criterion.empty() || record.criterion == digest_of(criterion_of(record)),
         "its criterion is not the digest of its f_L, scale, x_scale, x_floor, aim and nominal costs");

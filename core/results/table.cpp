@@ -524,6 +524,8 @@ std::string budget_options(const Request& request) {
   if (budget.work < Budget{}.work) options += fmt::format(" --work {}", budget.work);
   if (budget.seconds < Budget{}.seconds) options += fmt::format(" --time {}s", budget.seconds);
   if (budget.target != Budget{}.target) options += fmt::format(" --target {}", budget.target);
+  if (budget.stall)
+    options += " --stall " + (*budget.stall > 0 ? std::to_string(*budget.stall) : "never");
   if (request.threads != 1) options += fmt::format(" --threads {}", request.threads);
   return options;
 }

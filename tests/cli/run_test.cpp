@@ -222,6 +222,126 @@ TEST_F(Run, ValidateFindsWhatIsWrongAndExitsTwo) {
                {.exit_code = 2, .out = {victim.filename(), ", 1 invalid"}});
 }
 
+// --- budgets, starts and targets of one's own
+
+TEST_F(Run, StallsAfterAsManyIterationsAsAskedAndUsualCellsKeepTheirNames) {
+  const std::string still =
+      "./isoline run --problem rosenbrock --optimizer 'gd[rate=1e-300]' "
+      "--iterations 250 --out out --no-report ";
+  const auto iterations = [&](const char* status) {
+    std::int64_t most = 0;
+    for (const Json& record : records())
+      if (record.at("status") == status)
+        most = std::max(most, record.at("summary").at("iterations").get<std::int64_t>());
+    return most;
+  };
+  shell.expect(still, {.out = {"1 stalled"}});
+  EXPECT_EQ(iterations("stalled"), 100);
+  shell.expect(still + "--stall 100", {.out = {"0 run, 1 reused"}});
+  shell.expect(still + "--stall 150", {.out = {"1 stalled"}});
+  EXPECT_EQ(iterations("stalled"), 150);
+  shell.expect(still + "--stall never", {.out = {"1 budget"}});
+  EXPECT_EQ(iterations("budget"), 250);
+  shell.expect(still + "--stall 0", {.exit_code = 1, .err = {"--stall"}});
+  write_text(shell.folder() / "mine.json",
+             R"({"schema": "isoline.suite/1", "name": "mine", "matrix": [
+                 {"problems": ["rosenbrock"], "optimizers": ["gd[rate=1e-300]"],
+                  "budget": {"iterations": 250, "stall": "never"}}]})");
+  shell.expect("./isoline run mine.json --out out --no-report", {.out = {"0 run, 1 reused"}});
+  shell.expect("./isoline validate out mine.json");
+}
+
+TEST_F(Run, MoreIterationsAreOtherCellsAndAFinishedCellKeepsNoCheckpoint) {
+  shell.expect(kMatrix + "--no-report", {.out = {"3 cells: 3 run"}});
+  shell.expect(kMatrix + "--no-report --seeds 2", {.out = {"6 cells: 3 run, 3 reused"}});
+  EXPECT_TRUE(!fs::exists(out / "checkpoints") || fs::is_empty(out / "checkpoints"));
+  const std::string longer =
+      "./isoline run --problem brown-dennis --optimizer gd,newton "
+      "--iterations 40 --out out --no-report";
+  shell.expect(longer, {.out = {"2 cells: 2 run, 0 reused"}});
+  EXPECT_EQ(count_records(out), 8U);
+}
+
+TEST_F(Run, BeginsAtTheStartOfAFileWhoseContentBelongsToTheCell) {
+  const std::string run =
+      "./isoline run --problem rosenbrock --optimizer newton --out out --no-report ";
+  const auto begin = [&](const char* numbers) { write_text(shell.folder() / "a.csv", numbers); };
+  begin("0.5,2");
+  shell.expect(run + "--start a.csv", {.out = {"1 run"}});
+  EXPECT_EQ(records().at(0).at("summary").at("start_loss"), 153.25);  // ½ (17.5² + 0.5²)
+  EXPECT_EQ(records().at(0).at("minimum"), 0);
+  shell.expect(
+      "./isoline run --problem 'rosenbrock[start-file=a.csv]' --optimizer newton --out "
+      "out --no-report",
+      {.out = {"1 reused"}});
+  shell.expect("./isoline replay out/runs/*.json");
+  begin("0.5,1");
+  shell.expect("./isoline replay out/runs/*.json", {.exit_code = 4, .out = {"a.csv"}});
+  shell.expect(run + "--start a.csv", {.out = {"1 run"}});
+  EXPECT_EQ(count_records(out), 2U);
+  begin("1,2,3");
+  shell.expect(run + "--start a.csv", {.exit_code = 1, .err = {"a.csv", "rosenbrock", "(1, 3)"}});
+  shell.expect(run + "--start b.csv", {.exit_code = 1, .err = {"b.csv"}});
+  shell.expect("./isoline run --problem 'sine[mode=learn]' --optimizer gd --start a.csv",
+               {.exit_code = 1, .err = {"sine"}});
+}
+
+TEST_F(Run, FitsTheTargetOfAFileWhoseSolutionIsUnknown) {
+  write_text(shell.folder() / "y.csv", "0\n0.5\n");  // 10 (x₂ − x₁²) and 1 − x₁
+  shell.expect(
+      "./isoline run --problem rosenbrock --optimizer gauss-newton --target-data y.csv "
+      "--out out --no-report",
+      {.out = {"1 run"}});
+  const Json record = records().at(0);
+  EXPECT_LT(record.at("summary").at("loss"), 1e-20);
+  EXPECT_EQ(record.at("minimum"), nullptr);
+  EXPECT_EQ(record.at("verified").at("1e-6"), nullptr);
+  EXPECT_EQ(record.at("aim"), "loss");
+}
+
+// --- damaged files of the user
+
+TEST_F(Run, DamagedFilesAreNamedWithTheirPlace) {
+  shell(kMatrix + "--no-report");
+  for (const char* text : {R"({"schema": "isoline.baseline/1", "cells": 3})", "[]",
+                           R"({"schema": "isoline.rates/1", "rows": [{"problem": 3}]})",
+                           R"({"schema": "isoline.suite/1", "name": "x", "matrix": 3})"}) {
+    write_text(shell.folder() / "bad.json", text);
+    for (const char* command :
+         {"compare bad.json out", "run bad.json --dry-run", "run --rates bad.json --dry-run",
+          "run --best bad.json --dry-run", "compare out out --allow bad.json",
+          "tune square --optimizer gd --work 20 --table bad.json"}) {
+      const Finished done = shell(std::string("./isoline ") + command);
+      EXPECT_EQ(done.exit_code, 1) << command << text << done.err;
+      EXPECT_FALSE(contains(done.err, "json.exception")) << command << text << done.err;
+      const bool is_no_baseline = contains(command, "compare bad") && !contains(text, "baseline");
+      EXPECT_TRUE(is_no_baseline || contains(done.err, "bad.json")) << command << done.err;
+    }
+  }
+  shell.expect("./isoline run --problem 'navier-stokes[N=7]' --optimizer gd --dry-run",
+               {.exit_code = 1, .err = {"even", "7"}});
+}
+
+// --- what a component does to its parent, and a system without room
+
+TEST_F(Run, GoesOnWhereAComponentTerminatesItsParent) {
+  write_text(shell.folder() / "kills.py",
+             "import os, signal, isoline\n"
+             "os.kill(os.getppid(), signal.SIGTERM)\n"
+             "isoline.problem(lambda x: [2 * x[0]], start=[1.0], jacobian=lambda x: [[2]])\n");
+  shell.expect("./isoline describe 'process[command=\"python3 kills.py\"]'");
+}
+
+TEST_F(Run, EndsWithAMessageWhereNoFileCanBeOpened) {
+  for (int files = 6; files <= 12; ++files) {
+    const Finished done =
+        shell(fmt::format("ulimit -n {}; timeout 60 {}--jobs 2 --no-report", files, kMatrix));
+    EXPECT_TRUE(done.exit_code == 0 || (done.exit_code == 2 && !done.err.empty()))
+        << files << ": " << done.exit_code << done.err;
+    fs::remove_all(out);
+  }
+}
+
 // --- a run that takes long: gradient descent so slow that it neither arrives nor stalls
 
 class LongRun : public Run {

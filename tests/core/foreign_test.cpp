@@ -302,6 +302,31 @@ TEST(Handshakes, TextsHaveTheLimitsOfPlugins) {
   EXPECT_NE(complaint("packages", {{"numpy", std::string(100, '1')}}), "");
 }
 
+TEST(Handshakes, DeclareOptionsWithTheTypesOfTheirDefaults) {
+  Json json = a_problem();
+  json["options"] = {{{"name", "n"}, {"default", 4}, {"doc", "size"}},
+                     {{"name", "rate"}, {"default", 0.5}},
+                     {{"name", "kind"}, {"default", "a"}}};
+  json["tunable"] = "rate";
+  const Foreign said = problem_handshake(json_text(json), "`mine`").foreign;
+  ASSERT_EQ(said.options.size(), 3U);
+  EXPECT_EQ(said.options[0].standard, OptionValue(Index{4}));
+  EXPECT_EQ(said.options[1].standard, OptionValue(0.5));
+  EXPECT_EQ(said.options[2].standard, OptionValue(std::string("a")));
+  EXPECT_EQ(said.tunable, "rate");
+  for (const Json& wrong :
+       {Json("n"), Json::array({1}), Json::array({{{"name", "n"}}}),
+        Json::array({{{"name", "a b"}, {"default", 1}}}),
+        Json::array({{{"name", "command"}, {"default", "x"}}}),
+        Json::array({{{"name", "n"}, {"default", nullptr}}}),
+        Json::array({{{"name", "n"}, {"default", 1}}, {{"name", "n"}, {"default", 2}}})}) {
+    json["options"] = wrong;
+    EXPECT_THROW(problem_handshake(json_text(json), "`mine`"), UsageError) << wrong;
+  }
+  json.erase("options");
+  EXPECT_THROW(problem_handshake(json_text(json), "`mine`"), UsageError) << "tunable has no option";
+}
+
 TEST(Handshakes, OfAnOptimizerSayWhatItAsks) {
   const Json json{
       {"protocol", 1}, {"role", "optimizer"}, {"needs", {"jacobian"}}, {"least_squares", true}};

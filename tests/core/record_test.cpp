@@ -179,6 +179,7 @@ TEST(Cell, DependsOnAllThatIsAskedAndNothingElse) {
   for (const auto& change : std::vector<std::function<void(Request&)>>{
            [](Request& r) { r.seed = 8; }, [](Request& r) { r.threads = 2; },
            [](Request& r) { r.budget.work = 5; }, [](Request& r) { r.budget.target = 0; },
+           [](Request& r) { r.budget.stall = 0; },
            [](Request& r) { r.problem.options.set("n", Index{1}); },
            [](Request& r) { r.problem.options.set("watch", std::string("noise")); },
            [](Request& r) { r.optimizer.options.set("rate", 0.2); }}) {
@@ -232,16 +233,26 @@ TEST(Schemas, OfRecordsRefuseWhatIsMissingUnknownOrOfAnotherType) {
     broken.erase(field);
     EXPECT_NE(schema.violations(broken), std::vector<std::string>{}) << field;
   }
-  for (const auto& [place, value] : std::map<std::string, Json>{{"/cell", "short"},
-                                                                {"/unknown", 1},
-                                                                {"/summary/loss", nullptr},
-                                                                {"/summary/work", 1.5},
-                                                                {"/status", "running"},
-                                                                {"/request/threads", 0},
-                                                                {"/request/seed", -1},
-                                                                {"/provenance/commit", 5},
-                                                                {"/verified/1e-3", "yes"},
-                                                                {"/counts/forward", -1}}) {
+  for (const auto& [place, value] :
+       std::map<std::string, Json>{{"/cell", "short"},
+                                   {"/unknown", 1},
+                                   {"/summary/loss", nullptr},
+                                   {"/summary/work", 1.5},
+                                   {"/status", "running"},
+                                   {"/request/threads", 0},
+                                   {"/request/seed", -1},
+                                   {"/provenance/commit", 5},
+                                   {"/verified/1e-3", "yes"},
+                                   {"/counts/forward", -1},
+                                   {"/summary/work", -1},
+                                   {"/summary/wall_seconds", -1.0},
+                                   {"/summary/iterations", -1},
+                                   {"/summary/peak_memory_bytes", -1},
+                                   {"/curve/work", Json::array({-1})},
+                                   {"/curve/wall_seconds", Json::array({-0.5})},
+                                   {"/repeat_wall_seconds", Json::array({-0.5})},
+                                   {"/request/budget/work", -1},
+                                   {"/request/budget/stall", -1}}) {
     Json broken = good;
     broken[Json::json_pointer(place)] = value;
     EXPECT_NE(schema.violations(broken), std::vector<std::string>{}) << place;

@@ -349,6 +349,18 @@ TEST(New, AProblemInCBuildsPassesItsChecksAndIsSolved) {
     EXPECT_EQ(read_json(entry.path()).at("verified").at("1e-6"), true) << entry.path();
 }
 
+TEST(Library, ThatAbortsWhenItIsUnloadedCostsNothingThatIsDone) {
+  const Shell shell;
+  ASSERT_EQ(shell("./isoline new problem last --c").exit_code, 0);
+  write_text(shell.folder() / "last.c",
+             read_text(shell.folder() / "last.c") +
+                 "#include <stdlib.h>\n"
+                 "__attribute__((destructor)) static void leave(void) { abort(); }\n");
+  EXPECT_EQ(built(shell, "last"), "");
+  EXPECT_EQ(shell("./isoline list --plugin ./liblast.so").exit_code, 0);
+  EXPECT_EQ(shell("./isoline describe absent --plugin ./liblast.so").exit_code, 1);
+}
+
 TEST(New, AnOptimizerInCBuildsIsFlaggedNowhereAndDescends) {
   const Shell shell;
   ASSERT_EQ(shell("./isoline new optimizer slow --c").exit_code, 0);

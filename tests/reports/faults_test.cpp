@@ -393,6 +393,9 @@ TEST_F(Faults, InTimesCountsAndTargetsBreakAnInvariantEach) {
       {"order of times", [](Record& r) { std::ranges::reverse(r.curve.wall_seconds); }},
       {"times of hits", [](Record& r) { r.hits->wall_seconds[0] = -1; }},
       {"forwards of hits", [](Record& r) { ++r.hits->forwards[2]; }},
+      {"cell", [](Record& r) { r.cell = std::string(16, '0'); }},
+      {"seed", [](Record& r) { ++r.request.seed; }},
+      {"budget", [](Record& r) { r.request.budget.stall = 0; }},
       {"targets of hits", [](Record& r) { r.hits->target[2] /= 2; }}};
   for (const auto& [name, edit] : edits) {
     Record record = sound_records()[2];
