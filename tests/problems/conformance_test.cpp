@@ -33,7 +33,7 @@ std::vector<std::string> specs() {
       "quantum-dipole[mode=learn,batch=9,epoch=0]",
       "quantum-dipole[mode=learn,batch=9,epoch=0,loss=residual]", "box3d[m=3]", "brown-dennis[m=4]",
       "linear-chain[steps=96]", "coupled-oscillators[steps=48]", "wave-packet[samples=256]",
-      "wave-packet[noise=0]", "quantum-dipole[steps=96]", "quantum-dipole[steps=192,loss=residual]",
+      "wave-packet[sigma=0]", "quantum-dipole[steps=96]", "quantum-dipole[steps=192,loss=residual]",
       "broyden-tridiagonal[n=3]", "variably-dimensioned[n=1]"};
   for (const auto& [name, entry] : all_problems().ready()) {
     const bool is_grid = std::ranges::any_of(
