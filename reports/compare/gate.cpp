@@ -201,7 +201,7 @@ std::string why_incomparable(const ComparedCell& a, const ComparedCell& b,
     if (!side->doubt.empty())
       return fmt::format("{} contradicts itself: {}", side == &a ? "BASE" : "NEW", side->doubt);
   if (a.is_cut || b.is_cut)
-    return fmt::format("a clock or a kill ended it in {} ({})", b.is_cut ? "NEW" : "BASE",
+    return fmt::format("a time limit or a signal ended it in {} ({})", b.is_cut ? "NEW" : "BASE",
                        name_of(b.is_cut ? b.status : a.status));
   if (options.tolerance || a.build == b.build) return "";
   return "another build or instruction set; pass --tolerance to compare the values";
@@ -443,7 +443,7 @@ void conclude(GateResult& result, const GateOptions& options) {
   if (!worse.empty() || !slower.empty() || !lack.empty()) {
     settle(kWorse, "worse", {settings, lack, worse, slower});
   } else if (result.joined == 0) {
-    settle(kNotComparable, "not comparable", {"the two sides have no common cell"});
+    settle(kNotComparable, "not comparable", {"BASE and NEW have no common cell"});
   } else if (const auto& all = result.incomparable; !all.empty()) {
     const std::string first = all[0].title + ": " + all[0].reason;
     settle(kNotComparable,

@@ -128,9 +128,9 @@ std::string reading(const Comparison& c, std::size_t s) {
   std::string text = fmt::format("{}: solves {} of these {} to {}", place_text(c, s),
                                  standing.solved, standing.settings, tau_name(c));
   if (standing.wins > 0)
-    text += fmt::format(", {} with the least {} of all", standing.wins, counted_name(c));
-  if (standing.typical < kNever)
-    text += fmt::format(", typically for {:.3g}× the least", standing.typical);
+    text += fmt::format(", {} of them with the least {} of all methods", standing.wins,
+                        counted_name(c));
+  if (standing.typical < kNever) text += fmt::format("; median slowdown {:.3g}", standing.typical);
   return text + fmt::format(
                     "; {} of {} runs reach it{}.", standing.reached, standing.runs,
                     axis.failed > 0 ? fmt::format("; of all its runs {} failed", axis.failed) : "");

@@ -214,8 +214,8 @@ std::string details_html(const Comparison& c) {
   constexpr std::size_t kMost = 20'000;  // rows of some 200 bytes
   if (c.problems.size() * c.optimizers.size() > kMost)
     return fmt::format(
-        "<p class=lead>Of more than {} cells there is no table here: all of them stand "
-        "in report.csv.</p>",
+        "<p class=lead>This page has no table of more than {} cells; report.csv contains all of "
+        "them.</p>",
         kMost);
   const auto spread_cell = [](const Spread& spread, std::string (*text)(Real)) {
     TableCell cell = spread.n == 0 ? "" : text(spread.median);
