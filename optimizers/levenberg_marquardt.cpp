@@ -301,14 +301,14 @@ struct LevenbergMarquardt {
     s.has_point = true;
   }
 
-  // Of ½‖r‖²: ½‖J d‖² + μ‖D d‖², without cancellation.
+  // The decrease of ½‖r‖², ½‖J d‖² + μ‖D d‖², without cancellation.
   static Real predicted_decrease(const State& s) {
     return 0.5 * s.Jd.squaredNorm() + s.damping.mu * s.squares.squared_length(s.step);
   }
 
-  // Of ½‖r‖² in r = y − y*, whose components have rounding errors of ε|y|. Where a step and its
-  // prediction change ½‖r‖² by less, the loss cannot judge it; x, which depends on the gradient,
-  // still becomes more accurate as long as steps become shorter.
+  // The rounding error of ½‖r‖², r = y − y*, whose components have errors of ε|y|. Where a step and
+  // its prediction change ½‖r‖² by less, the loss cannot judge it; x, which depends on the
+  // gradient, still becomes more accurate as long as steps become shorter.
   static Real rounding_of_misfit(const State& s) {
     return kEpsilon * (s.squares.misfit() + s.residual.norm() * s.at.y().lpNorm<Eigen::Infinity>());
   }
