@@ -178,4 +178,14 @@ Json json_of(const std::vector<Claim>& claims) {
   return list;
 }
 
+std::vector<Record> published_records(const Catalog& catalog) {
+  std::vector<Record> records;
+  for (const auto& [name, text] : builtin_published()) {
+    Request& asked = records.emplace_back(record_from_text(std::string(text), name)).request;
+    asked.problem = complete_problem(catalog, asked.problem.name, asked.problem.options);
+    asked.optimizer = complete_optimizer(catalog, asked.optimizer.name, asked.optimizer.options);
+  }
+  return records;
+}
+
 }  // namespace isoline::benchmarks
