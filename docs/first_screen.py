@@ -118,7 +118,7 @@ def picture(results):
 def sine_at_equal_work(report):
     """How many times as large adam's error in x is as that of sip, as the first tab says."""
     for sentence in report["verdict"]:
-        match = re.match(r"sine\[.*\bsip\b.*smallest error in x.*; next adam, ([\d.]+)× as large", sentence)
+        match = re.match(r"sine\[.*\bsip\b.*smallest error in x.*; next (?:is )?adam, ([\d.]+)× as large", sentence)
         if match:
             return float(match[1])
     sys.exit("report.json: no sentence on the error in x of sip and adam on the learned sine; "

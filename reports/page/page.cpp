@@ -86,8 +86,8 @@ std::string title_of(const Comparison& c) {
 std::string legend_html(const Comparison& c) {
   const Marks shown = marks_shown(c);
   std::string legend;
-  if (shown.is_foreign) legend += " · " + html_text(words("marks.foreign"));
-  if (shown.is_imported) legend += " · " + html_text(words("marks.imported"));
+  if (shown.is_foreign) legend += "; " + html_text(words("marks.foreign"));
+  if (shown.is_imported) legend += "; " + html_text(words("marks.imported"));
   return legend;
 }
 
