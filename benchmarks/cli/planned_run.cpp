@@ -66,9 +66,8 @@ void declare_cells(VerbArguments& verb, RunArguments& given) {
       .excludes(seeds);
   verb.whole("--iterations", given.iterations, "Limit of the iterations of a cell");
   verb.whole("--work", given.work, "Limit of the work of a cell, in forward solves");
-  verb.time(
-      "--time", given.seconds,
-      "Limit of the processor time of a cell: 10s, 2m; after twice this time, the cell is killed");
+  verb.time("--time", given.seconds,
+            "Time limit of a cell: 10s, 2m; a cell that uses twice this processor time is killed");
   verb.real("--target", given.target, between(0, 1),
             "Tolerance at which a run stops, relative to the scale of the loss or, if the success "
             "criterion is x, to the norm of x* (default: 1e-10)");
