@@ -86,8 +86,13 @@ std::string title_of(const Comparison& c) {
 std::string legend_html(const Comparison& c) {
   const Marks shown = marks_shown(c);
   std::string legend;
-  if (shown.is_foreign) legend += "; " + html_text(words("marks.foreign"));
-  if (shown.is_imported) legend += "; " + html_text(words("marks.imported"));
+  const auto add = [&](const char* key) {
+    std::string text = words(key);
+    text.resize(text.size() - text.ends_with('.'));
+    legend += "; " + html_text(text);
+  };
+  if (shown.is_foreign) add("marks.foreign");
+  if (shown.is_imported) add("marks.imported");
   return legend;
 }
 
