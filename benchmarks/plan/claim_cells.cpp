@@ -139,8 +139,8 @@ std::string unknown_claim(const std::string& wrong, const std::vector<std::strin
   std::string guess;
   for (const std::string& name : close)
     guess += fmt::format("{} '{}'", guess.empty() ? "did you mean" : ",", name);
-  return fmt::format("unknown claim '{}'; {}{}`isoline claims --list --all` lists them", wrong,
-                     guess, guess.empty() ? "" : "? ");
+  return fmt::format("unknown claim '{}'; {}{}`isoline claims --list --all` lists all claims",
+                     wrong, guess, guess.empty() ? "" : "? ");
 }
 
 }  // namespace

@@ -30,10 +30,10 @@ struct ScoreArguments {
 
 void declare(VerbArguments& verb, ScoreArguments& given) {
   verb.text("SUITE", given.suite, "Suite whose problems, seeds and budgets are used").shown();
-  verb.text("--problem", given.problem, "Problems instead of those of the suite").joined();
+  verb.text("--problem", given.problem, "Problems to use instead of those of the suite").joined();
   verb.text("--optimizer", given.optimizer, "Optimizers to score: 'process[command=\"…\"]'")
       .joined();
-  verb.text("--peers", given.peers, "Optimizers beside them; none: no others").shown();
+  verb.text("--peers", given.peers, "Optimizers to compare with; none: no comparison").shown();
   verb.text("--out", given.out, "Result folder (default: results/SUITE-score)");
   verb.whole("--jobs", given.jobs, "Number of cells at a time (default: one per core)", kJobs);
   verb.plugins();
