@@ -325,7 +325,7 @@ TEST(PublishedRecords, AreSmallAndReadByClaims) {
   EXPECT_EQ(records.size(), files);
   const std::vector<Judgement> judgements = judge(claims_of({}), {}, records);
   std::string caveats;
-  for (const Judgement& judgement : judgements) caveats += judgement.caveat;
+  for (const Judgement& judgement : judgements) caveats += joined(judgement.caveats, " ");
   for (const Record& record : records) {
     EXPECT_FALSE(record.fields || record.spectrum) << record.file_name();
     EXPECT_TRUE(builtin_published().contains(record.cell + "-" + record.build));

@@ -85,7 +85,7 @@ TEST(Claims, TakeTheBeginningsThatPublishedRecordsHave) {
   EXPECT_EQ(one.measured->value, 10);
   EXPECT_EQ(one.measured->n, 1U);
   EXPECT_EQ(one.reached, words("claim.published-part", "40", "100", 1, 3));
-  EXPECT_NE(one.caveat.find(published[0].build), std::string::npos);
+  EXPECT_NE(joined(one.caveats, " ").find(published[0].build), std::string::npos);
   claim["quantity"]["iteration"] = 50;
   EXPECT_EQ(judged(claim).verdict, Verdict::too_short);
   // A whole set of other cells decides where the beginning is too short, or has fewer seeds.
