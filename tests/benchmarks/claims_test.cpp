@@ -21,6 +21,7 @@
 #include "reports/formats/formats.h"
 #include "reports/report.h"
 #include "reports/sections/sections.h"
+#include "reports/sections/words.h"
 #include "tests/benchmarks/builtin.h"
 #include "tests/benchmarks/matrix.h"
 
@@ -325,7 +326,7 @@ TEST(PublishedRecords, AreSmallAndReadByClaims) {
   EXPECT_EQ(records.size(), files);
   const std::vector<Judgement> judgements = judge(claims_of({}), {}, records);
   std::string caveats;
-  for (const Judgement& judgement : judgements) caveats += joined(judgement.caveats, " ");
+  for (const Judgement& judgement : judgements) caveats += reports::joined(judgement.caveats, " ");
   for (const Record& record : records) {
     EXPECT_FALSE(record.fields || record.spectrum) << record.file_name();
     EXPECT_TRUE(builtin_published().contains(record.cell + "-" + record.build));
