@@ -277,7 +277,7 @@ constexpr Property kProperties[] = {
     {"one step", "reaches a regular solution in one step"},
     {"superlinear", "order 1.5 or more near a regular solution"},
     {"order if singular", "order 1.5 or more where J is singular at the solution"},
-    {"as declared", "called only the oracles that its entry lists"}};
+    {"as declared", "no measurement contradicts what the method declares"}};
 
 // Whether each property holds; no value if it was not measured.
 std::array<std::optional<bool>, std::size(kProperties)> answers_of(
