@@ -249,7 +249,7 @@ struct Options {
 };
 void fields(Options& o, auto& field) {
   field("steps", o.steps, between(48, 3072),
-        "time steps, each with one control; together they last 19.2 for any number");
+        "number of time steps, each with one control; the total time is 19.2 for any number");
   field("loss", o.loss, {"", "residual"},
         "residual: y = (I − aaᵀ)ψ and y* = 0, the same loss as a sum of squares");
   field(kEpochOption, o.epoch, between(0, 1e6),
