@@ -343,11 +343,11 @@ void register_bal(ProblemRegistry& registry) {
            "P = R(ω)X + t,  p = −(P₁, P₂)/P₃,  y = f(1 + k₁‖p‖² + k₂‖p‖⁴)p,  L = ½Σ‖y − y*‖²",
        .source = "Agarwal, Snavely, Seitz, Szeliski (2010)",
        .note =
-           "file=… reads a file of the set “Bundle Adjustment in the Large” from the folder "
-           "that the environment variable ISOLINE_BAL names. Without this option, the scene is "
-           "synthetic, and the error in x is the root mean square distance of the points after the best "
-           "rotation, translation and scale. Starts of other seeds differ by a hundredth of "
-           "each unknown.",
+           "file=… reads a file of the set “Bundle Adjustment in the Large” from the folder that "
+           "the environment variable ISOLINE_BAL names. Without this option, the scene is "
+           "synthetic, and the error in x is the root mean square distance of the points after "
+           "the best rotation, translation and scale. Starts of other seeds differ by a hundredth "
+           "of each unknown.",
        .in_all = false},
       make_bal));
 }

@@ -266,11 +266,10 @@ void register_oscillators(ProblemRegistry& registry) {
        .source = "Thuerey et al., Physics-based Deep Learning, chapter on half-inverse gradients; "
                  "Schnell, Holl, Thuerey (2022)",
        .note =
-           "Published as a learning problem, with the loss ‖y − y*‖² (loss=square). The "
-           "default loss is half of it, so a step length of 2η here equals η there. mode=direct finds "
-           "the controls (24 by default) of one initial state. Infinitely many "
-           "controls lead back to this state, and the error in x is the distance from the nearest of "
-           "them.",
+           "Published as a learning problem, with the loss ‖y − y*‖² (loss=square). The default "
+           "loss is half of it, so a step length of 2η here equals η there. mode=direct finds the "
+           "controls (24 by default) of one initial state. Infinitely many controls lead back to "
+           "this state, and the error in x is the distance from the nearest of them.",
        .aim = Aim::loss,  // any control that returns will do
        .panels = panels_of("Learning curves")},
       make_linear_chain));
@@ -281,10 +280,10 @@ void register_oscillators(ProblemRegistry& registry) {
        .formula = "ẍ₁ = −x₁ + (x₂ − x₁)³,  ẍ₂ = −x₂ − (x₂ − x₁)³ + 3u(t),  y* = the initial state",
        .source = "Schnell, Holl, Thuerey (2022), published scripts",
        .note =
-           "Published as a learning problem, with the loss ‖y − y*‖² (loss=square). The "
-           "default loss is half of it, so a step length of 2η here equals η there. mode=direct finds "
-           "the controls (96 by default) of one initial state. The network is that of the scripts; that of the book has "
-           "activation=tanh.",
+           "Published as a learning problem, with the loss ‖y − y*‖² (loss=square). The default "
+           "loss is half of it, so a step length of 2η here equals η there. mode=direct finds the "
+           "controls (96 by default) of one initial state. The network is that of the scripts; "
+           "that of the book has activation=tanh.",
        .aim = Aim::loss,  // any control that returns will do
        .in_all = false,
        .panels = panels_of("Fig. 2b: learning curves")},

@@ -345,10 +345,10 @@ void register_quantum_dipole(ProblemRegistry& registry) {
                   "a = f₁ψ₂ + f₂ψ₃",
        .source = "Schnell, Holl, Thuerey (2022), published scripts",
        .note =
-           "Published as a learning problem. mode=direct finds the controls (384 by default) of one target, "
-           "from u = 1, since the gradient vanishes at u = 0. loss=residual has the same loss as "
-           "the sum of squares ‖(I − aaᵀ)ψ‖², which least-squares methods can use. The targets are "
-           "real, as published: the phases that the scripts sample are not used.",
+           "Published as a learning problem. mode=direct finds the controls (384 by default) of "
+           "one target, from u = 1, since the gradient vanishes at u = 0. loss=residual has the "
+           "same loss as the sum of squares ‖(I − aaᵀ)ψ‖², which least-squares methods can use. "
+           "The targets are real, as published: the phases that the scripts sample are not used.",
        .aim = Aim::loss,  // any control that arrives will do
        .in_all = false,
        .panels =

@@ -165,8 +165,8 @@ std::string planes_html(const Comparison& c, std::size_t p) {
   return html +
          fmt::format(
              "</div><p class=legend>Thin lines: contours of the loss, {}. The paths are those of "
-             "the run with the lowest seed; points mark the steps of short runs. ○: start; ●: solution in "
-             "x, target in y.</p>",
+             "the run with the lowest seed; points mark the steps of short runs. ○: start; ●: "
+             "solution in x, target in y.</p>",
              levels_text(sheet->landscape_x ? *sheet->landscape_x : *sheet->landscape_y));
 }
 

@@ -214,8 +214,8 @@ std::string details_html(const Comparison& c) {
   constexpr std::size_t kMost = 20'000;  // rows of some 200 bytes
   if (c.problems.size() * c.optimizers.size() > kMost)
     return fmt::format(
-        "<p class=lead>This report has more than {} cells, too many for a table: report.csv contains "
-        "all of them.</p>",
+        "<p class=lead>This report has more than {} cells, too many for a table: report.csv "
+        "contains all of them.</p>",
         kMost);
   const auto spread_cell = [](const Spread& spread, std::string (*text)(Real)) {
     TableCell cell = spread.n == 0 ? "" : text(spread.median);
@@ -330,7 +330,8 @@ std::string methods_html(const Comparison& c) {
     add_meaning(legend, name, meaning);
   }
   html +=
-      "<th scope=col>required derivatives<th scope=col id=privileges>extra information (†)<tbody>\n";
+      "<th scope=col>required derivatives<th scope=col id=privileges>extra information "
+      "(†)<tbody>\n";
   for (std::size_t s = 0; s < c.optimizers.size(); ++s) html += row_html(c, s);
   return "<div class=\"scroll pane\" tabindex=0 role=region aria-label=Methods>" + html +
          "</table></div><p class=legend>Measured on small problems with known solutions, with "
