@@ -130,10 +130,12 @@ void register_plan(VerbRegistry& registry) {
   isoline plan quick --shards 16 --from results/before     sixteen shards of equal time
   isoline plan quick --shards 16 --json        for the matrix of a workflow)",
        .notes =
-           "The predicted time of a cell is its time in records of the result folder and of --from, or "
-           "that of the same cell with other seeds. Other cells have no prediction.\n"
-           "--shards writes the predictions to predicted.json once. `isoline run --shard` divides the "
-           "plan by this file only, so all tasks use the same shards, whenever they start."},
+           "The predicted time of a cell is its time in records of the result folder and of --from "
+           "or, without such a record, the time of the same cell with other seeds. Other cells "
+           "have no prediction.\n"
+           "--shards writes the predictions to predicted.json once. `isoline run --shard` "
+           "divides the plan by this file only, so all tasks use the same shards, whenever they "
+           "start."},
       declare, run));
 }
 
