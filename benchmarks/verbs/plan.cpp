@@ -92,7 +92,9 @@ void print_shards(const PlannedRun& all, const Preview& shown, const ShardPlan& 
   for (std::size_t i = 0; i < listed; ++i)
     say(stdout, fmt::format("shard {:>9}  {}\n", Shard{i + 1, count}.text(),
                             preview_text(plan.shards[i], jobs)));
-  if (listed < count) say(stdout, fmt::format("… and {} more; --all lists them\n", count - listed));
+  if (listed < count)
+    say(stdout, fmt::format("… and {} more shard{}; --all lists them\n", count - listed,
+                            count - listed == 1 ? "" : "s"));
   double longest = 0;
   for (const PreviewCounts& shard : plan.shards)
     longest = std::max(longest, shard.seconds().value_or(0));

@@ -243,7 +243,8 @@ std::string terminal_section(const Section& section, std::size_t most_rows) {
     while (text.ends_with("\n\n")) text.pop_back();
   }
   if (limit.hidden == 0) return text;
-  return text + fmt::format("… and {} more; --all lists them\n", limit.hidden);
+  return text + fmt::format("… and {} more row{}; --all lists them\n", limit.hidden,
+                            limit.hidden == 1 ? "" : "s");
 }
 
 std::string terminal_claim(const Section& claim) {
