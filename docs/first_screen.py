@@ -139,7 +139,7 @@ def findings(report):
     works = " to ".join(f"{work:.0f}" for work in sorted({min(solved), max(solved)}))
     sine = next(cell for cell in report["cells"]
                 if cell["problem"].startswith("sine[") and cell["optimizer"].startswith("sip"))
-    seeds, given = sine["runs"], sine["optimizer"].partition(", given ")[2]
+    seeds, given = sine["runs"], sine["optimizer"].partition(", given ")[2] or "extra information"
     best = "One method is" if leader["significant"] else "No method is"
     starts = max(cell["runs"] for cell in report["cells"] if cell["problem"] in report["ranked"])
     band = sum(place["in_group"] for place in leader["places"])
