@@ -105,6 +105,7 @@ TEST(Figures, PicturesAreReadFromTheFileBesideTheRecord) {
   fields.numbers = {1, 3, 2, 4, 9, 11, 10, 12, 0, 0, 0, 0, 5, 7, 6, 8};  // y*, x*, x at 0 and at 9
   fields.digest = digest(field_file(fields));
   record.fields = fields;
+  record.cell = cell_digest(record.request);
   const ResultFolder folder;
   folder.add(record);
   folder.add(sine_sheet({{.title = "6", .kind = "pictures"}}));
