@@ -92,6 +92,7 @@ void register_then(OptimizerRegistry& registry) {
                        .family = Family::first_order,
                        .formula = "first, for a number of steps; then second, from its θ",
                        .source = "Schnell, Holl, Thuerey (2022), published scripts",
+                       .needs = {Oracle::forward},
                        .in_all = false};
   entry.options = option_table<ThenOptions>();
   entry.needs_for = [](const OptionValues& options, const Problem& problem) {
