@@ -26,11 +26,13 @@ std::string SparsePattern::defect(Index m, Index n) const {
     return !starts.empty() && starts.front() == 0 && starts.back() == end &&
            std::ranges::is_sorted(starts);
   };
-  if (rows() != m || columns != n)
-    return fmt::format("it is of {} rows and {} columns, and J has {} and {}", rows(), columns, m,
-                       n);
-  if (!covers(row_start, values()) || !covers(parameter_block, n) || !covers(residual_block, m))
-    return "its rows and blocks do not cover all values, parameters and residuals in order";
+  const auto divides = [&](const std::vector<int>& starts, Index end) {  // without empty parts
+    return covers(starts, end) && std::ranges::adjacent_find(starts) == starts.end();
+  };
+  if (rows() != m || columns != n || !covers(row_start, values()) || !divides(parameter_block, n) ||
+      !divides(residual_block, m))
+    return fmt::format(
+        "its rows and blocks do not divide the values of a matrix of {} × {} in order", m, n);
   if (std::ranges::any_of(column, [&](int each) { return each < 0 || each >= n; }))
     return fmt::format("a column is not a number below {}", n);
   std::vector<int> expected;  // columns of a residual block's rows

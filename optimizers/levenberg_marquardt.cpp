@@ -258,7 +258,7 @@ struct LevenbergMarquardt {
     s.squares.persist(archive);
     s.spectral.persist(archive);
     s.damping.persist(archive);
-    archive(s.has_point, s.last_length);
+    archive(s.has_point, s.last_length, s.residual);
   }
 
   State init(Meter& f, const Vector&) const {
@@ -288,7 +288,7 @@ struct LevenbergMarquardt {
     if (s.candidate == theta && !f.has_fresh_batches()) return Status::converged;
     f.linearize(s.candidate, s.trial);
     const Real actual = s.squares.misfit() - 0.5 * (s.trial.y() - f.target()).squaredNorm();
-    const Real rounding = f.has_fresh_batches() ? 0 : rounding_of_misfit(s);
+    const Real rounding = f.has_fresh_batches() ? 0 : rounding_of_misfit(f, s);
     const bool is_rounding = predicted <= rounding && std::abs(actual) <= rounding;
     if (is_rounding) {
       const Real length = std::sqrt(s.squares.squared_length(s.step));
@@ -320,16 +320,17 @@ struct LevenbergMarquardt {
     s.has_point = true;
   }
 
-  // Of ½‖r‖²: ½‖J d‖² + μ‖D d‖², without cancellation.
+  // The decrease of ½‖r‖², ½‖J d‖² + μ‖D d‖², without cancellation.
   static Real predicted_decrease(const State& s) {
     return 0.5 * s.Jd.squaredNorm() + s.damping.mu * s.squares.squared_length(s.step);
   }
 
-  // Of ½‖r‖² in r = y − y*, whose components have rounding errors of ε|y|. Where a step and its
-  // prediction change ½‖r‖² by less, the loss cannot judge it; x, which depends on the gradient,
-  // still becomes more accurate as long as steps become shorter.
-  static Real rounding_of_misfit(const State& s) {
-    return kEpsilon * (s.squares.misfit() + s.residual.norm() * s.at.y().lpNorm<Eigen::Infinity>());
+  // The rounding error of ½‖r‖², r = y − y*, whose components have errors of ε|y|. Where a step and
+  // its prediction change ½‖r‖² by less, the loss cannot judge it; x, which depends on the
+  // gradient, still becomes more accurate as long as steps become shorter.
+  static Real rounding_of_misfit(Meter& f, const State& s) {
+    const Real largest = (f.target().reshaped() - s.residual).lpNorm<Eigen::Infinity>();  // of y
+    return kEpsilon * (s.squares.misfit() + s.residual.norm() * largest);
   }
 
   // Geodesic acceleration, Transtrum and Sethna (2012): d ← d + a, a = argmin ‖J a + ½ r''‖² +
@@ -337,11 +338,12 @@ struct LevenbergMarquardt {
   // 2‖D a‖ > α‖D d‖: the model does not hold as far as d.
   bool accelerate(Meter& f, const Vector& theta, State& s) const {
     constexpr Real kShare = 0.1, kAccurate = 1e-2;  // of d, and of J d
-    const Real error = kEpsilon * s.at.y().norm() / (kShare * kShare);
+    s.Jbend = f.target().reshaped() - s.residual;   // y
+    const Real error = kEpsilon * s.Jbend.norm() / (kShare * kShare);
     if (error > kAccurate * s.Jd.norm()) return true;
     s.candidate = theta + kShare * s.step;
     f.linearize(s.candidate, s.trial);
-    s.Jbend = (s.Jd - (s.trial.y() - s.at.y()).reshaped() / kShare) / kShare;
+    s.Jbend = (s.Jd - (s.trial.y().reshaped() - s.Jbend) / kShare) / kShare;
     if (!is_finite(s.Jbend)) return false;
     s.squares.set_right(s.Jbend);
     const bool is_solved = s.squares.solve(s.damping.mu, factorization, s.bend, s.Jbend);

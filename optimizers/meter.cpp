@@ -438,7 +438,10 @@ void Meter::keep_uncertainty() {
   for (Index i = 0; i < n; ++i) {
     kept.x[i] = judged_.x()(i, 0);
     kept.deviation[i] = std::sqrt(kept.variance) * lengths[i] / D[i];
-    for (Index j = 0; j < n; ++j) kept.correlation[i][j] = i == j ? 1 : correlation(i, j);
+    for (Index j = 0; j < n; ++j) {
+      const Index low = std::max(i, j), right = std::min(i, j);
+      kept.correlation[i][j] = i == j ? 1 : correlation(low, right);
+    }
   }
   kept.unknowns = static_cast<int>(n);
 }

@@ -1,10 +1,12 @@
-// What adapters to least-squares libraries share: r = (y − y*)/√B and its Jacobian where a library
-// asks for them, one forward pass a point; its iterates and rejected steps; and the end of its run.
+// The common part of adapters to least-squares libraries: r = (y − y*)/√B and its Jacobian at the
+// points of a library, its iterates and rejected steps, and the end of its run.
 #pragma once
 
 #include <cmath>
 #include <exception>
+#include <string>
 #include <string_view>
+#include <utility>
 
 #include "optimizers/optimizer.h"
 

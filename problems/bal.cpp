@@ -8,6 +8,7 @@
 // square.
 #include <fmt/format.h>
 
+#include <Eigen/LU>
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -278,22 +279,17 @@ Vector draw_scene(const Bal& o, RandomStream stream, Scene& scene) {
 
 // The points after the best rotation, translation and scale.
 Real distance_to(const Matrix& truth, Matrix points) {  // (3, points)
-  const auto points_count = static_cast<Real>(truth.cols());
   const Matrix centred = truth.colwise() - truth.rowwise().mean();
   points.colwise() -= points.rowwise().mean().eval();
   Svd svd;
   if (!thin_svd(centred * points.transpose(), svd)) return std::nan("");
   Eigen::Matrix3d U = svd.U;
-  const Eigen::Matrix3d turned = U * svd.Vt;
-  Real determinant = 0;
-  for (int i = 0; i < 3; ++i)
-    determinant += turned(0, i) * (turned(1, (i + 1) % 3) * turned(2, (i + 2) % 3) -
-                                   turned(1, (i + 2) % 3) * turned(2, (i + 1) % 3));
-  const Real sign = determinant < 0 ? -1 : 1;
+  const Real sign = Eigen::Matrix3d(U * svd.Vt).determinant() < 0 ? -1 : 1;
   U.col(2) *= sign;
   const Real size = points.squaredNorm();
   const Real scale = size > 0 ? (svd.sigma[0] + svd.sigma[1] + sign * svd.sigma[2]) / size : 0;
-  return (centred - scale * (U * svd.Vt) * points).norm() / std::sqrt(points_count);
+  return (centred - scale * (U * svd.Vt) * points).norm() /
+         std::sqrt(static_cast<Real>(truth.cols()));
 }
 
 // A hundredth of each unknown: files and scenes have rotations that a tenth would turn away.

@@ -116,8 +116,8 @@ ProblemParts flow_parts(const Options& o) {
                            const Batch& batch) { return measure->mean(x, batch.truth); },
       .field = Field{.rows = o.N,
                      .columns = o.N,
-                     .x = {"vorticity before", "velocity/cell"},
-                     .y = {"marker after, low-pass"}}};
+                     .x = {"initial vorticity", "velocity/cell"},
+                     .y = {"final marker, low-pass filtered"}}};
   if (o.loss == "amplitude") parts.loss = std::make_unique<Amplitudes>(o.N);
   if (o.truth() == Arrangement::collocated)  // x* itself is seen on the faces of another grid
     parts.x_floor = [measure](const Batch& batch) {

@@ -111,7 +111,7 @@ class Physics {
   // J of each sample, side by side: (m, k·B). By default from the cheaper product.
   virtual void jacobian(BatchOut J, Workspace& w) const;
 
-  // Of one sample: where J is sparse, its pattern, which is fixed, and the values there.
+  // Where J of a sample is sparse: its pattern, which is fixed, and the values there.
   virtual const SparsePattern* sparse_pattern() const { return nullptr; }
   virtual void sparse_jacobian(VectorOut, Workspace&) const {
     throw NotApplicable("the physics declares no sparse Jacobian");

@@ -116,7 +116,7 @@ class Problem {
   Aim aim() const { return parts_.aim; }
   std::optional<Real> minimum() const { return parts_.minimum; }
   void set_minimum(Real loss) { parts_.minimum = loss; }  // the best known, where none is declared
-  // Of a direct problem: the start and the target of its user, of the sizes of its own. What is
+  // The start and the target of the user, for a direct problem, of the sizes of its own. What is
   // known of the solution for its own target does not hold for another one.
   void set_start(Vector start) { parts_.start.drawn = std::move(start); }
   void set_target(const Matrix& target);

@@ -55,8 +55,9 @@ void declare_cells(VerbArguments& verb, RunArguments& given) {
       "Name or path of a suite (default: quick); --problem and --optimizer select cells of it");
   verb.text("--problem", given.problem, "Problems: 'sine[xi=1|32,phi=45],square'").joined();
   verb.text("--optimizer", given.optimizer, "Optimizers: 'adam[rate=1e-3],ceres-lm'").joined();
-  const Argument seeds = verb.text(
-      "--seeds", given.seeds, "Seeds: 5 (0 to 4), 0..9, =5, or 2:1 for instance 2 with start 1");
+  const Argument seeds =
+      verb.text("--seeds", given.seeds,
+                "Seeds: 5 (seeds 0 to 4), 0..9, =5 (seed 5), or 2:1 (instance 2, start 1)");
   verb.text("--instances", given.instances,
             "Instances, each with every start of --starts: 10, 0..9 or =5 (default: =0)")
       .excludes(seeds);
@@ -66,7 +67,7 @@ void declare_cells(VerbArguments& verb, RunArguments& given) {
   verb.whole("--iterations", given.iterations, "Limit of the iterations of a cell");
   verb.whole("--work", given.work, "Limit of the work of a cell, in forward solves");
   verb.time("--time", given.seconds,
-            "Time limit of a cell: 10s, 2m; after twice this processor time, the cell is killed");
+            "Time limit of a cell: 10s, 2m; a cell that uses twice this processor time is killed");
   verb.real("--target", given.target, between(0, 1),
             "Tolerance at which a run stops, relative to the scale of the loss or, if the success "
             "criterion is x, to the norm of x* (default: 1e-10)");
@@ -79,7 +80,8 @@ void declare_cells(VerbArguments& verb, RunArguments& given) {
   verb.text("--rates", given.rates, "Table of tuned rates: builtin, none or a file").shown();
   verb.text(
       "--best", given.best,
-      "Table that `isoline best` wrote: f_L of problems that do not declare their least loss");
+      "Table that `isoline best` wrote, of the lowest known losses of problems that do not declare "
+      "f_L");
   verb.flag("--allow-large", given.allow_large, "Plan more than a million cells");
   verb.plugins();
 }
@@ -88,9 +90,10 @@ void declare_what_is_done(VerbArguments& verb, RunArguments& given) {
   verb.text(
       "--out", given.out,
       "Result folder (default: results/SUITE; for your own study or a part of a suite, a name "
-      "that follows from the plan)");
+      "derived from the plan)");
   verb.flag("--force", given.force, "Run finished cells again");
-  verb.flag("--reuse", given.reuse, "Keep the records of another build");
+  verb.flag("--reuse", given.reuse,
+            "Keep the finished records of another build, and do not run their cells again");
   verb.texts("--retry", given.retry,
              "Run cells with these statuses again: failed,crashed,timeout,memory")
       .between_commas();
@@ -106,11 +109,12 @@ void declare_run(VerbArguments& verb, RunArguments& given) {
   declare_what_is_done(verb, given);
   verb.flag("--no-report", given.no_report, "Do not write a report");
   verb.flag("--uncertified", given.uncertified,
-            "Run external problems whose derivatives fail their checks; each table marks them");
+            "Also run external problems that fail their checks; each table marks these problems");
   verb.flag("--keep-output", given.keeps_output,
             "Keep the output of each cell in its record, up to 64 KiB");
-  verb.flag("--fields", given.keeps_fields,
-            "Keep x of grid problems at six iterations, for every seed (default: seed 0 only)");
+  verb.flag(
+      "--fields", given.keeps_fields,
+      "For problems on a grid, keep x at six iterations for every seed (default: seed 0 only)");
   verb.flag("--spectrum", given.keeps_spectra,
             "Keep the singular values of J = ∂y/∂θ at iterations 0, 1, 2, 4, 8, … and the last; "
             "finished cells without them run again");

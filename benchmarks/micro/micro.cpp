@@ -275,7 +275,7 @@ struct Library {
 };
 
 const Library kLibraries[] = {
-    {"ceres-lm", 2, 1, 3, plain_ceres_lm},
+    {"ceres-lm[linear-solver=dense-qr]", 2, 1, 3, plain_ceres_lm},
     {"ceres-lbfgs", 20, 10, 101, plain_ceres_lbfgs},
     {"nlopt-lbfgs", 20, 10, 101, plain_nlopt_lbfgs, true},
 };

@@ -47,6 +47,7 @@ void run(const Catalog& catalog, const Request& request, Trace& trace, Checkpoin
   set_text(trace.privileges, fmt::format("{}", fmt::join(privileges, "\n")));
   Meter meter(problem, request.budget, granted, trace);
   Vector start = problem.start();
+  if (returned && returned->size() > 0) start = *returned;
   if (perturbation != 0) start = perturbed_start(std::move(start), request, perturbation);
   const Vector theta = drive(*method, meter, std::move(start), checkpoint);
   if (returned) *returned = theta;

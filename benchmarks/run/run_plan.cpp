@@ -122,7 +122,9 @@ void require_sound(const Catalog& catalog, const std::vector<Request>& requests)
         if ((problem.is_learned || has_files || is_quick) && problems.insert(problem.spec).second)
           make_problem(catalog, problem, request.seed);
       } catch (const UsageError& error) {
-        return error.what();
+        const std::string text = error.what(), &name = request.problem.name;
+        const bool is_of_optimizer = text.find(request.optimizer.name) != text.npos;
+        return is_of_optimizer || text.find(name) != text.npos ? text : name + ": " + text;
       } catch (const std::exception&) {  // its cells end as `failed` and say so
       }
     return "";

@@ -33,16 +33,21 @@ void declare(VerbArguments& verb, ChooseArguments& given) {
                                   results::kDerivativeNames.end());
   offers.emplace_back("inverse");
   verb.texts("DIR", given.folders, kFolders).required();
-  verb.texts("--have", given.have, "What the simulator computes; each includes those before it")
+  verb.texts("--have", given.have,
+             "What the simulator computes; each kind includes the kinds before it")
       .one_of(offers)
       .between_commas()
       .shown("forward");
-  verb.whole("--unknowns", given.unknowns,
-             "Number of unknowns; its class counts: up to 10, 11 to 100, more (default: any)",
-             {.low = 0, .high = 1'000'000'000});
-  verb.real("--noise", given.noise, between(0, 10), "Noise in the data, over their rms");
+  verb.whole(
+      "--unknowns", given.unknowns,
+      "Number of unknowns; problems of its class are used: up to 10, 11 to 100, more than 100 "
+      "(default: all)",
+      {.low = 0, .high = 1'000'000'000});
+  verb.real("--noise", given.noise, between(0, 10),
+            "Noise in the data, relative to the root mean square of the data");
   verb.whole("--budget", given.budget, "Forward solves that a run may cost (default: any)");
-  verb.real("--tolerance", given.tolerance, between(1e-10, 1), "As of isoline report")
+  verb.real("--tolerance", given.tolerance, between(1e-10, 1),
+            "Relative tolerance, as in `isoline report`")
       .shown("1e-6");
 }
 
@@ -94,7 +99,7 @@ void register_choose(VerbRegistry& registry) {
        .examples = "  isoline choose results/quick --have forward,gradient --unknowns 50\n"
                    "  isoline choose results/quick --have forward --budget 1000",
        .notes =
-           "The sentence is that of the report's tab 'What do you have?'. Methods marked * are "
+           "The first sentence is also in the report, in the tab 'What do you have?'. Methods marked * are "
            "not significantly worse than the first."},
       declare, run));
 }

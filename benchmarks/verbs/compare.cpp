@@ -67,7 +67,7 @@ void register_compare(VerbRegistry& registry) {
   registry.add(verb_of(
       {.name = "compare",
        .help_position = 40,
-       .summary = "Compare two results and list regressions",
+       .summary = "Compare two result folders and list regressions",
        .examples = R"(  isoline compare results/old results/new
   isoline compare baseline.json results/quick --tolerance 1e-6 --all
   isoline compare results/old results/new --markdown     for the summary of a job)",
@@ -77,9 +77,9 @@ void register_compare(VerbRegistry& registry) {
            "contradicts itself, if its success criterion, f_L, scale, floor or nominal costs differ, "
            "or if another build computed it and --tolerance is missing.\n"
            "Cells are paired by problem, optimizer, seed and budget as requested. If the default of an "
-           "option has changed, they are still compared, and the change is printed.\n"
-           "Times are compared for cells with 9 repetitions in both folders (run --repeat 9), the 20 "
-           "slowest of BASE. Two times differ if a Mann-Whitney test finds it at a false discovery rate "
+           "option has changed, the cells are still compared, and the change is printed.\n"
+           "Times are compared for cells with 9 repetitions in both folders (run --repeat 9), for at most "
+           "the 20 slowest cells of BASE. Two times differ if a Mann-Whitney test finds it at a false discovery rate "
            "of 0.05, and if the whole 95 % interval of their ratio lies outside the noise of the "
            "repetitions."},
       declare, run));

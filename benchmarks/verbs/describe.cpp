@@ -113,7 +113,7 @@ void print(const NetworkEntry& network, const OptionValues& options, bool as_jso
 
 const char* aim_text(Aim aim) {
   return aim == Aim::x ? "x: a run is solved if it finds the true x"
-                       : "loss: a run is solved if its loss is small, whatever its x is";
+                       : "loss: a run is solved if its loss is small, whatever its error in x";
 }
 
 void print(const Sheet& sheet) {

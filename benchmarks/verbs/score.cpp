@@ -15,6 +15,7 @@
 #include "benchmarks/run/run_plan.h"
 #include "core/results/table.h"
 #include "core/text.h"
+#include "reports/formats/formats.h"
 #include "reports/sections/words.h"
 
 namespace isoline::benchmarks {
@@ -29,10 +30,10 @@ struct ScoreArguments {
 
 void declare(VerbArguments& verb, ScoreArguments& given) {
   verb.text("SUITE", given.suite, "Suite whose problems, seeds and budgets are used").shown();
-  verb.text("--problem", given.problem, "Problems instead of those of the suite").joined();
+  verb.text("--problem", given.problem, "Problems to use instead of those of the suite").joined();
   verb.text("--optimizer", given.optimizer, "Optimizers to score: 'process[command=\"…\"]'")
       .joined();
-  verb.text("--peers", given.peers, "Optimizers beside them; none: no others").shown();
+  verb.text("--peers", given.peers, "Optimizers to compare with; none: no comparison").shown();
   verb.text("--out", given.out, "Result folder (default: results/SUITE-score)");
   verb.whole("--jobs", given.jobs, "Number of cells at a time (default: one per core)", kJobs);
   verb.plugins();
@@ -74,14 +75,15 @@ void print_scores(const results::Table& table, const std::string& suite) {
   std::ranges::stable_sort(scores, [](const Score& a, const Score& b) {
     return std::pair(a.solved, a.digits) > std::pair(b.solved, b.digits);
   });
-  say(stdout, fmt::format("{:40} {:>7} {:>7} {:>8} {:>9}\n", "", "LRE ≥ 4", "LRE ≥ 6", "mean LRE",
-                          "forwards"));
+  std::size_t width = 0;
+  for (const Score& each : scores) width = std::max(width, each.name.size());
+  say(stdout, fmt::format("{:{}}  LRE ≥ 4  LRE ≥ 6  mean LRE  forwards\n", "", width));
   for (const Score& each : scores)
     say(stdout,
-        fmt::format("{:40} {:>7} {:>7} {:8.2f} {:9.0f}\n", each.name,
-                    fmt::format("{}/{}", each.solved, each.runs),
+        fmt::format("{:{}}  {:>7}  {:>7}  {:8.2f}  {:8.0f}\n", reports::terminal_text(each.name),
+                    width, fmt::format("{}/{}", each.solved, each.runs),
                     fmt::format("{}/{}", each.precise, each.runs), each.digits, each.calls));
-  if (suite == "nist") say(stdout, "\n" + reports::words("score.published") + "\n");
+  if (suite == "nist") say(stdout, reports::words("score.published") + "\n");
   say(stdout, reports::words("score.meaning") + "\n");
 }
 

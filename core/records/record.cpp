@@ -67,7 +67,7 @@ constexpr const char *kCountLaw = R"({"minimum": 0})",
                      *kCountsLaw = R"({"items": {"type": "integer", "minimum": 0}})",
                      *kTimesLaw = R"({"items": {"allOf": [{"$ref": "#/definitions/number"},
                                                           {"minimum": 0}]}})";
-// Of hits: −1 if not reached.
+// For hits: −1 if not reached.
 constexpr const char* kHitsLaw = R"({"items": {"type": "integer", "minimum": -1}})";
 
 void fields(Like<Component> auto& component, auto& field) {

@@ -95,7 +95,7 @@ struct Spectrum {
   bool operator==(const Spectrum&) const = default;
 };
 
-// Of a direct least-squares problem with more residuals than unknowns: x as it was returned, and
+// A direct least-squares problem with more residuals than unknowns: x as it was returned, and
 // its covariance σ̂² (JᵀJ)⁻¹ there, σ̂² = ‖y − y*‖²/(m − n), as standard deviations and correlations.
 struct Uncertainty {
   std::vector<Real> x, standard_deviation;

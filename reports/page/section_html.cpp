@@ -66,10 +66,10 @@ std::string rows_html(const Table& table) {
   return html;
 }
 
-// " · <b>name</b>: meaning"; the first entry does not have the dot.
+// "; <b>name</b>: meaning"; the first entry does not have the semicolon.
 void add_meaning(std::string& html, const std::string& name, const std::string& meaning) {
   if (!meaning.empty())
-    html += fmt::format("{}<b>{}</b>: {}", html.empty() ? "" : " · ", html_text(name),
+    html += fmt::format("{}<b>{}</b>: {}", html.empty() ? "" : "; ", html_text(name),
                         html_text(meaning));
 }
 
@@ -214,8 +214,8 @@ std::string details_html(const Comparison& c) {
   constexpr std::size_t kMost = 20'000;  // rows of some 200 bytes
   if (c.problems.size() * c.optimizers.size() > kMost)
     return fmt::format(
-        "<p class=lead>This page has no table of more than {} cells; report.csv contains all of "
-        "them.</p>",
+        "<p class=lead>This report has more than {} cells, too many for a table: report.csv contains "
+        "all of them.</p>",
         kMost);
   const auto spread_cell = [](const Spread& spread, std::string (*text)(Real)) {
     TableCell cell = spread.n == 0 ? "" : text(spread.median);

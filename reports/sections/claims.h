@@ -173,6 +173,7 @@ struct CellSet {
   bool is_long = false;               // hours: run only when asked for
   bool is_deciding = false;
 };
+bool takes_hours(const std::vector<CellSet>& sets);  // the deciding one, or all if none decides
 // The command that runs the claim again, in a folder of its own.
 std::string repeat_command(const std::string& id, const std::vector<CellSet>& sets);
 
@@ -198,6 +199,7 @@ struct Judgement {
   Verdict verdict = Verdict::not_comparable;
   std::string why;      // it is too short, undecidable, or not comparable
   std::string reading;  // how the published figure was read off a plot, where it was
+  std::string reached;  // the share of its iterations and seeds that published records have
   std::optional<Measurement> measured;
   std::optional<Agreement> band;
   Evidence evidence;          // none where nothing decides it
@@ -214,8 +216,11 @@ struct Judgement {
   bool is_covered = false;            // all cells of one of its lengths are among the records
 };
 
-// In the order of the claims. The first set of cells that is complete counts: the longest.
-std::vector<Judgement> judge(const nlohmann::json& claims, const std::vector<Record>& runs);
+// In the order of the claims. The first set of cells that is complete counts: the longest. After
+// the runs, published records count, also those of fewer iterations and seeds than a claim asks
+// for.
+std::vector<Judgement> judge(const nlohmann::json& claims, const std::vector<Record>& runs,
+                             const std::vector<Record>& published = {});
 // The verdict on each fact, the weakest of the decided claims that restate it: of verifications, or
 // of all others.
 std::vector<Verdict> verdicts_on_facts(const std::vector<Judgement>& judgements,
@@ -226,6 +231,7 @@ Section claims_summary(const std::vector<Judgement>& judgements);  // a line eac
 Section claim_section(const Judgement& judgement);  // one of them whole, with its evidence
 // A table a paper: what it says, and the command, the time and the verdict of each claim.
 Section papers_section(const std::vector<Judgement>& judgements);
+Section items_section(const nlohmann::json& papers);  // benchmarks/papers.json: the texts' contents
 std::string claims_reading(const std::vector<Judgement>& judgements);  // how many of each verdict
 std::string verdict_text(const Judgement& judgement);                  // "partly on 3 seeds"
 std::string marked_verdict(const Judgement& judgement);                // "≈ partly on 3 seeds"

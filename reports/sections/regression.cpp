@@ -41,7 +41,7 @@ Digits digits_of(const Comparison& c, std::size_t s) {
   return all;
 }
 
-// Of all data sets and starts of a method.
+// All data sets and starts of a method.
 struct Sum {
   std::size_t cells = 0, solved = 0, accurate = 0;
   Real digits = 0;

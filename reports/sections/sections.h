@@ -88,7 +88,7 @@ Table restart_table(const Comparison& comparison);
 Table calls_table(const Comparison& comparison);
 Table prices_table(const Comparison& comparison);
 Table certified_table(const Comparison& comparison);  // empty where no run is of NIST's regressions
-// Of x, one table a problem, of the best run that keeps them.
+// Standard deviations of x, a table per problem, by the best run that keeps them.
 std::vector<Table> uncertainty_tables(const Comparison& comparison);
 Plots profile_plot(const Comparison& comparison);
 Plots data_profile_plot(const Comparison& comparison);

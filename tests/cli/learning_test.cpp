@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/files.h"
+#include "core/json.h"
 #include "core/records/npy.h"
 #include "tests/cli/shell.h"
 
@@ -28,6 +29,21 @@ TEST(Train, WritesANetworkThatInfersWhatItLearned) {
   EXPECT_NEAR(20 * half * (x.values[0] + x.values[1]), -0.5, 0.1);
   const auto as_json = read_text(shell.folder() / "net.json");
   EXPECT_TRUE(contains(as_json, "isoline.network/1"));
+}
+
+TEST(Train, ContinuesFromANetwork) {
+  const Shell shell;
+  shell.expect("./isoline train 'sine[xi=2]' --optimizer sip --iterations 300 --out net.json");
+  shell.expect(
+      "./isoline train 'sine[xi=2]' --from net.json --optimizer 'gd[rate=1e-12]' "
+      "--iterations 1 --out more.json");
+  const Json first = parse_json(read_text(shell.folder() / "net.json"), "net"),
+             more = parse_json(read_text(shell.folder() / "more.json"), "more");
+  EXPECT_NEAR(more.at("loss").get<Real>(), first.at("loss").get<Real>(),
+              1e-6 * first.at("loss").get<Real>());
+  EXPECT_EQ(more.at("iterations"), 1);
+  shell.expect("./isoline train 'sine[xi=3]' --from net.json --out x.json",
+               {.exit_code = 1, .err = {"net.json is a network of"}});
 }
 
 TEST(Train, KeepsTheRunningStatisticsOfBatchNormForPictures) {

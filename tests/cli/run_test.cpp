@@ -319,7 +319,7 @@ TEST_F(Run, DamagedFilesAreNamedWithTheirPlace) {
     }
   }
   shell.expect("./isoline run --problem 'navier-stokes[N=7]' --optimizer gd --dry-run",
-               {.exit_code = 1, .err = {"even", "7"}});
+               {.exit_code = 1, .err = {"navier-stokes: ", "even", "7"}});
 }
 
 // --- what a component does to its parent, and a system without room

@@ -224,6 +224,17 @@ Record least() {
   return record;
 }
 
+// Records from before sparse Jacobians have no such price.
+TEST(Criteria, ContainThePriceOfASparseJacobianWhereARunCountsOne) {
+  constexpr auto kSparse = static_cast<std::size_t>(Oracle::sparse_jacobian);
+  Record record = least();
+  const std::string before = digest_of(criterion_of(record));
+  record.prices[kSparse] = 3;
+  EXPECT_EQ(digest_of(criterion_of(record)), before);
+  record.counts[kSparse] = 1;
+  EXPECT_NE(digest_of(criterion_of(record)), before);
+}
+
 TEST(Schemas, OfRecordsRefuseWhatIsMissingUnknownOrOfAnotherType) {
   const Schema schema(run_schema());
   const Json good = to_json(least());

@@ -50,8 +50,8 @@ TEST(Regression, StandardDeviationsAreTheCertifiedOnes) {
   ASSERT_EQ(certified().size(), 27U);
   for (const auto& set : certified().items()) {
     if (set.key() == "Lanczos1") continue;
-    const Outcome outcome =
-        run(regression(set.key(), 2), "levenberg-marquardt[acceleration=0.75]", kBudget);
+    const Outcome outcome = run(regression(set.key(), 2),
+                                "levenberg-marquardt[acceleration=0.75,scaling=fading]", kBudget);
     const Trace::Uncertainty& known = outcome.trace->uncertainty;
     const std::vector<Real> deviations = reals_of(set.value().at("standard_deviation"));
     ASSERT_EQ(known.unknowns, static_cast<int>(deviations.size())) << set.key();

@@ -169,7 +169,7 @@ class Fields(InBrowser):
             self.assertEqual(len(set(first)), 1, "from x = 0 follows 0")
             alt = self.browser.run("return document.querySelector(arguments[0]).ariaLabel",
                                    f"{self.fields} figure[data-s='{one['s']}'] canvas")
-            self.assertRegex(alt, r"^x → y .* iteration 0")
+            self.assertRegex(alt, r"^x to y .* iteration 0")
 
     def test_they_fit_a_phone(self):
         resized(self.browser, 400, 800)

@@ -261,9 +261,9 @@ std::vector<Fault> cell_faults() {
       {"cut by a clock with the same status",
        in_one([](Record& r) { r.is_nondeterministic = true; }), kApart, kApart},
       {"two records of one cell", add_double, kApart, kApart},
-      {"seed field edited", in_one([](Record& r) { r.request.seed = 7; }), kCaught, kCaught},
+      {"seed field edited", in_one([](Record& r) { r.request.seed = 7; }), kCaught, kCaught, true},
       {"budget field edited", in_one([](Record& r) { r.request.budget.iterations = 7; }), kCaught,
-       kCaught},
+       kCaught, true},
       {"declared budget truncated",
        in_one(asked_otherwise([](Record& r) { r.request.budget.iterations = 7; })), kBad, kBad},
       {"changed default with worse work", in_one(asked_otherwise([](Record& r) {

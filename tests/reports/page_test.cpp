@@ -540,12 +540,13 @@ TEST_F(ShownHistory, IsDrawnFromTheBottomAndSaysSo) {
   const std::string html = fields_html(c, *all);
   const std::string truth = radix64("\xC0\x90");  // y* = 4, above x* = 1
   for (const std::string& words :
-       {truth, std::string("x* → y*"), std::string("x − x* → y − y*"), std::string("y at time 0.5"),
-        std::string("speed before → speed after"), std::string("in the top row")})
+       {truth, std::string("x* to y*"), std::string("x − x* to y − y*"),
+        std::string("y at time 0.5"), std::string("speed before to speed after"),
+        std::string("top row")})
     EXPECT_NE(html.find(words), std::string::npos) << words << " in " << html;
   const Json json = parse_json(fields_json(*all), "fields");
   EXPECT_EQ(json.at("truth"), truth);
-  EXPECT_EQ(json.at("labels"), Json({"x → y", "x − x* → y − y*"}));
+  EXPECT_EQ(json.at("labels"), Json({"x to y", "x − x* to y − y*"}));
 }
 
 TEST_F(ShownHistory, OfOlderRunsThatKeptXAloneIsNone) {
