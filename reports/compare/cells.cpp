@@ -233,13 +233,9 @@ constexpr std::pair<const char*, std::optional<Real> Criterion::*> kKnown[] = {
     {"scale", &Criterion::scale},
     {"x_scale", &Criterion::x_scale}};
 
-// Baselines from before sparse Jacobians have one price less.
-constexpr auto kSparsePlace = static_cast<std::ptrdiff_t>(Oracle::sparse_jacobian);
-
 Json criterion_json(const Criterion& of) {
-  std::vector<std::int64_t> prices(of.prices.begin(), of.prices.end());
-  if (prices[kSparsePlace] == 0) prices.erase(prices.begin() + kSparsePlace);
-  Json json = {{"x_floor", json_number(of.x_floor)}, {"aim", name_of(of.aim)}, {"prices", prices}};
+  Json json = {
+      {"x_floor", json_number(of.x_floor)}, {"aim", name_of(of.aim)}, {"prices", of.prices}};
   for (const auto& [name, value] : kKnown)
     if (of.*value) json[name] = json_number(*(of.*value));
   return json;
@@ -250,8 +246,7 @@ Criterion criterion_from_json(const Json& json) {
                .aim = aim_of(json.at("aim").get<std::string>()).value_or(Aim::loss)};
   for (const auto& [name, value] : kKnown)
     if (json.contains(name)) of.*value = real_of(json.at(name));
-  auto prices = json.at("prices").get<std::vector<std::int64_t>>();
-  if (prices.size() + 1 == kOracles) prices.insert(prices.begin() + kSparsePlace, 0);
+  const auto prices = json.at("prices").get<std::vector<std::int64_t>>();
   std::copy_n(prices.begin(), std::min(prices.size(), kOracles), of.prices.begin());
   return of;
 }

@@ -116,8 +116,7 @@ Section gate_section(const GateResult& result, bool lists_all) {
   for (const CauseGroup& cause : std::span(result.causes).first(told))
     say("Cause", fmt::format("{}: {}", cause.cause, cause_group_text(cause)));
   if (told < causes)
-    say("", fmt::format("{} more cause{}; --all lists them", causes - told,
-                        causes - told == 1 ? "" : "s"));
+    say("", fmt::format("{} more; --all lists them", counted(causes - told, "cause")));
   for (const std::string& remark : result.remarks) say("", remark);
   for (const CauseGroup& cause : result.causes) {
     Differences its;
