@@ -8,12 +8,10 @@
 #include <mutex>
 #include <nlohmann/json.hpp>
 #include <unordered_map>
-#include <vector>
 
 #include "core/errors.h"
 #include "core/files.h"
 #include "core/json.h"
-#include "core/oracle.h"
 #include "core/seeds.h"
 #include "core/status.h"
 #include "reports/compare/gate.h"

@@ -343,8 +343,7 @@ class Gate {
         result_.remarks.push_back(fmt::format(
             "the file of allowed cells has an entry for {} × {}, but NEW does not {}: remove it",
             options_.allowed[i].problem, options_.allowed[i].optimizer,
-            options_.allowed[i].is_of_criterion ? "judge these cells differently"
-                                                : "lack these cells"));
+            options_.allowed[i].is_of_criterion ? "judge them differently" : "lack them"));
   }
 
   void offer_times(const ComparedCell& a, const ComparedCell& b) {
