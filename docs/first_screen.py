@@ -139,7 +139,7 @@ def findings(report):
     works = " to ".join(f"{work:.0f}" for work in sorted({min(solved), max(solved)}))
     sine = next(cell for cell in report["cells"]
                 if cell["problem"].startswith("sine[") and cell["optimizer"].startswith("sip"))
-    seeds, given = sine["runs"], sine["optimizer"].partition(", given ")[2]
+    seeds, given = sine["runs"], sine["optimizer"].partition(", given ")[2] or "extra information"
     best = "One method is" if leader["significant"] else "No method is"
     starts = max(cell["runs"] for cell in report["cells"] if cell["problem"] in report["ranked"])
     band = sum(place["in_group"] for place in leader["places"])
@@ -155,10 +155,11 @@ def findings(report):
         f"In wall time, {' and '.join(by_time)} {'ranks' if len(by_time) == 1 else 'rank'} first.",
         f"levenberg-marquardt solves {lm['solved']} settings (on the median setting, with {float(lm['typical']):.1f} times "
         f"the least work), gauss-newton {by_name['gauss-newton']['solved']}.",
-        f"With learning rates tuned on other families of problems, adam solves {by_name['adam']['solved']} settings, hig {by_name['hig']['solved']} and gd "
+        f"With learning rates tuned on other families of problems, adam solves {by_name['adam']['solved']} settings, "
+        f"hig {by_name['hig']['solved']} and gd "
         f"{by_name['gd']['solved']}.",
-        f"{len(inverse)} of the {leader['settings']} settings have an inverse P⁻¹. Given P⁻¹ (†), sip solves {len(solved)} of them, each in "
-        f"{works} forward solves. Each problem states the cost of its P⁻¹ in forward solves.",
+        f"{len(inverse)} of the {leader['settings']} settings have an inverse P⁻¹. Given P⁻¹ (†), sip solves "
+        f"{len(solved)} of them, each in {works} forward solves. Each problem states the cost of its P⁻¹ in forward solves.",
         "Networks were trained to invert a sine map. At equal work, the median error in x after training by sip, given "
         f"{given} (†), is 1/{sine_at_equal_work(report):.0f} of that after training by adam ({seeds} seeds).",
     ]

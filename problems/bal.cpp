@@ -237,8 +237,8 @@ struct Bal {
 void fields(Bal& o, auto& field) {
   field("file", o.file, Choices{},
         "file of the set, in the folder ISOLINE_BAL or the current one; none: a synthetic scene");
-  field("cameras", o.cameras, between(2, 10000), "of a synthetic scene");
-  field("points", o.points, between(8, 1e6), "of a synthetic scene");
+  field("cameras", o.cameras, between(2, 10000), "number of cameras of a synthetic scene");
+  field("points", o.points, between(8, 1e6), "number of points of a synthetic scene");
   field("views", o.views, between(2, 100), "cameras that see each point, at most all");
   field("noise", o.noise, at_least(0), "standard deviation of y*, in pixels");
 }
@@ -339,11 +339,11 @@ void register_bal(ProblemRegistry& registry) {
            "P = R(ω)X + t,  p = −(P₁, P₂)/P₃,  y = f(1 + k₁‖p‖² + k₂‖p‖⁴)p,  L = ½Σ‖y − y*‖²",
        .source = "Agarwal, Snavely, Seitz, Szeliski (2010)",
        .note =
-           "file=… reads a file of the set “Bundle Adjustment in the Large” from the folder "
-           "that the environment variable ISOLINE_BAL names; without it the scene is synthetic, "
-           "and the error in x is the root mean square distance of the points after the best "
-           "rotation, translation and scale. Starts of other seeds differ by a hundredth of "
-           "each unknown.",
+           "file=… reads a file of the set “Bundle Adjustment in the Large” from the folder that "
+           "the environment variable ISOLINE_BAL names. Without this option, the scene is "
+           "synthetic, and the error in x is the root mean square distance of the points after "
+           "the best rotation, translation and scale. Starts of other seeds differ by a hundredth "
+           "of each unknown.",
        .in_all = false},
       make_bal));
 }

@@ -50,7 +50,7 @@ Map map_of(const Features& features, Index k, const Draw& draw) {
   if (features.rotate) {
     constexpr Index kMost = 2048;
     require(k <= kMost, [&] {
-      return fmt::format("rotate=true is for at most {} unknowns, and there are {}", kMost, k);
+      return fmt::format("rotate=true requires at most {} unknowns, got {}", kMost, k);
     });
     RandomStream stream = draw.stream("rotate");
     const Matrix normal = stream.normal_vector(k * k).reshaped(k, k);
@@ -201,7 +201,7 @@ void wrap(ProblemParts& parts, Map map, const Features& features) {
 Vector noise_of(const Features& features, const Vector& target, RandomStream stream) {
   const auto m = static_cast<Real>(target.size());
   const Real rms = target.norm() / std::sqrt(m), sigma = features.noise * rms;
-  require(rms > 0, "the noise is relative to the rms of y*, and y* is 0");
+  require(rms > 0, "noise is relative to the root mean square of y*, which is 0");
   if (features.noise_kind == "uniform") {
     const Real half = sigma * std::sqrt(3.0);
     return stream.uniform_vector(target.size(), -half, half);
@@ -283,11 +283,12 @@ Problem with_features(Problem plain, const OptionValues& options, const Draw& dr
   if (options.empty()) return plain;
   const Features features =
       read_options<Features>(complete_options(option_table<Features>(), "features", options));
-  require(!plain.is_learned(), "noise, model, scale and the other features need mode=direct");
+  require(!plain.is_learned(), "noise, model, scale and the other features require mode=direct");
   require(features.tikhonov == 0 || plain.is_least_squares(),
-          "tikhonov needs a loss of least squares");
-  require(features.tikhonov > 0 || features.order == 0, "order=1 needs tikhonov");
-  require(features.noise > 0 || features.noise_kind == "gaussian", "noise-kind needs noise");
+          "tikhonov requires a least-squares loss");
+  require(features.tikhonov > 0 || features.order == 0, "order=1 requires tikhonov above 0");
+  require(features.noise > 0 || features.noise_kind == "gaussian",
+          "noise-kind requires noise above 0");
 
   const Index k = plain.inputs(), m = plain.outputs();
   const bool is_inexact = features.noise > 0 || features.digits > 0 || target.has_value();
@@ -301,7 +302,7 @@ Problem with_features(Problem plain, const OptionValues& options, const Draw& dr
   parts.network.reset();
   parts.x_scale = x_scale;
   if (target) {
-    require(target->rows() == m, "the other model has another number of observations");
+    require(target->rows() == m, "the options in model must not change the number of observations");
     parts.target = *target;
   }
   if (features.noise > 0)

@@ -20,7 +20,8 @@ struct Features {
   Index order = 0;
 };
 inline void fields(Features& o, auto& field) {
-  field("noise", o.noise, between(0, 10), "standard deviation of the noise over the rms of y*");
+  field("noise", o.noise, between(0, 10),
+        "standard deviation of the noise, divided by the rms of y*");
   field("noise-kind", o.noise_kind, {"gaussian", "uniform", "outliers"},
         "distribution of the noise; outliers: one value in ten has ten times the deviation");
   field("model", o.model, {}, "options of the variant of P that makes y*, as \"steps=32\"");
@@ -28,7 +29,8 @@ inline void fields(Features& o, auto& field) {
   field("rotate", o.rotate, "random rotation of x, before it is scaled");
   field("digits", o.digits, between(0, 16), "significant digits of y; 0: all");
   field("tikhonov", o.tikhonov, between(0, 1e12), "α of the penalty ½α‖Dx‖²");
-  field("order", o.order, between(0, 1), "D: 0: identity, 1: differences of neighbours");
+  field("order", o.order, between(0, 1),
+        "D of the penalty; 0: identity, 1: differences of neighbours");
 }
 
 // Without names that the problem itself declares.

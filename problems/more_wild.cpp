@@ -139,7 +139,8 @@ void register_more_wild(ProblemRegistry& registry) {
        .formula = "L = ½Σfᵢ²",
        .source = "Moré, Wild (2009); Moré, Garbow, Hillstrom (1981); Conn et al. (1994)",
        .note =
-           "f_L is half of the best published Σfᵢ²; of Freudenstein and Roth 0, since the published value is that of a local minimum.",
+           "f_L is half of the best published Σfᵢ². For Freudenstein and Roth, f_L is 0, because "
+           "the published value belongs to a local minimum.",
        .in_all = false},
       make_more_wild));
 }

@@ -200,8 +200,9 @@ ProblemEntry with_files(ProblemEntry entry, OptionValues& given) {
     const NamedFile file = named_file(given.text(option));
     const std::string now = digest(read_text(file.path));
     require(file.digest.empty() || file.digest == now, [&] {
-      return fmt::format("{}: {}: its content has changed: its digest is {}, and was {}",
-                         entry.name, file.path, now, file.digest);
+      return fmt::format(
+          "{}: {}: the content of this file has changed: its digest is {}, and was {}", entry.name,
+          file.path, now, file.digest);
     });
     given.set(option, file.path + "@" + now);
   }

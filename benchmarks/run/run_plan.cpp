@@ -88,8 +88,8 @@ Certificates require_certified(const Catalog& catalog, std::vector<Request>& req
     const std::string reason = broken.value_or("it cannot be checked: " + failure);
     require(reason.empty() || options.uncertified, [&] {
       return fmt::format(
-          "{} fails its checks and does not run: {}; `isoline check` lists them, and --uncertified "
-          "runs it nevertheless",
+          "{} fails its checks and does not run: {}; `isoline check` lists its checks, and "
+          "--uncertified runs it nevertheless",
           request->problem.spec, reason);
     });
     if (!reason.empty()) uncertified.insert(request->problem.spec);

@@ -66,7 +66,8 @@ int list_claims(const std::vector<Claim>& claims, const ClaimArguments& given) {
                           reports::counted(groups.size(), "group"), reports::joined(groups),
                           listed_by_groups(claims, shown)));
   if (shown < claims.size())
-    say(stdout, fmt::format("… and {} more; --all lists them\n", claims.size() - shown));
+    say(stdout, fmt::format("… and {} more claim{}; --all lists them\n", claims.size() - shown,
+                            claims.size() - shown == 1 ? "" : "s"));
   return kGood;
 }
 

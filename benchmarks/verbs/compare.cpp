@@ -30,8 +30,8 @@ void declare(VerbArguments& verb, CompareArguments& given) {
             "Least relative difference of times that counts (default: 0.1)");
   verb.text(
       "--allow", given.allowed,
-      "File (isoline.allowed/1) of cells, with reasons, that NEW may lack or whose success criterion "
-      "may differ");
+      "File (isoline.allowed/1) of cells, with reasons, that NEW may lack or whose success "
+      "criterion may differ");
   verb.flag("--common", given.is_common_only, "Allow NEW to lack any cell of BASE");
   verb.flag("--all", given.lists_all, "List every difference, not the first 20 lines");
   const Argument json = verb.flag("--json", given.as_json, "Print JSON");
@@ -73,15 +73,15 @@ void register_compare(VerbRegistry& registry) {
   isoline compare results/old results/new --markdown     for the summary of a job)",
        .notes =
            "Exit codes: 0 neither worse nor better; 2 worse, or NEW lacks a cell of BASE; 3 better "
-           "only; 4 not comparable. A cell is not comparable if a time limit ended it, if its record "
-           "contradicts itself, if its success criterion, f_L, scale, floor or nominal costs differ, "
-           "or if another build computed it and --tolerance is missing.\n"
-           "Cells are paired by problem, optimizer, seed and budget as requested. If the default of an "
-           "option has changed, the cells are still compared, and the change is printed.\n"
-           "Times are compared for cells with 9 repetitions in both folders (run --repeat 9), for at most "
-           "the 20 slowest cells of BASE. Two times differ if a Mann-Whitney test finds it at a false discovery rate "
-           "of 0.05, and if the whole 95 % interval of their ratio lies outside the noise of the "
-           "repetitions."},
+           "only; 4 not comparable. A cell is not comparable if a time limit ended it, if its "
+           "record contradicts itself, if its success criterion, f_L, scale, floor or nominal "
+           "costs differ, or if another build computed it and --tolerance is missing.\n"
+           "Cells are paired by problem, optimizer, seed and budget as requested. If the default "
+           "of an option has changed, the cells are still compared, and the change is printed.\n"
+           "Times are compared for cells with 9 repetitions in both folders (run --repeat 9), "
+           "for at most the 20 slowest cells of BASE. Two times differ if a Mann-Whitney test "
+           "finds it at a false discovery rate of 0.05, and if the whole 95 % interval of their "
+           "ratio lies outside the noise of the repetitions."},
       declare, run));
 }
 

@@ -112,8 +112,9 @@ void print(const NetworkEntry& network, const OptionValues& options, bool as_jso
 }
 
 const char* aim_text(Aim aim) {
-  return aim == Aim::x ? "x: a run is solved if it finds the true x"
-                       : "loss: a run is solved if its loss is small, whatever its error in x";
+  return aim == Aim::x
+             ? "x: the problem is solved if the run finds the true x"
+             : "loss: the problem is solved if the loss is small, whatever the error in x";
 }
 
 void print(const Sheet& sheet) {

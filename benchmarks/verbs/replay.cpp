@@ -150,11 +150,12 @@ void register_replay(VerbRegistry& registry) {
        .examples = "  isoline replay results/quick/runs/03a4d51c22cbf199-821e62446af5cbbe.json\n"
                    "  isoline replay results/quick --sample 1%",
        .notes =
-           "The cell runs in its own process, with the problem, options, seed, budget and threads of "
-           "the record. `replay` does not write any file. If a time limit or a signal ended a run, the runs "
-           "are compared up to the last common iteration.\n"
-           "Exit codes: 0 equal; 2 different, and the first difference is printed; 4 not comparable: "
-           "another build computed the record (the parts that differ are printed), or a component is missing."},
+           "The cell runs in its own process, with the problem, options, seed, budget and threads "
+           "of the record. `replay` does not write any file. If a time limit or a signal ended a "
+           "run, the runs are compared up to the last common iteration.\n"
+           "Exit codes: 0 equal; 2 different, and the first difference is printed; 4 not "
+           "comparable: another build computed the record (the parts that differ are printed), "
+           "or a component is missing."},
       declare, run));
 }
 

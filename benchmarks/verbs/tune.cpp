@@ -45,7 +45,8 @@ void declare(VerbArguments& verb, TuneArguments& given) {
             "at seven values around its default, and more if the best value is at an edge)");
   verb.text(
           "--unit", given.unit,
-          "Unit of the grid: one, cauchy (the problem's Cauchy step) or published (the published rate)")
+          "Unit of the grid: one, cauchy (the problem's Cauchy step) or published (the published "
+          "rate)")
       .one_of({"one", "cauchy", "published"})
       .shown();
   verb.flag("--leave-one-out", given.leaves_out,
@@ -222,8 +223,9 @@ reports::Table left_out_table(const Json& rows) {
       .align = "lllrrrrl",
       .names = 2};
   table.caption =
-      "Value: the value that is best on the other families. Score: the mean score of this value over "
-      "the other families; 1 is the least work of all values of the method. Tuning work: the nominal work of all trials of the method.";
+      "Value: the value that is best on the other families. Score: the mean score of this value "
+      "over the other families; 1 is the least work of all values of the method. Tuning work: the "
+      "nominal work of all trials of the method.";
   for (const Json& row : rows) {
     const Json& source = row.at("source");
     const auto grid = source.at("grid").begin();
@@ -252,9 +254,9 @@ std::string tuning_text(const TuningResult& result, bool lists_all) {
       .names = 2};
   table.caption =
       "Grid: one bar per value, from the lowest value to the highest; the tallest bar marks the "
-      "best value, and · a value whose runs failed. Work: the median work to the target with the best "
-      "value; ✗: at most half of the runs reached the target. Left: the median loss, or error in x, "
-      "that is left at the end of these runs.";
+      "best value, and · a value whose runs failed. Work: the median work to the target with the "
+      "best value; ✗: at most half of the runs reached the target. Left: the median loss, or "
+      "error in x, that is left at the end of these runs.";
   for (const TunedOption& tuned : result.tuned) table.rows.push_back(tuning_row(tuned));
   if (!result.left_out_rows->empty()) table = left_out_table(*result.left_out_rows);
   if (!table.rows.empty()) section.tables.push_back(std::move(table));
@@ -292,8 +294,9 @@ void register_tune(VerbRegistry& registry) {
                    "  isoline tune --suite quick --optimizer adam --json\n"
                    "  isoline tune --leave-one-out sine,heat,burgers --table physics.json",
        .notes =
-           "The best value has the least median work to the target. Ties are decided by the least "
-           "remaining loss or error in x, and then by the distance from the default. The output lists ties and best values at an edge of the grid."},
+           "The best value has the least median work to the target. Ties are decided by the "
+           "least remaining loss or error in x, and then by the distance from the default. The "
+           "output lists ties and best values at an edge of the grid."},
       declare, run));
 }
 

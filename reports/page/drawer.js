@@ -48,8 +48,8 @@ function openDrawer(p, s) {
     showLines(p, [...linesShown(p), s]);
   });
   drawer.replaceChildren(close, element('h3', {}, title), ...lines.map((line) => element('p', {}, line)), ...sparkline(p, s), element('p', {}, curves),
-      ...command === undefined ? [] : [element('p', {}, 'All its runs: ', ...withCopy(command))],
-      ...records.length === 0 ? [] : [element('p', {}, records.length < reached.length ? `The first ${records.length} of ${reached.length} records:` : 'Records, and what repeats each:'), element('ul', {}, ...records.map((name) => {
+      ...command === undefined ? [] : [element('p', {}, 'All runs of this cell: ', ...withCopy(command))],
+      ...records.length === 0 ? [] : [element('p', {}, records.length < reached.length ? `The first ${records.length} of ${reached.length} records:` : 'Records, each with the command that repeats its run:'), element('ul', {}, ...records.map((name) => {
         const file = `${DATA.runs}${name}.json`;
         return element('li', {}, DATA.runs === '' ? `${name}.json` : element('a', {href: file}, `${name}.json`), element('br'), ...withCopy(`./isoline replay RESULTS/runs/${name}.json`));
       }))]);

@@ -88,7 +88,7 @@ std::string legend_html(const Comparison& c) {
   std::string legend;
   const auto add = [&](const char* key) {
     std::string text = words(key);
-    text.resize(text.size() - text.ends_with('.'));
+    if (text.ends_with('.')) text.pop_back();  // entries of a list
     legend += "; " + html_text(text);
   };
   if (shown.is_foreign) add("marks.foreign");

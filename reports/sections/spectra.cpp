@@ -278,7 +278,7 @@ Table heat_map(const Comparison& c, const SweepGrid& grid, std::size_t number) {
       if (!(spread.median < least)) continue;
       const Request& request = c.runs[runs[0]].record->request;
       std::tie(least, best_row, best_column) = std::tuple{spread.median, r, k};
-      best = fmt::format(" The best: {} on {}.", shown_spec(request.optimizer.spec),
+      best = fmt::format(" The least value: {} on {}.", shown_spec(request.optimizer.spec),
                          shown_spec(request.problem.spec));
     }
   }
