@@ -240,7 +240,7 @@ void fields(Bal& o, auto& field) {
   field("cameras", o.cameras, between(2, 10000), "number of cameras of a synthetic scene");
   field("points", o.points, between(8, 1e6), "number of points of a synthetic scene");
   field("views", o.views, between(2, 100), "cameras that see each point, at most all");
-  field("noise", o.noise, at_least(0), "standard deviation of y*, in pixels");
+  field("sigma", o.noise, at_least(0), "standard deviation of y*, in pixels");
 }
 
 // Cameras at a distance of 10 around points within 2 of the origin, each point seen by neighbours.

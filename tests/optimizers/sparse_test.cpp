@@ -203,7 +203,7 @@ TEST(Bundle, OneCallOfTheProblemFillsAllBlocks) {
 }
 
 TEST(Bundle, ExactDataAreFittedToRounding) {
-  const Problem problem = make("bal[cameras=6,points=80,noise=0]");
+  const Problem problem = make("bal[cameras=6,points=80,sigma=0]");
   const Outcome outcome = run(problem, "levenberg-marquardt", {.iterations = 60, .target = 1e-16});
   EXPECT_EQ(outcome.status, Status::target);
   EXPECT_LT(outcome.trace->last.x_error, 1e-5);
