@@ -39,7 +39,9 @@ void declare(VerbArguments& verb, ScoreArguments& given) {
   verb.text("--problem", given.problem, "Problems instead of those of the suite").joined();
   verb.text("--optimizer", given.optimizer, "Optimizers to score: 'process[command=\"…\"]'")
       .joined();
-  verb.text("--peers", given.peers, "Optimizers beside them; none: no others").shown();
+  verb.text(
+      "--peers", given.peers,
+      "Optimizers beside them (default: Ceres, MINPACK, GSL and levenberg-marquardt); none: no others");
   verb.text("--out", given.out, "Result folder (default: results/SUITE-score)");
   verb.whole("--jobs", given.jobs, "Number of cells at a time (default: one per core)", kJobs);
   verb.plugins();
