@@ -39,7 +39,10 @@ void declare(VerbArguments& verb, ScoreArguments& given) {
   verb.text("--problem", given.problem, "Problems to use instead of those of the suite").joined();
   verb.text("--optimizer", given.optimizer, "Optimizers to score: 'process[command=\"…\"]'")
       .joined();
-  verb.text("--peers", given.peers, "Optimizers to compare with; none: no comparison").shown();
+  verb.text(
+      "--peers", given.peers,
+      "Optimizers to compare with (default: Ceres, MINPACK, GSL and levenberg-marquardt); none: "
+      "no comparison");
   verb.text("--out", given.out, "Result folder (default: results/SUITE-score)");
   verb.whole("--jobs", given.jobs, "Number of cells at a time (default: one per core)", kJobs);
   verb.plugins();

@@ -15,7 +15,7 @@ namespace isoline::benchmarks {
 namespace {
 
 const std::string kVerbs =
-    "run plan report compare baseline replay merge status best claims export list describe check "
+    "run score plan report compare baseline replay merge status best claims export list describe check "
     "audit new validate tune train infer completion help version ";
 
 TEST(Help, OfTheProgramAndOfEveryVerbIsWrittenOutAndGood) {
