@@ -581,11 +581,15 @@ Json with_published(Json claim, const Beginnings& beginnings) {
 std::vector<Judgement> judge(const Json& claims, const std::vector<Record>& runs,
                              const std::vector<Record>& published) {
   ByCell by_cell;
-  for (const Record& record : runs) by_cell.emplace(record.cell, &record);
+  // An inapplicable run has no values.
+  const auto is_empty = [](const Record& record) { return record.curve.iteration.empty(); };
+  for (const Record& record : runs)
+    if (!is_empty(record)) by_cell.emplace(record.cell, &record);
   // A limit of time that did not end a run has not changed what it computed.
   for (const Record& record : runs) {
     Request asked = record.request;
-    if (record.is_nondeterministic || asked.budget.seconds == Budget{}.seconds) continue;
+    if (record.is_nondeterministic || asked.budget.seconds == Budget{}.seconds || is_empty(record))
+      continue;
     asked.budget.seconds = Budget{}.seconds;
     by_cell.emplace(cell_digest(asked), &record);
   }

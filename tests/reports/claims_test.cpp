@@ -45,6 +45,14 @@ Judgement judgement_of(const Asked& asked, const std::vector<Record>& runs) {
 }
 
 // A claim asks for cells without a limit of time.
+TEST(Claims, AreOpenWhereARunIsInapplicable) {
+  std::vector<Record> runs = adam_and_sip();
+  runs[0].curve = {};
+  const Judgement open = judge(Json::array({claim_of({})}), runs).at(0);
+  EXPECT_FALSE(is_decided(open.verdict));
+  EXPECT_FALSE(open.measured);
+}
+
 TEST(Claims, TakeRunsThatNoLimitOfTimeHasEnded) {
   Json claim = claim_of({});
   std::vector<Record> runs = adam_and_sip();
