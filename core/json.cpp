@@ -55,7 +55,7 @@ Json parse_json(const std::string& text, const std::string& origin) {
     });
     return true;
   };
-  // Of a binary file the library would quote a byte. 0xEF begins a byte order mark.
+  // The library would quote a byte of a binary file. 0xEF begins a byte order mark.
   const std::size_t first = text.find_first_not_of(" \t\r\n");
   require(first != std::string::npos, [&] { return origin + " is empty, not JSON"; });
   const auto byte = static_cast<unsigned char>(text[first]);

@@ -96,6 +96,7 @@ void register_ceres_tiny(OptimizerRegistry& registry) {
                 .most_unknowns = 1024,
                 .options = option_table<CeresTiny>(),
                 .tunable = {.option = "radius", .factor = 10},
+                .in_all = false,  // a peer for certified data, without tuned values of its option
                 .make = [](const OptionValues& options, const OptimizerRegistry&) {
                   return std::make_unique<Tiny>(read_options<CeresTiny>(options));
                 }});

@@ -122,6 +122,7 @@ void register_gsl(OptimizerRegistry& registry) {
                 .most_unknowns = 4096,
                 .most_rank = 1024,
                 .options = option_table<GslOptions>(),
+                .in_all = false,  // a peer for certified data
                 .objection = too_few_residuals,
                 .make = [](const OptionValues& options, const OptimizerRegistry&) {
                   return std::make_unique<Gsl>(read_options<GslOptions>(options));

@@ -117,6 +117,7 @@ OptimizerEntry minpack_entry(OptimizerEntry entry) {
   entry.kind = Kind::least_squares;
   entry.is_input_scale_invariant = true;
   entry.needs_same_samples = true;
+  entry.in_all = false;    // a peer for certified data, without tuned values of its option
   entry.most_rank = 1024;  // its factorization has no blocks
   entry.options = option_table<Options>();
   entry.tunable = {.option = "factor", .below = 4, .factor = 10};

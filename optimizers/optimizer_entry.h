@@ -93,7 +93,7 @@ struct OptimizerEntry {
   OptionTable options = {};
   Tunable tunable = {};
   // Whether `*` of a suite means it: not where an argument is required, nor what is a variant of
-  // another for one experiment.
+  // another for one experiment or a peer for few problems.
   bool in_all = true;
   // As for a problem: how to name it where the name alone is incomplete, and the external program,
   // if there is one.

@@ -90,6 +90,7 @@ void register_then(OptimizerRegistry& registry) {
   OptimizerEntry entry{.name = "then",
                        .title = "Two methods in turn",
                        .family = Family::first_order,
+                       .kind = Kind::gradient,
                        .formula = "first, for a number of steps; then second, from its θ",
                        .source = "Schnell, Holl, Thuerey (2022), published scripts",
                        .needs = {Oracle::forward},

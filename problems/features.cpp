@@ -4,12 +4,11 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/QR>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <set>
 
+#include "core/decompose.h"
 #include "core/errors.h"
 
 namespace isoline::problems {
@@ -54,7 +53,9 @@ Map map_of(const Features& features, Index k, const Draw& draw) {
     });
     RandomStream stream = draw.stream("rotate");
     const Matrix normal = stream.normal_vector(k * k).reshaped(k, k);
-    map.rotation = Eigen::HouseholderQR<Matrix>(normal).householderQ();
+    SymmetricEigen random;  // its eigenvectors have no preferred direction
+    require(symmetric_eigen(normal + normal.transpose(), random), "no rotation was found");
+    map.rotation = std::move(random.V);
   }
   return map;
 }
@@ -235,7 +236,9 @@ Real fitted_loss(const Problem& problem, Vector x) {
     stacked << J, (std::sqrt(damping) * sizes).asDiagonal().toDenseMatrix();
     Vector right = Vector::Zero(stacked.rows());
     right.head(r.size()) = -r;
-    const Vector next = x + Eigen::HouseholderQR<Matrix>(stacked).solve(right);
+    Vector step;
+    if (!least_squares(stacked, right, 0, step)) return loss;
+    const Vector next = x + step;
     problem.forward(next, at);
     if (!(at.loss < loss)) {
       damping *= 8;
@@ -257,12 +260,13 @@ Real truncated_floor(const Problem& problem, const Vector& truth) {
   problem.forward(truth, at);
   problem.jacobian(J, at);
   const Vector e = (problem.target() - at.y).reshaped();
-  const Eigen::BDCSVD<Matrix> svd(J, Eigen::ComputeThinU | Eigen::ComputeThinV);
-  const Vector data = svd.matrixU().transpose() * e;
-  const Vector missing = svd.matrixV().transpose() * (truth - start);
+  Svd svd;
+  require(thin_svd(J, svd), "the Jacobian at x* has no singular value decomposition");
+  const Vector data = svd.U.transpose() * e;
+  const Vector missing = svd.Vt * (truth - start);
   Real squared = (truth - start).squaredNorm(), least = squared;
-  for (Index i = 0; i < data.size() && svd.singularValues()[i] > 0; ++i) {
-    squared += std::pow(data[i] / svd.singularValues()[i], 2) - std::pow(missing[i], 2);
+  for (Index i = 0; i < data.size() && svd.sigma[i] > 0; ++i) {
+    squared += std::pow(data[i] / svd.sigma[i], 2) - std::pow(missing[i], 2);
     least = std::min(least, squared);
   }
   return std::sqrt(std::max<Real>(least, 0));

@@ -426,7 +426,7 @@ TEST_F(PlantedFault, AMissingOptimizerFailsTheGate) {
 
 TEST_F(PlantedFault, ACellThatAClockCutFailsTheGate) {
   change_records("newton", [](Record& record) { record.is_nondeterministic = true; });
-  expect_fault(kNotComparable, "ended it in NEW");
+  expect_fault(kNotComparable, "ended the run in NEW");
 }
 
 TEST_F(PlantedFault, BetterResultsPass) {

@@ -15,8 +15,8 @@ namespace isoline::benchmarks {
 namespace {
 
 const std::string kVerbs =
-    "run score plan report compare baseline replay merge status best claims export list describe check "
-    "audit new validate tune train infer completion help version ";
+    "run score plan report compare choose baseline replay merge status best claims export list describe "
+    "check audit new validate tune train infer completion help version ";
 
 TEST(Help, OfTheProgramAndOfEveryVerbIsWrittenOutAndGood) {
   const Shell shell;
