@@ -172,7 +172,8 @@ std::string quantity_text(const Json& claim) {
   const std::string kind = quantity.at("kind");
   std::vector<std::string> terms;
   for (const Json& term : quantity.at("terms")) terms.push_back(term_text(term));
-  return fmt::format("{} of the {}, {}: {}", kind, column_words(quantity.at("column")),
+  const std::string name = kind == "mean_difference" ? "mean difference" : kind;
+  return fmt::format("{} of the {}, {}: {}", name, column_words(quantity.at("column")),
                      iteration_text(quantity, quantity.contains("clock") ? "at equal processor time"
                                                                          : "at the end"),
                      joined(terms, kind == "ratio" ? " / " : ", "));
