@@ -171,7 +171,7 @@ class BroydenTridiagonal final : public Physics {
   explicit BroydenTridiagonal(Index n) : n_(n) {
     pattern_.columns = n;
     for (int i = 0; i < n; ++i) {
-      for (int j = std::max(i - 1, 0); j < std::min<int>(i + 2, n); ++j)
+      for (int j = std::max(i - 1, 0); j < std::min(i + 2, static_cast<int>(n)); ++j)
         pattern_.column.push_back(j);
       pattern_.row_start.push_back(static_cast<int>(pattern_.column.size()));
     }
