@@ -98,9 +98,8 @@ void register_choose(VerbRegistry& registry) {
        .summary = "Name the methods that suit a simulator, by the runs of a study",
        .examples = "  isoline choose results/quick --have forward,gradient --unknowns 50\n"
                    "  isoline choose results/quick --have forward --budget 1000",
-       .notes =
-           "The first sentence is also in the report, in the tab 'What do you have?'. Methods "
-           "marked * are not significantly worse than the first."},
+       .notes = "The first sentence is also in the report, in the tab 'What do you have?'. Methods "
+                "marked * are not significantly worse than the first."},
       declare, run));
 }
 

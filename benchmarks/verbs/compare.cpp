@@ -28,10 +28,9 @@ void declare(VerbArguments& verb, CompareArguments& given) {
             "Relative tolerance of values (default: values must agree bit for bit)");
   verb.real("--noise", given.noise, between(0, 10),
             "Least relative difference of times that counts (default: 0.1)");
-  verb.text(
-      "--allow", given.allowed,
-      "File (isoline.allowed/1) of cells, with reasons, that NEW may lack or whose success "
-      "criterion may differ");
+  verb.text("--allow", given.allowed,
+            "File (isoline.allowed/1) of cells, with reasons, that NEW may lack or whose success "
+            "criterion may differ");
   verb.flag("--common", given.is_common_only, "Allow NEW to lack any cell of BASE");
   verb.flag("--all", given.lists_all, "List every difference, not the first 20 lines");
   const Argument json = verb.flag("--json", given.as_json, "Print JSON");

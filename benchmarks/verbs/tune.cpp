@@ -43,10 +43,9 @@ void declare(VerbArguments& verb, TuneArguments& given) {
   verb.text("--grid", given.grid,
             "Option and its values, low..high x count (default: the method's tunable option "
             "at seven values around its default, and more if the best value is at an edge)");
-  verb.text(
-          "--unit", given.unit,
-          "Unit of the grid: one, cauchy (the problem's Cauchy step) or published (the published "
-          "rate)")
+  verb.text("--unit", given.unit,
+            "Unit of the grid: one, cauchy (the problem's Cauchy step) or published (the published "
+            "rate)")
       .one_of({"one", "cauchy", "published"})
       .shown();
   verb.flag("--leave-one-out", given.leaves_out,

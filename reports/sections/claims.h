@@ -52,8 +52,8 @@ std::string column_words(const std::string& column);       // "error in x"
 // slope of log m over log at, crossing (where the first half of the terms passes from below the
 // second half to above it, in `at`), position (of the first, from 1; a tie counts half), order
 // (Kendall's τ with that of the terms). Of the first half of the terms over the second: ratio_slope
-// and trend, the slope and the order of these ratios. mean_difference, of means over all runs of two
-// terms, and share are not of medians.
+// and trend, the slope and the order of these ratios. mean_difference, of means over all runs of
+// two terms, and share are not of medians.
 Real quantity_of(const std::string& kind, const std::vector<Real>& medians,
                  const std::vector<Real>& at);
 // The value of a quantity that indicates no direction; nothing if it has no such value.

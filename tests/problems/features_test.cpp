@@ -51,8 +51,7 @@ TEST(Features, ANoisyProblemHasALeastLossAndAFloor) {
 // Jᵀ and J agree with differences of the loss; errors in x are those of the plain problem.
 TEST(Features, ScaledAndRotatedUnknownsAreTheSameProblem) {
   const OptionValues mapped{{"scale", 1e3}, {"rotate", true}};
-  const Problem plain = make("burgers[N=16]"),
-                other = featured("burgers[N=16]", mapped);
+  const Problem plain = make("burgers[N=16]"), other = featured("burgers[N=16]", mapped);
   EXPECT_NEAR(loss_at_start(other), loss_at_start(plain), 1e-12 * loss_at_start(plain));
   EXPECT_NEAR(other.x_error(*other.truth()), 0, 1e-12);
   EXPECT_NEAR(other.x_error(other.start()), plain.x_error(plain.start()), 1e-12);
