@@ -21,9 +21,12 @@ endfunction()
 
 # Named directly, not through the system's BLAS alternatives, which differ between machines.
 isoline_library(Isoline::lapacke "openblas;lapacke" lapacke.h)
+isoline_library(Isoline::cholmod "cholmod" suitesparse/cholmod.h)
 isoline_library(Isoline::fftw "fftw3" fftw3.h)
 isoline_library(Isoline::onednn "dnnl" oneapi/dnnl/dnnl.hpp)  # its own package requires OpenCL
 isoline_library(Isoline::random123 "" Random123/philox.h)
+isoline_library(Isoline::cminpack "cminpack" cminpack.h cminpack-1)
+isoline_library(Isoline::gsl "gsl;gslcblas" gsl/gsl_multifit_nlinear.h)
 isoline_library(Isoline::simdjson "simdjson" simdjson.h)
 isoline_library(Isoline::valijson "" valijson/validator.hpp)
 
@@ -41,6 +44,10 @@ file(STRINGS ${ISOLINE_OPENBLAS_CONFIG} _lines REGEX "OPENBLAS_VERSION")
 string(REGEX MATCH "[0-9]+[0-9.]*" _openblas "${_lines}")
 file(SHA256 ${Isoline__random123_INCLUDE}/Random123/philox.h _philox)  # its headers have no version
 string(SUBSTRING ${_philox} 0 8 _philox)
+file(STRINGS ${Isoline__gsl_INCLUDE}/gsl/gsl_version.h _lines REGEX "define GSL_VERSION")
+string(REGEX MATCH "[0-9][0-9.]*" _gsl "${_lines}")
+file(REAL_PATH ${Isoline__cminpack_cminpack} _cminpack)  # only the name of the file has its version
+string(REGEX MATCH "[0-9]+\\.[0-9.]+$" _cminpack ${_cminpack})
 set(ISOLINE_LIBRARIES "Eigen ${Eigen3_VERSION}" "Ceres ${Ceres_VERSION}" "NLopt ${NLopt_VERSION}"
     "nlohmann-json ${nlohmann_json_VERSION}" "fmt ${fmt_VERSION}"
-    "oneDNN ${_onednn}" "OpenBLAS ${_openblas}" "Random123 ${_philox}")
+    "oneDNN ${_onednn}" "OpenBLAS ${_openblas}" "Random123 ${_philox}" "GSL ${_gsl}" "cminpack ${_cminpack}")

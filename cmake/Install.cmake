@@ -12,6 +12,8 @@ set_target_properties(isoline_cli PROPERTIES EXPORT_NAME cli)  # its headers are
 install(TARGETS isoline_cli EXPORT IsolineTargets)
 install(DIRECTORY clients/python DESTINATION share/isoline COMPONENT program FILES_MATCHING
         PATTERN "*.py")
+install(DIRECTORY benchmarks/published DESTINATION share/isoline COMPONENT program FILES_MATCHING
+        PATTERN "*.json")
 install(DIRECTORY docs DESTINATION share/doc/isoline COMPONENT program)
 install(FILES README.md CHANGELOG.md DESTINATION share/doc/isoline COMPONENT program)
 include(cmake/Package.cmake)

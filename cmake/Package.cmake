@@ -9,10 +9,12 @@ set(notice ${PROJECT_BINARY_DIR}/copyright)
 file(READ ${PROJECT_SOURCE_DIR}/LICENSE license)
 file(CONFIGURE OUTPUT ${notice} @ONLY CONTENT "This package holds the program isoline.
 
-The program links FFTW (GNU General Public License, version 2 or later) and oneDNN (Apache License
-2.0). It is therefore, as a whole, under the GNU General Public License, version 3 or later, whose
-text is /usr/share/common-licenses/GPL-3 on a Debian system. The sources of Isoline alone are under
-the MIT license:
+The program links FFTW and SuiteSparse (GNU General Public License, version 2 or later), the GNU
+Scientific Library (version 3 or later) and oneDNN (Apache License 2.0). It is therefore, as a whole,
+under the GNU General Public License, version 3 or later, whose text is
+/usr/share/common-licenses/GPL-3 on a Debian system.
+It also links cminpack; MINPACK was developed by the University of Chicago, as Operator of Argonne
+National Laboratory. The sources of Isoline alone are under the MIT license:
 
 @license@")
 install(FILES ${notice} DESTINATION share/doc/isoline COMPONENT program)
@@ -33,5 +35,5 @@ set(CPACK_DEBIAN_PACKAGE_DESCRIPTION
 "Isoline runs optimizers on physical inverse problems. Each run has its own
 process and writes one JSON record. Reports show rankings, profiles and
 statistics. The program as a whole is under the GNU General Public License,
-since it links FFTW.")
+since it links FFTW and GSL.")
 include(CPack)

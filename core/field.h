@@ -9,7 +9,7 @@
 namespace isoline {
 
 struct Quantity {
-  std::string name;       // "temperature before"
+  std::string name;       // "initial temperature"
   std::string unit = {};  // empty: a pure number
 };
 

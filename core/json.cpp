@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <cctype>
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -54,6 +55,11 @@ Json parse_json(const std::string& text, const std::string& origin) {
     });
     return true;
   };
+  // The library would quote a byte of a binary file. 0xEF begins a byte order mark.
+  const std::size_t first = text.find_first_not_of(" \t\r\n");
+  require(first != std::string::npos, [&] { return origin + " is empty, not JSON"; });
+  const auto byte = static_cast<unsigned char>(text[first]);
+  require(std::isprint(byte) != 0 || byte == 0xEF, [&] { return origin + " is binary, not JSON"; });
   try {
     return Json::parse(text, is_kept);
   } catch (const Json::exception& error) {       // also of numbers that are out of range

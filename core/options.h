@@ -24,6 +24,7 @@ struct Range {
   Real low = -std::numeric_limits<Real>::infinity();
   Real high = std::numeric_limits<Real>::infinity();
   bool low_is_open = false, high_is_open = false;
+  bool operator==(const Range&) const = default;
 };
 inline Range any() { return {}; }
 inline Range above(Real low) { return {.low = low, .low_is_open = true}; }
@@ -80,6 +81,7 @@ struct OptionField {
   Range range;
   Choices choices;
   std::string doc;
+  bool operator==(const OptionField&) const = default;
 };
 using OptionTable = std::vector<OptionField>;
 
@@ -167,6 +169,10 @@ OptionValues option_values_from(const Json& json);  // UsageError if a value has
 // that is empty by default without renaming its cells.
 OptionValues without_empty(const OptionValues& options);
 Json describe_options(const OptionTable& table);  // a list of name, type, default, constraint, doc
+
+// Options of every direct problem, which only cells that have them show: files of numbers in the
+// place of its start and its target. Completion adds "@" and a digest of the content.
+inline constexpr const char *kStartOption = "start-file", *kTargetOption = "target-file";
 
 // Options by which a network learns a problem. Problems declare them (problems/learning.h); plans,
 // records and reports read them.

@@ -15,6 +15,7 @@ enum class Oracle {
   pullback,
   pushforward,
   jacobian,
+  sparse_jacobian,
   hessian,
   curvature,
   sensitivity,
@@ -32,6 +33,7 @@ struct OracleSizes {
   std::int64_t inputs, outputs;      // k, m
   std::int64_t pushforward_price, pullback_price;
   bool has_pushforward, has_pullback;
+  std::int64_t widest_row;     // most nonzeros in a row of a sparse J
   std::int64_t inverse_price;  // as the physics declares it
   bool has_network;            // other than the identity
 };
@@ -68,6 +70,11 @@ inline constexpr std::array kOracleTable = {
     OracleRow{Oracle::jacobian, "jacobian", "J, (m, n)",
               [](const OracleSizes& of) { return matrix_price(of, of.unknowns, of.residuals); },
               "the Jacobian is not offered, or would be too large to form", true},
+    OracleRow{Oracle::sparse_jacobian, "sparse_jacobian", "the values of a sparse J",
+              // the least number of products from which its columns, compressed, can be read;
+              // Curtis, Powell, Reid (1974)
+              [](const OracleSizes& of) { return of.widest_row; },
+              "the problem declares no sparse Jacobian", false, false},
     OracleRow{Oracle::hessian, "hessian", "∇²L, (n, n)",
               [](const OracleSizes& of) { return of.unknowns; },
               "the problem offers no second derivatives", true},

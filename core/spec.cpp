@@ -155,7 +155,8 @@ SeedSpan span_of(std::string_view part, std::string_view whole) {
   const auto number = [&](std::string_view digits) {
     return parse_number<std::uint64_t>(
         digits, whole,
-        "seeds as a count (5: 0 to 4), a range (0..9), one seed (=5) or instance:start (2:1)");
+        "a number of seeds (5 means seeds 0 to 4), a range (0..9), one seed (=5) or instance:start "
+        "(2:1)");
   };
   const bool is_one = part.starts_with('=');
   const std::string_view one = part.substr(is_one ? 1 : 0);

@@ -20,7 +20,7 @@ enum class Status {
   converged,     // the method stopped by its own test
   target,        // the harness measured L at or below the target
   budget,        // iterations, work or time are spent
-  stalled,       // no relative decrease above 1e-12 in 100 iterations
+  stalled,       // no relative decrease above 1e-12 in Budget::stall iterations
   diverged,      // the loss is not finite, or above 1e12 times its start
   inapplicable,  // the cell cannot exist; the message says why
   failed,        // an exception; the message is its text
@@ -70,6 +70,8 @@ inline std::optional<Aim> aim_of(std::string_view name) {
 
 // The budget of a run, and the loss at which it is done.
 
+inline constexpr std::int64_t kStallIterations = 100;
+
 struct Budget {
   std::int64_t iterations = 1000;
   std::int64_t work = std::numeric_limits<std::int64_t>::max();  // nominal costs, in forwards
@@ -77,6 +79,8 @@ struct Budget {
   // τ of f ≤ f_L + τ s, or, if the criterion is x, of the error in x: f ≤ f_L + τ² s. 0 continues
   // to the end of the budget.
   double target = 1e-10;
+  // Iterations without progress after which it is stalled; empty: the standard; 0: never.
+  std::optional<std::int64_t> stall = {};
 };
 
 // The exit code of every verb.

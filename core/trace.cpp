@@ -157,6 +157,8 @@ std::string defect_of(const Trace& trace) {
   if (!are_frames_sound(trace.frames)) return "fields of an invalid size or at invalid iterations";
   if (!are_spectra_sound(trace.spectra))
     return "spectra of an invalid size or at invalid iterations";
+  if (!is_within(trace.uncertainty.unknowns, Trace::Uncertainty::kUnknowns))
+    return "standard deviations of an invalid size";
   if (!are_texts_sound(trace)) return "an unterminated text";
   if (!are_series_sound(trace)) return "more series than the trace has room for";
   if (!are_amounts(trace.prices) || !is_amount(trace.rejected_steps)) return "invalid counts";

@@ -89,6 +89,16 @@ struct Trace {
     double sigma[kPlaces][kValues];  // descending
   };
   Spectra spectra;
+  // x at the returned point of a direct least-squares problem with more residuals than unknowns,
+  // and its covariance σ̂² (JᵀJ)⁻¹ as standard deviations and correlations.
+  struct Uncertainty {
+    static constexpr int kUnknowns = 64;
+    int unknowns = 0;  // 0: nothing is kept
+    std::int64_t degrees_of_freedom = 0;
+    double variance, condition;  // σ̂²; of J, its columns scaled to norm 1
+    double x[kUnknowns], deviation[kUnknowns], correlation[kUnknowns][kUnknowns];
+  };
+  Uncertainty uncertainty;
   bool is_learned = false;
   char series_names[kText] = "";  // a line each
 

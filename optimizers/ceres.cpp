@@ -1,12 +1,18 @@
 // The adapter to Ceres (Agarwal, Mierle et al., ceres-solver.org): its trust-region methods on r =
-// (y − y*)/√B, with dense QR, and its line searches on L. Each iteration of its own loop, rejected
-// or not, is reported to the meter. Its tolerances are zero: it stops where a step changes nothing.
+// (y − y*)/√B, with dense QR, or by residual blocks where the Jacobian is sparse, and its line
+// searches on L. Each iteration of its own loop, rejected or not, is reported to the meter. Its
+// tolerances are options, 0 by default: it stops where a step changes nothing.
 #include <ceres/ceres.h>
 #include <glog/logging.h>
 
+#include <algorithm>
 #include <cmath>
 #include <exception>
 #include <limits>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "optimizers/optimizer.h"
 
@@ -64,7 +70,59 @@ struct ResidualBlock final : ceres::CostFunction {
   }
 };
 
-// L and its gradient.
+// All residual blocks of a sparse Jacobian: one call of the problem at a point fills them.
+struct SharedBlocks final : ceres::EvaluationCallback {
+  Evaluation& evaluation;
+  const Vector& theta;  // (n), where Ceres puts the point before it calls
+  Vector residual;      // (m)
+  const Real* values = nullptr;
+  bool is_evaluated = false;
+
+  SharedBlocks(Evaluation& shared, const Vector& parameters)
+      : evaluation(shared), theta(parameters) {}
+  void PrepareForEvaluation(bool with_jacobian, bool) override {
+    is_evaluated = evaluation.at(theta.data(), [&](Linearization& at) {
+      at.residual(residual);
+      if (with_jacobian) values = at.sparse_jacobian().data();
+    });
+  }
+};
+
+// One of them: rows of r, and J's values by parameter blocks.
+struct SharedBlock final : ceres::CostFunction {
+  const SharedBlocks& all;
+  int first_row, first_value, width = 0;
+
+  SharedBlock(const SharedBlocks& shared, const SparsePattern& pattern, int block,
+              std::vector<int>& parameters)
+      : all(shared), first_row(pattern.residual_block[static_cast<std::size_t>(block)]) {
+    first_value = pattern.row_start[static_cast<std::size_t>(first_row)];
+    set_num_residuals(pattern.residual_block[static_cast<std::size_t>(block) + 1] - first_row);
+    parameters.clear();
+    pattern.for_each_block(block, [&](int parameter, int) {
+      parameters.push_back(parameter);
+      mutable_parameter_block_sizes()->push_back(pattern.size_of(parameter));
+      width += pattern.size_of(parameter);
+    });
+  }
+  bool Evaluate(double const* const*, double* r, double** J) const override {
+    if (!all.is_evaluated) return false;
+    for (int i = 0; i < num_residuals(); ++i) r[i] = all.residual[first_row + i];
+    if (!J) return true;
+    int offset = 0;
+    for (std::size_t b = 0; b < parameter_block_sizes().size(); ++b) {
+      const int size = parameter_block_sizes()[b];
+      for (int i = 0; J[b] && i < num_residuals(); ++i)
+        std::copy_n(all.values + first_value + i * width + offset, size, J[b] + i * size);
+      offset += size;
+    }
+    return true;
+  }
+};
+
+// L and its gradient. A point fails as a whole where a gradient overflows beside a finite L: Ceres'
+// search for the Wolfe conditions aborts the process at such a point, but steps back from a failed
+// one.
 struct LossFunction final : ceres::FirstOrderFunction {
   Evaluation& evaluation;
   mutable Vector slope;  // (n), ∇L
@@ -72,12 +130,14 @@ struct LossFunction final : ceres::FirstOrderFunction {
   explicit LossFunction(Evaluation& shared) : evaluation(shared) {}
   int NumParameters() const override { return static_cast<int>(evaluation.f.unknowns()); }
   bool Evaluate(const double* theta, double* loss, double* gradient) const override {
-    return evaluation.at(theta, [&](Linearization& at) {
+    slope.setZero();
+    const bool is_known = evaluation.at(theta, [&](Linearization& at) {
       *loss = at.loss();
       if (!gradient) return;
       at.gradient(slope);
       Map<Vector>(gradient, slope.size()) = slope;
     });
+    return is_known && is_finite(slope);
   }
 };
 
@@ -101,7 +161,6 @@ template <class Options>
 void set_common(Options& options, Watch& watch) {
   FLAGS_minloglevel = google::GLOG_FATAL;  // our record states Ceres' warnings
   options.max_num_iterations = std::numeric_limits<int>::max();
-  options.function_tolerance = options.gradient_tolerance = options.parameter_tolerance = 0;
   options.logging_type = ceres::SILENT;
   options.update_state_every_iteration = true;
   options.callbacks.push_back(&watch);
@@ -117,7 +176,53 @@ Status verdict(const Evaluation& evaluation, const Summary& summary) {
   return summary.termination_type == ceres::CONVERGENCE ? Status::converged : Status::stalled;
 }
 
+// The linear solvers for a sparse Jacobian, by the names of the option.
+constexpr std::pair<const char*, ceres::LinearSolverType> kSparseSolvers[] = {
+    {"sparse-normal-cholesky", ceres::SPARSE_NORMAL_CHOLESKY},
+    {"sparse-schur", ceres::SPARSE_SCHUR},
+    {"dense-schur", ceres::DENSE_SCHUR},
+    {"iterative-schur", ceres::ITERATIVE_SCHUR}};
+
+// As the option names it, or by the declaration of the problem; no pattern: J is dense.
+std::string linear_solver_of(const std::string& option, const SparsePattern* pattern) {
+  constexpr int kMostDense = 2048;  // unknowns that are kept
+  if (!option.empty()) return option;
+  if (!pattern) return "dense-qr";
+  if (!pattern->has_eliminated()) return "sparse-normal-cholesky";
+  const int kept = pattern->parameter_block[static_cast<std::size_t>(pattern->first_eliminated)];
+  return kept <= kMostDense ? "dense-schur" : "sparse-schur";
+}
+
+Status solve_by_blocks(ceres::Solver::Options options, Evaluation& evaluation, Vector& theta) {
+  const SparsePattern& pattern = *evaluation.f.sparse_pattern();
+  const auto at = [&](int block) {
+    return theta.data() + pattern.parameter_block[static_cast<std::size_t>(block)];
+  };
+  SharedBlocks shared(evaluation, theta);
+  ceres::Problem::Options calls;
+  calls.evaluation_callback = &shared;
+  ceres::Problem problem(calls);  // owns the blocks
+  std::vector<int> parameters;
+  std::vector<double*> places;
+  for (int i = 0; i < pattern.residual_blocks(); ++i) {
+    auto* const block = new SharedBlock(shared, pattern, i, parameters);
+    places.clear();
+    for (const int j : parameters) places.push_back(at(j));
+    problem.AddResidualBlock(block, nullptr, places);
+  }
+  if (pattern.has_eliminated()) {
+    options.linear_solver_ordering = std::make_shared<ceres::ParameterBlockOrdering>();
+    for (int j = 0; j < pattern.parameter_blocks(); ++j)
+      if (problem.HasParameterBlock(at(j)))
+        options.linear_solver_ordering->AddElementToGroup(at(j), j < pattern.first_eliminated);
+  }
+  ceres::Solver::Summary summary;
+  ceres::Solve(options, &problem, &summary);
+  return verdict(evaluation, summary);
+}
+
 Status solve(const ceres::Solver::Options& options, Evaluation& evaluation, Vector& theta) {
+  if (evaluation.f.is_sparse()) return solve_by_blocks(options, evaluation, theta);
   ceres::Problem problem;  // owns the block
   problem.AddResidualBlock(new ResidualBlock(evaluation), nullptr, theta.data());
   ceres::Solver::Summary summary;
@@ -137,7 +242,8 @@ Status solve(const ceres::GradientProblemSolver::Options& options, Evaluation& e
 template <class Options>
 class Ceres final : public Optimizer {
  public:
-  explicit Ceres(Options options) : options_(std::move(options)) {}
+  explicit Ceres(Options options, std::string linear_solver = "")
+      : options_(std::move(options)), linear_solver_(std::move(linear_solver)) {}
   void start(Meter&, const Vector&) override {}
   bool reports_iterations() const override { return true; }
   Status step(Meter& f, Vector& theta) override {
@@ -145,6 +251,10 @@ class Ceres final : public Optimizer {
     Watch watch(f, theta);
     Options options = options_;
     set_common(options, watch);
+    if constexpr (requires { options.linear_solver_type; })
+      for (const auto& [name, type] : kSparseSolvers)
+        if (linear_solver_of(linear_solver_, f.is_sparse() ? f.sparse_pattern() : nullptr) == name)
+          options.linear_solver_type = type;
     const Status status = solve(options, evaluation, theta);
     if (status == Status::budget)
       theta = watch.last;  // Ceres goes back to the start if a call failed
@@ -153,7 +263,26 @@ class Ceres final : public Optimizer {
 
  private:
   const Options options_;
+  const std::string linear_solver_;
 };
+
+// The options of every method here: its own, then the tolerances.
+OptionTable with_tolerances(OptionTable own) {
+  const std::pair<const char*, const char*> tolerances[] = {
+      {"function-tolerance", "it stops where the loss changes by no more than this share"},
+      {"gradient-tolerance", "it stops where no component of the gradient is larger"},
+      {"parameter-tolerance", "it stops where the step is no longer than this share of ‖θ‖"}};
+  for (const auto& [name, text] : tolerances)
+    own.push_back({name, Real{0}, between(0, 1), {}, text});
+  return own;
+}
+
+template <class Options>
+void set_tolerances(const OptionValues& options, Options& out) {
+  out.function_tolerance = options.number("function-tolerance", 0);
+  out.gradient_tolerance = options.number("gradient-tolerance", 0);
+  out.parameter_tolerance = options.number("parameter-tolerance", 0);
+}
 
 constexpr const char* kRadiusNote = "Invariant while its Gauss-Newton steps lie within the radius.";
 constexpr const char* kRejectsNote = "Steps that raise the loss are still rejected, then damped.";
@@ -190,7 +319,38 @@ OptionField radius_field() {
           "initial trust-region radius Δ, in units of D"};
 }
 
+OptionField linear_solver_field() {
+  OptionField field{"linear-solver",
+                    std::string(),
+                    {},
+                    {"", "dense-qr"},
+                    "of each step: of a dense or a sparse J, or after elimination of blocks where "
+                    "the problem declares them; none: dense QR, and where J is sparse and has 256 "
+                    "unknowns or more as the problem declares it"};
+  for (const auto& [name, type] : kSparseSolvers) field.choices.emplace_back(name);
+  return field;
+}
+
+OracleSet needs_of_trust_region(const OptionValues& options, const Problem& problem) {
+  const SparsePattern* sparse = is_solved_sparse(problem) ? problem.sparse_pattern() : nullptr;
+  const bool is_dense = linear_solver_of(options.text("linear-solver"), sparse) == "dense-qr";
+  return {Oracle::forward, is_dense ? Oracle::jacobian : Oracle::sparse_jacobian};
+}
+
+auto objection_of(const TrustRegion& m) {
+  return [m](const OptionValues& options, const Problem& problem) -> std::string {
+    const std::string solver = options.text("linear-solver");
+    if (solver.ends_with("-schur") && !problem.sparse_pattern()->has_eliminated())
+      return "linear-solver=" + solver + " eliminates blocks, and the problem declares none";
+    if (solver == "iterative-schur" && m.strategy == ceres::DOGLEG)
+      return "Ceres has no dogleg with linear-solver=iterative-schur";
+    return "";
+  };
+}
+
 OptimizerEntry entry_of(const TrustRegion& m) {
+  OptionTable table{linear_solver_field()};
+  if (!m.is_wide_open) table.push_back(radius_field());
   return {.name = m.name,
           .title = m.title,
           .family = Family::ceres,
@@ -203,8 +363,10 @@ OptimizerEntry entry_of(const TrustRegion& m) {
           .needs_same_samples = true,
           .most_unknowns = 4096,
           .most_rank = 2048,  // dense QR
-          .options = m.is_wide_open ? OptionTable{} : OptionTable{radius_field()},
+          .options = with_tolerances(std::move(table)),
           .tunable = m.is_wide_open ? Tunable{} : Tunable{.option = "radius", .factor = 10},
+          .needs_for = needs_of_trust_region,
+          .objection = objection_of(m),
           .make = [m](const OptionValues& options, const OptimizerRegistry&) {
             ceres::Solver::Options o;
             o.linear_solver_type = ceres::DENSE_QR;
@@ -220,7 +382,9 @@ OptimizerEntry entry_of(const TrustRegion& m) {
                 m.is_wide_open ? o.max_trust_region_radius
                                : options.number("radius", o.initial_trust_region_radius);
             if (m.is_wide_open) o.min_relative_decrease = 0;
-            return std::make_unique<Ceres<ceres::Solver::Options>>(o);
+            set_tolerances(options, o);
+            return std::make_unique<Ceres<ceres::Solver::Options>>(o,
+                                                                   options.text("linear-solver"));
           }};
 }
 
@@ -268,7 +432,7 @@ OptimizerEntry entry_of(const LineSearch& method) {
           .needs = {Oracle::forward, Oracle::pullback},
           .needs_same_samples = true,
           .most_unknowns = method.most_unknowns,
-          .options = {curvature_field()},
+          .options = with_tolerances({curvature_field()}),
           .tunable = {.option = "curvature", .below = 6, .factor = 1.5},
           .make = [direction = method.direction](const OptionValues& options,
                                                  const OptimizerRegistry&) {
@@ -276,6 +440,7 @@ OptimizerEntry entry_of(const LineSearch& method) {
             o.line_search_direction_type = direction;
             o.line_search_sufficient_curvature_decrease =
                 options.number("curvature", o.line_search_sufficient_curvature_decrease);
+            set_tolerances(options, o);
             return std::make_unique<Ceres<ceres::GradientProblemSolver::Options>>(o);
           }};
 }

@@ -2,9 +2,11 @@
 // gradients on products with the Gauss-Newton matrix, begun at 0.95 of the last solution and ended
 // by Martens' test of relative progress. Of the iterates kept on the way d is the earliest after
 // which the loss rose again; α by Armijo's rule from 1; λ by the reduction ratio ρ of Levenberg
-// and Marquardt, ρ by the undamped model. Without preconditioner.
+// and Marquardt, ρ by the undamped model. Without preconditioner. curvature=hessian has ∇²L in
+// place of JᵀL''J, as the published scripts of the SIP paper offer.
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <utility>
 
 #include "optimizers/optimizer.h"
@@ -17,6 +19,7 @@ constexpr Real kGrowth = 1.3;  // between the numbers of the iterates kept
 struct HessianFree {
   Real damping = 1;
   Index cg_iterations = 250;
+  std::string curvature;
 
   struct State {
     Real damping = 0;  // λ
@@ -72,10 +75,14 @@ struct HessianFree {
     return Status::running;
   }
 
-  void multiply(VectorRef v, State& s) const {  // Ap = (JᵀL''J + λI) v
-    s.at.pushforward(v, s.Jv);
-    s.at.loss_curvature(s.Jv, s.curved);
-    s.at.pullback(s.curved, s.Ap);
+  void multiply(VectorRef v, State& s) const {  // Ap = (JᵀL''J + λI) v, or (∇²L + λI) v
+    if (curvature == "hessian") {
+      s.at.hessian_product(v, s.Ap);
+    } else {
+      s.at.pushforward(v, s.Jv);
+      s.at.loss_curvature(s.Jv, s.curved);
+      s.at.pullback(s.curved, s.Ap);
+    }
     s.Ap += s.damping * v;
   }
 
@@ -152,12 +159,15 @@ struct HessianFree {
 void fields(HessianFree& o, auto& field) {
   field("damping", o.damping, above(0), "damping λ at the start");
   field("cg-iterations", o.cg_iterations, between(1, 1e6), "most conjugate-gradient iterations");
+  field("curvature", o.curvature, Choices{"", "hessian"},
+        "hessian: products with ∇²L instead of JᵀL''J; its conjugate gradients end at a direction "
+        "of negative curvature");
 }
 
 }  // namespace
 
 void register_hessian_free(OptimizerRegistry& registry) {
-  registry.add(stepper_entry<HessianFree>(
+  OptimizerEntry entry = stepper_entry<HessianFree>(
       {.name = "hessian-free",
        .title = "Hessian-free optimization",
        .family = Family::curvature,
@@ -168,7 +178,13 @@ void register_hessian_free(OptimizerRegistry& registry) {
                "step use the same samples. A step without sufficient decrease is rejected. The "
                "Gauss-Newton matrix is that of network and physics together.",
        .needs = {Oracle::forward, Oracle::pullback, Oracle::pushforward},
-       .tunable = {.option = "damping", .below = 4, .factor = 10}}));
+       .tunable = {.option = "damping", .below = 4, .factor = 10}});
+  entry.needs_for = [needs = entry.needs](const OptionValues& options, const Problem&) {
+    return options.text("curvature") == "hessian"
+               ? OracleSet{Oracle::forward, Oracle::pullback, Oracle::hessian_product}
+               : needs;
+  };
+  registry.add(std::move(entry));
 }
 
 }  // namespace isoline::optimizers

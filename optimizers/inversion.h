@@ -62,10 +62,13 @@ struct InversionOptions {
 
 inline void fields(InversionOptions& o, auto& field) {
   field("step", o.step, above(0), "step length η toward y*");
-  field("inverse", o.inverse, Choices{"auto", "analytic", "damped", "newton", "lbfgs", "gradient"},
-        "local inverse: the problem's own (damped requires a damped one); a saddle-free Newton "
-        "step; L-BFGS; or U = −η ∂L/∂x of each sample's loss, which is backpropagation; auto: the "
-        "problem's own where there is one, else L-BFGS");
+  field(
+      "inverse", o.inverse,
+      Choices{"auto", "analytic", "damped", "newton", "lbfgs", "gradient", "gradients"},
+      "local inverse: the problem's own (damped requires a damped one); a saddle-free Newton "
+      "step; L-BFGS; or U = −η ∂L/∂x of each sample's loss, which is backpropagation; or the sum of "
+      "eight such steps, as long as the first; auto: the "
+      "problem's own where there is one, else L-BFGS");
   field(
       "difference", o.difference, Choices{"target", "newton"},
       "Δy that the problem's own inverse and L-BFGS undo: y* − y, or Newton's step on the loss in "

@@ -16,6 +16,7 @@
 #include "core/decompose.h"
 #include "core/product.h"
 #include "optimizers/optimizer.h"
+#include "optimizers/sparse_least_squares.h"
 #include "optimizers/spectral_step.h"
 
 namespace isoline::optimizers {
@@ -40,23 +41,32 @@ struct NielsenDamping {
 };
 
 constexpr Real kEpsilon = std::numeric_limits<Real>::epsilon();
+constexpr Real kUnbounded = std::numeric_limits<Real>::infinity();
 constexpr Index kLeastSquared = 64;  // of min(m·B, n): below, QR takes no longer than Cholesky
 
 // d = argmin ‖J d − b‖² + μ‖D d‖² for any μ. By QR of J and the damping below or beside it; or by
 // Cholesky of the smaller Gram matrix of A = J D⁻¹, which is formed once for all μ, and by the
 // layers of a network where they are known. What squaring A costs in digits is given back by
 // corrections, each from the residual by A itself; Björck (1996), section 6.6.5. Where they do not
-// converge QR is left.
+// converge QR is left. A sparse J is factorized as such.
 class DampedLeastSquares {
  public:
+  void start(const Meter& f) {
+    is_sparse_ = f.is_sparse();
+    if (is_sparse_) sparse_.start(*f.sparse_pattern());
+  }
   // Scaling and factorization as the method's options have them.
   void set(Meter& f, Linearization& at, const Vector& b, std::string_view scaling) {
     const Index n = f.unknowns();
     rows_ = b.size();
     has_gram_ = false;
     // An audit grants both, and J serves any problem.
-    is_layered_ = !f.is_granted(Oracle::jacobian);
-    if (is_layered_) {
+    is_layered_ = !is_sparse_ && !f.is_granted(Oracle::jacobian);
+    if (is_sparse_) {
+      norms_.resize(n);
+      f.sparse_pattern()->squared_columns(at.sparse_jacobian().data(), norms_);
+      norms_ = norms_.cwiseSqrt();
+    } else if (is_layered_) {
       layered_.take(at);
       layered_.order(f.layout(), order_);
       layered_.squared_columns(pulled_);
@@ -68,17 +78,25 @@ class DampedLeastSquares {
     }
     if (scale_.size() != n) scale_.setZero(n);
     if (scaling == "more") scale_ = scale_.cwiseMax(norms_);
+    if (scaling == "fading") scale_ = (scale_ / 2).cwiseMax(norms_);
     if (scaling == "none") scale_.setOnes();
     if (scaling == "jacobian") scale_ = norms_;
     // A parameter that has done nothing yet has no scale, and no step.
     inverse_ = (scale_.array() > 0).select(scale_.cwiseInverse(), 1);
     if (is_layered_) inverse_ = inverse_(order_).eval();
+    if (is_sparse_) sparse_.set(at.sparse_jacobian(), inverse_);
     const Index size = is_wide() ? rows_ : rows_ + n;
     if (right_.size() != size) right_.setZero(size);
-    right_.head(rows_) = b;
+    set_right(b);
   }
+  void set_right(const Vector& b) { right_.head(rows_) = b; }
   // d and J d; false where they are not finite.
   bool solve(Real mu, std::string_view factorization, Vector& d, Vector& Jd) {
+    if (is_sparse_) {
+      if (!sparse_.solve(mu, right_.head(rows_), step_, Jd)) return false;
+      d = (scale_.array() > 0).select(step_.cwiseProduct(inverse_), 0);
+      return true;
+    }
     const bool is_large = std::min(rows_, scale_.size()) >= kLeastSquared;
     const bool squares = factorization == "cholesky" || (factorization == "auto" && is_large);
     if (squares && by_cholesky(mu)) {
@@ -101,6 +119,7 @@ class DampedLeastSquares {
   void persist(Archive& archive) {
     archive(rows_, is_layered_, J_, right_, scale_, inverse_, order_);
     layered_.persist(archive);
+    sparse_.persist(archive);
   }
 
  private:
@@ -182,7 +201,9 @@ class DampedLeastSquares {
       scaled_.setZero(rows_ + n, n);
       scaled_.topRows(rows_) = J_;
       scaled_.bottomRows(n).diagonal() = root * scale_;
-      if (!least_squares(scaled_, right_, kEpsilon, d)) return false;
+      // Columns may differ by any factor in scale. The damping alone bounds the step along them.
+      constexpr Real kNoneIsDependent = std::numeric_limits<Real>::min();
+      if (!least_squares(scaled_, right_, kNoneIsDependent, d)) return false;
       moved_.noalias() = scaled_.topRows(rows_) * d;
       return true;
     }
@@ -205,6 +226,8 @@ class DampedLeastSquares {
   Index rows_ = 0;  // m·B
   bool is_layered_ = false, has_gram_ = false;
   LayeredJacobian layered_;
+  bool is_sparse_ = false;
+  SparseLeastSquares sparse_;
   Eigen::Matrix<Index, Eigen::Dynamic, 1> order_;  // (n) in θ of the layers' parameters
   Matrix J_;                                       // (m·B, n), unless it is layered
   Vector right_;                                   // b, with n zeros below where J is not wide
@@ -218,7 +241,7 @@ class DampedLeastSquares {
 };
 
 struct LevenbergMarquardt {
-  Real initial_damping = 1e-4, rate = 1;
+  Real initial_damping = 1e-4, rate = 1, acceleration = 0;
   std::string damping = "adaptive", factorization = "auto", scaling = "more";
 
   struct State {
@@ -227,18 +250,20 @@ struct LevenbergMarquardt {
     NielsenDamping damping;
     bool has_point = false;
     Linearization at, trial;
-    Vector step, candidate;  // (n)
-    Vector Jd, residual;     // (m·B)
+    Vector step, candidate, bend;   // (n), of the acceleration
+    Vector Jd, residual, Jbend;     // (m·B)
+    Real last_length = kUnbounded;  // ‖D d‖ of the last step that only rounding could judge
   };
   static void persist(State& s, Archive& archive) {
     s.squares.persist(archive);
     s.spectral.persist(archive);
     s.damping.persist(archive);
-    archive(s.has_point);
+    archive(s.has_point, s.last_length, s.residual);
   }
 
-  State init(Meter&, const Vector&) const {
+  State init(Meter& f, const Vector&) const {
     State s;
+    s.squares.start(f);
     s.damping.mu = initial_damping;
     s.spectral = SpectralStep(spectral_factorization(factorization));
     return s;
@@ -254,18 +279,29 @@ struct LevenbergMarquardt {
       accept(f, s);
     }
     if (!s.squares.solve(s.damping.mu, factorization, s.step, s.Jd)) return Status::stalled;
+    const Real predicted = predicted_decrease(s);
+    if (acceleration > 0 && !accelerate(f, theta, s)) {
+      f.reject_step();
+      return s.damping.reject();
+    }
     s.candidate = theta + s.step;
     if (s.candidate == theta && !f.has_fresh_batches()) return Status::converged;
     f.linearize(s.candidate, s.trial);
-    const Real gain = gain_ratio(f, s);
-    if (!(gain > 0)) {
+    const Real actual = s.squares.misfit() - 0.5 * (s.trial.y() - f.target()).squaredNorm();
+    const Real rounding = f.has_fresh_batches() ? 0 : rounding_of_misfit(f, s);
+    const bool is_rounding = predicted <= rounding && std::abs(actual) <= rounding;
+    if (is_rounding) {
+      const Real length = std::sqrt(s.squares.squared_length(s.step));
+      if (!(length <= s.last_length / 2)) return Status::converged;
+      s.last_length = length;
+    } else if (!(actual > 0 && predicted > 0)) {
       f.reject_step();
       return s.damping.reject();
     }
     theta = s.candidate;
     std::swap(s.at, s.trial);
     if (!f.has_fresh_batches()) accept(f, s);
-    s.damping.accept(gain);
+    s.damping.accept(is_rounding ? 1 : actual / predicted);
     return Status::running;
   }
 
@@ -284,15 +320,42 @@ struct LevenbergMarquardt {
     s.has_point = true;
   }
 
-  // Actual over predicted decrease of ½‖r‖², the latter ½‖J d‖² + μ‖D d‖² without cancellation.
-  Real gain_ratio(Meter& f, const State& s) const {
-    const Real after = 0.5 * (s.trial.y() - f.target()).squaredNorm();
-    const Real predicted =
-        0.5 * s.Jd.squaredNorm() + s.damping.mu * s.squares.squared_length(s.step);
-    return (s.squares.misfit() - after) / predicted;
+  // The decrease of ½‖r‖², ½‖J d‖² + μ‖D d‖², without cancellation.
+  static Real predicted_decrease(const State& s) {
+    return 0.5 * s.Jd.squaredNorm() + s.damping.mu * s.squares.squared_length(s.step);
+  }
+
+  // The rounding error of ½‖r‖², r = y − y*, whose components have errors of ε|y|. Where a step and
+  // its prediction change ½‖r‖² by less, the loss cannot judge it; x, which depends on the
+  // gradient, still becomes more accurate as long as steps become shorter.
+  static Real rounding_of_misfit(Meter& f, const State& s) {
+    const Real largest = (f.target().reshaped() - s.residual).lpNorm<Eigen::Infinity>();  // of y
+    return kEpsilon * (s.squares.misfit() + s.residual.norm() * largest);
+  }
+
+  // Geodesic acceleration, Transtrum and Sethna (2012): d ← d + a, a = argmin ‖J a + ½ r''‖² +
+  // μ‖D a‖² with r'' the second derivative of r along d, by one more evaluation. False where
+  // 2‖D a‖ > α‖D d‖: the model does not hold as far as d.
+  bool accelerate(Meter& f, const Vector& theta, State& s) const {
+    constexpr Real kShare = 0.1, kAccurate = 1e-2;  // of d, and of J d
+    s.Jbend = f.target().reshaped() - s.residual;   // y
+    const Real error = kEpsilon * s.Jbend.norm() / (kShare * kShare);
+    if (error > kAccurate * s.Jd.norm()) return true;
+    s.candidate = theta + kShare * s.step;
+    f.linearize(s.candidate, s.trial);
+    s.Jbend = (s.Jd - (s.trial.y().reshaped() - s.Jbend) / kShare) / kShare;
+    if (!is_finite(s.Jbend)) return false;
+    s.squares.set_right(s.Jbend);
+    const bool is_solved = s.squares.solve(s.damping.mu, factorization, s.bend, s.Jbend);
+    s.squares.set_right(s.residual);
+    const Real bound = acceleration * acceleration * s.squares.squared_length(s.step);
+    if (!is_solved || !(4 * s.squares.squared_length(s.bend) <= bound)) return false;
+    s.step += s.bend;
+    return true;
   }
 
   static Factorization spectral_factorization(const std::string& factorization) {
+    if (factorization == "sparse") return Factorization::automatic;
     return factorization == "orthogonal" ? Factorization::qr : factorization_named(factorization);
   }
 };
@@ -301,15 +364,19 @@ void fields(LevenbergMarquardt& o, auto& field) {
   field("initial-damping", o.initial_damping, above(0),
         "damping μ at the start, in units of D²; where it is fixed, μ as a share of the mean "
         "diagonal of JJᵀ");
+  field("acceleration", o.acceleration, at_least(0),
+        "of damping=adaptive: α of geodesic acceleration, which adds to d the a of second order "
+        "where 2‖D a‖ ≤ α‖D d‖, else rejects the step; 0: none");
   field("damping", o.damping, Choices{"adaptive", "fixed"},
         "by the gain of each step, or always the same");
   field("rate", o.rate, above(0), "of damping=fixed: step length η");
-  field("factorization", o.factorization, Choices{"auto", "orthogonal", "cholesky"},
-        "by QR, or by Cholesky of the smaller Gram matrix, which of networks of dense layers is "
-        "formed layer by layer; auto: by size and accuracy");
-  field("scaling", o.scaling, Choices{"more", "none", "jacobian"},
-        "of damping=adaptive: D of the largest norms that J's columns have had, as Moré has it; 1; "
-        "or of the norms they have now");
+  field("factorization", o.factorization, Choices{"auto", "orthogonal", "cholesky", "sparse"},
+        "by QR; by Cholesky of the smaller Gram matrix, which of networks of dense layers is "
+        "formed layer by layer; or by sparse Cholesky of a sparse J, after elimination of blocks "
+        "where the problem declares them, of damping=adaptive; auto: by size and accuracy");
+  field("scaling", o.scaling, Choices{"more", "fading", "none", "jacobian"},
+        "of damping=adaptive: D of the largest norms that J's columns have had, as Moré has it; of "
+        "these, halved at each step; 1; or of the norms they have now");
 }
 
 // Levenberg-Marquardt by products, for problems too large for a Jacobian: θ ← θ + d,
@@ -410,6 +477,8 @@ OracleSet needs_of_levenberg_marquardt(const OptionValues& options, const Proble
   if (options.text("damping") == "fixed")
     return needs_of(LevenbergMarquardt::spectral_factorization(factorization), tikhonov_filter(1),
                     problem);
+  if (factorization == "sparse" || (factorization == "auto" && is_solved_sparse(problem)))
+    return {Oracle::forward, Oracle::sparse_jacobian};
   const bool is_wide = problem.residuals() < problem.unknowns();
   const bool squares = factorization == "cholesky" ||
                        (factorization == "auto" && problem.residuals() >= kLeastSquared);

@@ -50,7 +50,7 @@ void Meter::linearize(VectorRef theta, Linearization& at) {
   charge_forward(theta);
   at.meter_ = this;
   at.problem_ = &problem_;
-  at.has_jacobian_ = at.has_hessian_ = false;
+  at.has_jacobian_ = at.has_hessian_ = at.has_sparse_ = false;
   problem_.forward(theta, *samples_, at.point_);
   see(at.point_.loss);
   if (problem_.is_learned() && !has_seen_batch_) note_batch(at.point_);
@@ -60,7 +60,7 @@ void Meter::linearize_physics(BatchRef x, Linearization& at) {
   charge(Oracle::forward);
   at.meter_ = this;
   at.problem_ = &problem_;
-  at.has_jacobian_ = at.has_hessian_ = false;
+  at.has_jacobian_ = at.has_hessian_ = at.has_sparse_ = false;
   problem_.physics_forward(x, *samples_, at.point_);
 }
 
@@ -263,6 +263,7 @@ Vector Meter::finish(VectorRef theta, Status verdict) {
   if (points > 0 && trace_.point[points - 1].iteration == iteration_) trace_.points = points - 1;
   keep_point();
   keep_spectrum(true);
+  keep_uncertainty();
   if (problem_.is_learned() && !problem_.field()) show();
   if (verdict == Status::running) verdict = Status::converged;
   if (is_target_met()) verdict = Status::target;
@@ -319,12 +320,12 @@ void Meter::measure(VectorRef theta) {
 
 bool Meter::has_stalled() {
   constexpr Real kStallDecrease = 1e-12;
-  constexpr std::int64_t kStallIterations = 100;
+  const std::int64_t most = budget_.stall.value_or(kStallIterations);
   if (stall_loss_ - best_loss_ > kStallDecrease * std::abs(stall_loss_)) {
     stall_loss_ = best_loss_;
     stall_iteration_ = iteration_;
   }
-  return iteration_ - stall_iteration_ >= kStallIterations;
+  return most > 0 && iteration_ - stall_iteration_ >= most;
 }
 
 // `judged_` holds the loss at the last kept iteration, which is this one for the first hundred.
@@ -406,6 +407,43 @@ void Meter::keep_spectrum(bool is_last) {
   std::copy_n(sigma.data(), sigma.size(), kept.sigma[kept.taken]);
   kept.iteration[kept.taken] = iteration_;
   ++kept.taken;
+}
+
+// At the returned point, where x is the unknown. By the singular values of A = J D⁻¹, D the norms
+// of J's columns: (JᵀJ)⁻¹ = D⁻¹ V Σ⁻² Vᵀ D⁻¹, without the squares of their condition number. Where
+// J does not have full rank, x has no such covariance.
+void Meter::keep_uncertainty() {
+  Trace::Uncertainty& kept = trace_.uncertainty;
+  const Index m = problem_.residuals(), n = problem_.unknowns();
+  if (!problem_.is_least_squares() || problem_.is_learned() || !problem_.has_identity_network() ||
+      problem_.samples() != 1 || m <= n || n > Trace::Uncertainty::kUnknowns ||
+      !problem_.offers().contains(Oracle::jacobian) || !std::isfinite(judged_.loss))
+    return;
+  Matrix J;  // (m, n)
+  problem_.jacobian(J, judged_);
+  const Vector D = J.colwise().norm();  // (n)
+  Svd svd;
+  if (!is_finite(J) || !(D.minCoeff() > 0) || !thin_svd(J * D.cwiseInverse().asDiagonal(), svd))
+    return;
+  const Vector& sigma = svd.sigma;
+  if (!(sigma[n - 1] > static_cast<Real>(m) * std::numeric_limits<Real>::epsilon() * sigma[0]))
+    return;
+  Matrix root = svd.Vt.transpose() * sigma.cwiseInverse().asDiagonal();  // A's, (n, n)
+  const Vector lengths = root.rowwise().norm();
+  root.array().colwise() /= lengths.array();
+  kept.degrees_of_freedom = m - n;
+  kept.variance = (judged_.y - problem_.target()).squaredNorm() / static_cast<Real>(m - n);
+  kept.condition = sigma[0] / sigma[n - 1];
+  const Matrix correlation = root * root.transpose();
+  for (Index i = 0; i < n; ++i) {
+    kept.x[i] = judged_.x()(i, 0);
+    kept.deviation[i] = std::sqrt(kept.variance) * lengths[i] / D[i];
+    for (Index j = 0; j < n; ++j) {
+      const Index low = std::max(i, j), right = std::min(i, j);
+      kept.correlation[i][j] = i == j ? 1 : correlation(low, right);
+    }
+  }
+  kept.unknowns = static_cast<int>(n);
 }
 
 const Problem& Linearization::ask(Oracle oracle) {

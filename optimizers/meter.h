@@ -84,6 +84,11 @@ class Linearization {
   // (m·B, n) and ∇²L (n, n), each computed once a point.
   const Matrix& jacobian() { return once(Oracle::jacobian, has_jacobian_, J_); }
   const Matrix& hessian() { return once(Oracle::hessian, has_hessian_, H_); }
+  const Vector& sparse_jacobian() {  // the values by Meter::sparse_pattern(), once a point
+    if (!has_sparse_) ask(Oracle::sparse_jacobian).sparse_jacobian(sparse_, point_);
+    has_sparse_ = true;
+    return sparse_;
+  }
   const Matrix& sensitivity() {  // ∂y/∂x of each sample side by side, (m, k·B)
     ask(Oracle::sensitivity).sensitivity(dy_dx_, point_);
     return dy_dx_;
@@ -115,7 +120,8 @@ class Linearization {
   const Problem* problem_ = nullptr;
   Point point_;
   Matrix g_, J_, H_, dy_dx_;
-  bool has_jacobian_ = false, has_hessian_ = false;
+  Vector sparse_;
+  bool has_jacobian_ = false, has_hessian_ = false, has_sparse_ = false;
 };
 
 class Meter {
@@ -131,6 +137,12 @@ class Meter {
   const Matrix& target() const { return samples_->target; }  // y*, (m, B)
   const Matrix& truth();                                     // x*, (k, B): extra information
   std::vector<Block> layout() const { return problem_.layout(); }
+  const SparsePattern* sparse_pattern() const { return problem_.sparse_pattern(); }
+  // Whether J comes as the values of its pattern alone. An audit grants a dense J, too, which
+  // serves any problem.
+  bool is_sparse() const {
+    return is_granted(Oracle::sparse_jacobian) && !is_granted(Oracle::jacobian);
+  }
   Index unknowns() const { return problem_.unknowns(); }
   Index residuals() const { return problem_.residuals(); }
   Index samples() const { return problem_.samples(); }
@@ -197,6 +209,7 @@ class Meter {
   void keep_point();
   bool is_spectrum_due(bool is_last) const;
   void keep_spectrum(bool is_last);
+  void keep_uncertainty();
   void show();        // the result of training
   void prepare();     // samples and limits
   void set_scales();  // by which this run's targets are measured; after the start's loss

@@ -35,12 +35,19 @@ std::string why_inapplicable(const OptimizerEntry& entry, const OptionValues& op
   const OracleSet offered = problem.offers(), needs = needs_of(entry, options, problem);
   for (std::size_t kind = 0; kind < kOracles; ++kind) {
     const auto oracle = static_cast<Oracle>(kind);
-    if (needs.contains(oracle) && !offered.contains(oracle))
-      return std::string(oracle_row(oracle).lack);
+    if (!needs.contains(oracle) || offered.contains(oracle)) continue;
+    const auto [rows, columns] = problem.dense_shape(oracle);
+    constexpr Real kGibibyte = 1 << 30;
+    if (!problem.is_dense_feasible(oracle))
+      return fmt::format(
+          "it needs a dense matrix of {} × {} numbers ({}), which takes {:.3g} GiB", rows, columns,
+          name_of(oracle),
+          sizeof(Real) * static_cast<Real>(rows) * static_cast<Real>(columns) / kGibibyte);
+    return std::string(oracle_row(oracle).lack);
   }
   if (entry.needs_same_samples && problem.has_fresh_batches())
     return "it compares losses from step to step, which needs a finite data set (data=N)";
-  if (problem.unknowns() > entry.most_unknowns)
+  if (problem.unknowns() > entry.most_unknowns && !needs.contains(Oracle::sparse_jacobian))
     return fmt::format("{} unknowns, and {} is limited to {}", problem.unknowns(), entry.name,
                        entry.most_unknowns);
   if (entry.kind == Kind::least_squares && !problem.is_least_squares())
@@ -61,6 +68,11 @@ std::unique_ptr<Descent> make_descent(const OptimizerRegistry& registry, const s
     return fmt::format("{} steps by more than a gradient and cannot be used inside", spec.name);
   });
   return entry.make_descent(complete_options(entry.options, spec.name, options_of(spec)));
+}
+
+bool is_solved_sparse(const Problem& problem) {
+  constexpr Index kLeastUnknowns = 256;  // below, dense factorizations take as long
+  return problem.sparse_pattern() && problem.unknowns() >= kLeastUnknowns;
 }
 
 }  // namespace isoline::optimizers

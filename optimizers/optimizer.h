@@ -70,6 +70,9 @@ std::vector<std::string> privileges_of(OracleSet granted, Inverse inverse);
 std::string why_inapplicable(const OptimizerEntry& entry, const OptionValues& options,
                              const Problem& problem);
 
+// Whether a method of least squares that has the choice uses a sparse J.
+bool is_solved_sparse(const Problem& problem);
+
 // A gradient rule from "adam[rate=1e-3]".
 std::unique_ptr<Descent> make_descent(const OptimizerRegistry& registry, const std::string& spec);
 

@@ -31,10 +31,13 @@ enum class Family {
   ceres,
   nlopt,
   nlopt_derivative_free,
+  minpack,
+  gsl,
   foreign
 };
-inline constexpr std::array<std::string_view, 7> kFamilyNames = {
-    "first-order", "curvature", "inversion", "ceres", "nlopt", "nlopt-derivative-free", "foreign"};
+inline constexpr std::array<std::string_view, 9> kFamilyNames = {
+    "first-order",           "curvature", "inversion", "ceres",  "nlopt",
+    "nlopt-derivative-free", "minpack",   "gsl",       "foreign"};
 inline std::string_view name_of(Family family) {
   return kFamilyNames[static_cast<std::size_t>(family)];
 }
@@ -90,7 +93,7 @@ struct OptimizerEntry {
   OptionTable options = {};
   Tunable tunable = {};
   // Whether `*` of a suite means it: not where an argument is required, nor what is a variant of
-  // another for one experiment.
+  // another for one experiment or a peer for few problems.
   bool in_all = true;
   // As for a problem: how to name it where the name alone is incomplete, and the external program,
   // if there is one.

@@ -186,8 +186,8 @@ class Service {
 
 class ProcessMethod final : public Optimizer {
  public:
-  explicit ProcessMethod(const ProcessOptions& given)
-      : line_(door_to(given.command)), said_(greet_method(line_, given.startup)) {}
+  ProcessMethod(const ProcessOptions& given, const OptionValues& declared)
+      : line_(door_to(given.command)), said_(greet_method(line_, given.startup, declared)) {}
   ~ProcessMethod() override {
     if (has_begun_) end();
   }
@@ -231,7 +231,9 @@ class ProcessMethod final : public Optimizer {
 const MethodHandshake& introduced(const OptionValues& options) {
   static Introductions<MethodHandshake> all;
   const auto given = read_options<ProcessOptions>(options);
-  return all.of(given.command, [&](Line& line) { return greet_method(line, given.startup); });
+  const OptionValues declared = declared_values(options);
+  return all.of(given.command, declared,
+                [&](Line& line) { return greet_method(line, given.startup, declared); });
 }
 
 Foreign introduce(const OptionValues& options) {
@@ -264,7 +266,8 @@ void register_process(OptimizerRegistry& registry) {
                 .objection = objection,
                 .make = [](const OptionValues& options,
                            const OptimizerRegistry&) -> std::unique_ptr<Optimizer> {
-                  return std::make_unique<ProcessMethod>(read_options<ProcessOptions>(options));
+                  return std::make_unique<ProcessMethod>(read_options<ProcessOptions>(options),
+                                                         declared_values(options));
                 }});
 }
 

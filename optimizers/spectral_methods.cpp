@@ -2,7 +2,9 @@
 //
 // gauss-newton: θ ← θ − η J⁺ (y − y*), Gauss (1809); Nocedal, Wright (2006), eq. 10.23. J⁺ by a
 // complete orthogonal factorization, never by the normal equations, which would square the
-// condition number; of least norm where J lacks rank. The factor 1/√B of r = (y − y*)/√B cancels.
+// condition number; of least norm where J lacks rank. A sparse J of many unknowns is the exception:
+// its columns are scaled to length 1, JᵀJ is factorized by sparse Cholesky, and the step is
+// corrected by its residual. The factor 1/√B of r = (y − y*)/√B cancels.
 // The other factorizations truncate the spectrum of J, not the pivots.
 //
 // hig: half-inverse gradients, Schnell, Holl, Thuerey (2022): Δθ = −η V f(σ) Uᵀ g, g = ∂L/∂y,
@@ -22,6 +24,7 @@
 #include <limits>
 
 #include "optimizers/optimizer.h"
+#include "optimizers/sparse_least_squares.h"
 #include "optimizers/spectral_step.h"
 
 namespace isoline::optimizers {
@@ -65,13 +68,15 @@ struct Spectral : Options {
     Linearization at;
     SpectralStep spectral;
     Matrix w;  // (m, B)
+    SparseLeastSquares sparse;
+    Vector inverse, scaled, moved;  // (n) D⁻¹, D d; (m) J d
   };
   static void persist(State& s, Archive& archive) { s.spectral.persist(archive); }
   State init(Meter& f, const Vector&) const {
-    State s{.at = {},
-            .spectral = SpectralStep(factorization_named(this->factorization), this->krylov),
-            .w = {}};
+    State s;
+    s.spectral = SpectralStep(factorization_named(this->factorization), this->krylov);
     s.spectral.start(f);
+    if (f.is_sparse()) s.sparse.start(*f.sparse_pattern());
     return s;
   }
   Status step(Meter& f, Vector& theta, State& s) const {
@@ -80,9 +85,20 @@ struct Spectral : Options {
       s.w = s.at.y() - f.target();
     else
       s.at.cotangent(s.w);
+    if (f.is_sparse()) return step_sparse(f, theta, s);
     const SpectralFilter filter = this->filter(std::max(s.w.size(), theta.size()));
     const bool is_taken = s.spectral.add(f, s.at, filter, s.w.reshaped(), -this->rate, theta);
     return is_taken ? Status::running : Status::stalled;
+  }
+  Status step_sparse(Meter& f, Vector& theta, State& s) const {
+    const Vector& J = s.at.sparse_jacobian();
+    s.inverse.resize(theta.size());
+    f.sparse_pattern()->squared_columns(J.data(), s.inverse);
+    s.inverse = (s.inverse.array() > 0).select(s.inverse.cwiseSqrt().cwiseInverse(), 0);
+    s.sparse.set(J, s.inverse);
+    if (!s.sparse.solve(0, s.w.col(0), s.scaled, s.moved)) return Status::stalled;
+    theta -= this->rate * s.scaled.cwiseProduct(s.inverse);
+    return Status::running;
   }
 };
 
@@ -90,6 +106,8 @@ template <class Options>
 OptimizerEntry spectral_entry(OptimizerEntry entry) {
   entry.needs_for = [](const OptionValues& options, const Problem& problem) {
     const auto o = read_options<Options>(options);
+    if (o.factorization == "orthogonal" && is_solved_sparse(problem))
+      return OracleSet{Oracle::forward, Oracle::sparse_jacobian};
     return needs_of(factorization_named(o.factorization), o.filter(0), problem);
   };
   entry.objection = [](const OptionValues& options, const Problem& problem) {
@@ -103,10 +121,12 @@ void fields(GaussNewton& o, auto& field) {
   field("cutoff", o.cutoff, between(0, 1),
         "pivots, or singular values, up to this share of the first count as zero; at least those "
         "within rounding do");
-  field("factorization", o.factorization, Choices{"orthogonal", "svd", "qr", "gram", "layers"},
-        "how J⁺ is applied: by a complete orthogonal factorization with pivots; by the thin SVD "
-        "of J; by QR and the SVD of R; by the smaller Gram matrix of J; or by JJᵀ formed layer by "
-        "layer");
+  field(
+      "factorization", o.factorization, Choices{"orthogonal", "svd", "qr", "gram", "layers"},
+      "how J⁺ is applied: by a complete orthogonal factorization with pivots, or by sparse "
+      "Cholesky of JᵀJ with corrections where J is sparse and has 256 unknowns or more; by the "
+      "thin SVD of J; by QR and the SVD of R; by the smaller Gram matrix of J; or by JJᵀ formed layer by "
+      "layer");
 }
 
 void first_fields(auto& o, auto& field) {

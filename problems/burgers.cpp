@@ -242,8 +242,8 @@ Field field_of(const BurgersFlow& flow, Real time) {
   const Index room = Trace::Frames::kCells / flow.inputs();
   return {.rows = std::min({flow.steps() + 1, kMostTimes, room}),
           .columns = flow.inputs(),
-          .x = {"speed before"},
-          .y = {"speed after"},
+          .x = {"initial speed"},
+          .y = {"final speed"},
           .time = time};
 }
 

@@ -149,6 +149,9 @@ class VariablyDimensioned final : public Physics {
     for (Index b = 0; b < u.cols(); ++b)
       out.middleCols(b * n_, n_).noalias() = (2 * u(n_ + 1, b) * j_) * j_.transpose();
   }
+  void curvature_product(BatchRef u, BatchRef v, BatchOut out, Workspace&) const override {
+    for (Index b = 0; b < u.cols(); ++b) out.col(b) = 2 * u(n_ + 1, b) * j_.dot(v.col(b)) * j_;
+  }
 
  private:
   Real t(VectorRef x) const { return (j_.array() * (x.array() - 1)).sum(); }
@@ -165,7 +168,15 @@ ProblemParts make_variably_dimensioned(const Unknowns<1>& o, const Draw& draw) {
 // Products are O(n).
 class BroydenTridiagonal final : public Physics {
  public:
-  explicit BroydenTridiagonal(Index n) : n_(n) {}
+  explicit BroydenTridiagonal(Index n) : n_(n) {
+    pattern_.columns = n;
+    for (int i = 0; i < n; ++i) {
+      for (int j = std::max(i - 1, 0); j < std::min(i + 2, static_cast<int>(n)); ++j)
+        pattern_.column.push_back(j);
+      pattern_.row_start.push_back(static_cast<int>(pattern_.column.size()));
+    }
+    set_single_blocks(pattern_);
+  }
   Index inputs() const override { return n_; }
   Index outputs() const override { return n_; }
 
@@ -186,6 +197,18 @@ class BroydenTridiagonal final : public Physics {
     out.setZero();
     for (Index b = 0; b < u.cols(); ++b) out.middleCols(b * n_, n_).diagonal() = -4 * u.col(b);
   }
+  void curvature_product(BatchRef u, BatchRef v, BatchOut out, Workspace&) const override {
+    out = -4 * u.cwiseProduct(v);
+  }
+  const SparsePattern* sparse_pattern() const override { return &pattern_; }
+  void sparse_jacobian(VectorOut values, Workspace& w) const override {
+    Index p = 0;
+    for (Index i = 0; i < n_; ++i) {
+      if (i > 0) values[p++] = -1;
+      values[p++] = 3 - 4 * w.x(i, 0);
+      if (i + 1 < n_) values[p++] = -2;
+    }
+  }
 
  private:
   void add_neighbours(BatchRef v, Real lower, Real upper, BatchOut out) const {
@@ -193,6 +216,7 @@ class BroydenTridiagonal final : public Physics {
     out.topRows(n_ - 1) += upper * v.bottomRows(n_ - 1);
   }
   Index n_;
+  SparsePattern pattern_;
 };
 
 // Δ with J Δ = f by elimination without pivoting: J is diagonally dominant where all xᵢ < 0, as

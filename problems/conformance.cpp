@@ -143,6 +143,28 @@ class Examination {
           product_limit(), product_reason());
   }
 
+  void sparse_jacobian() {
+    if (!offers(Oracle::sparse_jacobian)) return;
+    const SparsePattern& pattern = *problem_.sparse_pattern();
+    const Vector v = direction();
+    const Matrix u = cotangent();
+    Vector values, Jv(problem_.residuals()), JTu(problem_.unknowns());
+    problem_.sparse_jacobian(values, at_);
+    pattern.multiply(values.data(), v, Jv);
+    pattern.multiply_transposed(values.data(), u.reshaped(), JTu);
+    if (offers(Oracle::pushforward)) {
+      const Vector pushed = push(v, at_).reshaped();
+      add("J v by the sparse values is J v by the product",
+          relative((Jv - pushed).norm(), pushed.norm()), product_limit(), product_reason());
+    }
+    if (offers(Oracle::pullback)) {
+      const Vector pulled = pull(u, at_);
+      add("Jᵀu by the sparse values is Jᵀu by the product",
+          relative(sized(JTu - pulled).norm(), sized(pulled).norm()), product_limit(),
+          product_reason());
+    }
+  }
+
   void curvature() {
     const Index k = problem_.inputs();
     if (!offers(Oracle::curvature) || !is_dense_feasible(k * k * problem_.samples())) return;
@@ -378,29 +400,40 @@ class Examination {
   Real h_ = std::cbrt(kEpsilon);  // balances truncation and rounding
 };
 
-std::vector<Finding> examine_at(const Problem& problem, StartScale scale, RandomStream& stream) {
-  Examination examination(problem, scale, stream);
-  if (!examination.is_finite()) return examination.findings;
-  examination.repeatability();
-  if (problem.is_elsewhere()) examination.purity();
+using Check = void (Examination::*)();
+
+std::vector<Check> checks_of(const Problem& problem) {
+  std::vector<Check> checks{&Examination::repeatability};
+  if (problem.is_elsewhere()) checks.push_back(&Examination::purity);
   const Products has = problem.products();
-  if (has.has_pushforward && has.has_pullback) examination.adjoint();
+  if (has.has_pushforward && has.has_pullback) checks.push_back(&Examination::adjoint);
   // Differences mean little in the single precision of a network: the tests of networks hold each
   // of its derivatives by itself.
   if (!problem.network().is_single_precision()) {
-    if (has.has_pushforward) examination.taylor();
-    if (has.has_pullback && !has.has_pushforward) examination.taylor_of_pullback();
-    if (has.has_pullback) examination.gradient();
-    examination.jacobian();
-    examination.hessian_product();
+    if (has.has_pushforward) checks.push_back(&Examination::taylor);
+    if (has.has_pullback && !has.has_pushforward)
+      checks.push_back(&Examination::taylor_of_pullback);
+    if (has.has_pullback) checks.push_back(&Examination::gradient);
+    checks.insert(checks.end(), {&Examination::jacobian, &Examination::sparse_jacobian,
+                                 &Examination::hessian_product});
   }
-  if (problem.has_identity_network()) {
-    examination.curvature();
-    examination.hessian();
+  if (problem.has_identity_network())
+    checks.insert(checks.end(), {&Examination::curvature, &Examination::hessian});
+  checks.insert(checks.end(),
+                {&Examination::inverse, &Examination::damped_inverse, &Examination::solution});
+  return checks;
+}
+
+std::vector<Finding> examine_at(const Problem& problem, StartScale scale, RandomStream& stream,
+                                const CheckListener& before) {
+  const std::vector<Check> checks = checks_of(problem);
+  if (before) before(0, checks.size());
+  Examination examination(problem, scale, stream);
+  if (!examination.is_finite()) return examination.findings;
+  for (std::size_t i = 0; i < checks.size(); ++i) {
+    if (before) before(i, checks.size());
+    (examination.*checks[i])();
   }
-  examination.inverse();
-  examination.damped_inverse();
-  examination.solution();
   return examination.findings;
 }
 
@@ -408,14 +441,15 @@ std::vector<Finding> examine_at(const Problem& problem, StartScale scale, Random
 
 // A correct product fails beside a step of 0.01 in an unknown of 1e-4; a wrong one fails with steps
 // of every size.
-std::vector<Finding> examine(const Problem& problem, RandomStream& stream) {
-  std::vector<Finding> findings = examine_at(problem, problem.start_scale(), stream);
+std::vector<Finding> examine(const Problem& problem, RandomStream& stream,
+                             const CheckListener& before) {
+  std::vector<Finding> findings = examine_at(problem, problem.start_scale(), stream, before);
   const auto all_hold = [](const auto& some) { return std::ranges::all_of(some, &Finding::holds); };
   const Vector sizes = sizes_at(problem.start());
   constexpr Real kUnlike = 10;  // less is within what a step of any problem must allow
   const bool is_unlike = sizes.maxCoeff() > kUnlike || sizes.minCoeff() * kUnlike < 1;
   if (!all_hold(findings) && is_unlike && problem.start_scale() != StartScale::own)
-    if (std::vector again = examine_at(problem, StartScale::own, stream); all_hold(again))
+    if (std::vector again = examine_at(problem, StartScale::own, stream, before); all_hold(again))
       return again;
   return findings;
 }

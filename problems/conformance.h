@@ -2,6 +2,7 @@
 // differences, its inverse against its forward, its declared solution against its loss.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,9 @@ struct Finding {
 
 // Measures at a random point as close to the start as the starts of seeds. Skips what a problem
 // does not offer; uses dense matrices only up to some millions of entries.
-std::vector<Finding> examine(const Problem& problem, RandomStream& stream);
+// Calls `before` ahead of each check, with the number of checks done and of all.
+using CheckListener = std::function<void(std::size_t done, std::size_t all)>;
+std::vector<Finding> examine(const Problem& problem, RandomStream& stream,
+                             const CheckListener& before = {});
 
 }  // namespace isoline::problems

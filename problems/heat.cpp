@@ -185,7 +185,7 @@ Real learned_floor(const Heat& physics, const Batch& batch) {
 ProblemParts make_heat(const Options& o, const Draw& draw) {
   const Index N = o.N;
   const Field field{
-      .rows = N, .columns = N, .x = {"temperature before"}, .y = {"temperature after"}};
+      .rows = N, .columns = N, .x = {"initial temperature"}, .y = {"final temperature"}};
   if (o.learning.is_on()) {
     const auto physics = std::make_shared<const Heat>(N, 0);
     const NetworkShape shape{.inputs = N * N, .outputs = N * N, .grid = N};

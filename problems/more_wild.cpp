@@ -3,6 +3,7 @@
 // Moré, Garbow and Hillstrom (1981), Bdqrtic, Cube, Mancino and Heart (CUTE), with their starts.
 // y* = 0, P(x) = f(x), L = ½ Σ fᵢ², half of the published Σ fᵢ². Derivatives are by jets.
 #include <algorithm>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -124,7 +125,8 @@ ProblemParts make_more_wild(const MoreWild& o, const Draw& draw) {
           .start_scale = StartScale::own,
           .target = Vector::Zero(c.m),
           .minimum = c.best / 2,
-          .minimum_error = kDigits * c.best / 2};
+          .minimum_error = kDigits * c.best / 2,
+          .scale = std::numeric_limits<Real>::infinity()};  // accuracies are relative to f₀ − f_L
 }
 
 }  // namespace
@@ -137,7 +139,8 @@ void register_more_wild(ProblemRegistry& registry) {
        .formula = "L = ½Σfᵢ²",
        .source = "Moré, Wild (2009); Moré, Garbow, Hillstrom (1981); Conn et al. (1994)",
        .note =
-           "f_L is half of the best published Σfᵢ²; of Freudenstein and Roth 0, since the published value is that of a local minimum.",
+           "f_L is half of the best published Σfᵢ². For Freudenstein and Roth, f_L is 0, because "
+           "the published value belongs to a local minimum.",
        .in_all = false},
       make_more_wild));
 }

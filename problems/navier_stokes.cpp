@@ -116,8 +116,8 @@ ProblemParts flow_parts(const Options& o) {
                            const Batch& batch) { return measure->mean(x, batch.truth); },
       .field = Field{.rows = o.N,
                      .columns = o.N,
-                     .x = {"vorticity before", "velocity/cell"},
-                     .y = {"marker after, low-pass"}}};
+                     .x = {"initial vorticity", "velocity/cell"},
+                     .y = {"final marker, low-pass filtered"}}};
   if (o.loss == "amplitude") parts.loss = std::make_unique<Amplitudes>(o.N);
   if (o.truth() == Arrangement::collocated)  // x* itself is seen on the faces of another grid
     parts.x_floor = [measure](const Batch& batch) {
@@ -215,18 +215,18 @@ void register_navier_stokes(ProblemRegistry& registry) {
        .source = "Holl, Koltun, Thuerey (2022), Fig. 7",
        .note =
            "The data come from our own random streams, for seed 0, too: no instance is published. "
-           "As in the "
-           "published scripts ν is 0 and each component keeps its energy; the paper's equation has "
-           "ν∇²v. By default the data are made by the solver itself, so that the truth is "
-           "reachable; the published ones use a collocated grid, ground-truth=collocated. The "
-           "published loss is loss=amplitude. Their squared loss puts a floor of 1e-5 under each w² "
-           "|F|², which is left out: it would add a constant for the modes below it and remove their "
-           "gradient. The share of cells with marker is sampled per sample, in the paper per batch. "
-           "Where velocity and marker's gradient are orthogonal, the data do not determine the "
-           "velocity, and the low pass hides scales below a quarter of the domain: up to 16 × 16 the "
-           "floor of the error in x is what the best cut-off of the spectrum of J(x*) leaves. The "
-           "error is |v − v*| after the first projection, the mean over cells. inverse=generator "
-           "uses knowledge of how the data were made (extra information); inverse=coarse does not.",
+           "As in the published scripts ν is 0 and each component keeps its energy; the paper's "
+           "equation has ν∇²v. By default the data are made by the solver itself, so that the "
+           "truth is reachable; the published ones use a collocated grid, "
+           "ground-truth=collocated. The published loss is loss=amplitude. Their squared loss "
+           "puts a floor of 1e-5 under each w² |F|², which is left out: it would add a constant "
+           "for the modes below it and remove their gradient. The share of cells with marker is "
+           "sampled per sample, in the paper per batch. Where velocity and marker's gradient are "
+           "orthogonal, the data do not determine the velocity, and the low pass hides scales "
+           "below a quarter of the domain: up to 16 × 16 the floor of the error in x is what the "
+           "best cut-off of the spectrum of J(x*) leaves. The error is |v − v*| after the first "
+           "projection, the mean over cells. inverse=generator uses knowledge of how the data "
+           "were made (extra information); inverse=coarse does not.",
        .aim = Aim::x,
        .in_all = false,
        .panels = {{.title = "Fig. 7b: learning curves", .kind = "curve"},

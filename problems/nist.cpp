@@ -138,7 +138,7 @@ void fields(Nist& o, auto& field) {
   Choices names;
   for (const auto& each : datasets().items()) names.push_back(each.key());
   field("dataset", o.dataset, names, "name of the data set");
-  field("start", o.start, between(1, 2), "which of NIST's two starts; 2 is nearer the answer");
+  field("start", o.start, between(1, 2), "which of NIST's two starts; 2 is nearer to the solution");
 }
 
 Vector vector_of(const Json& list) {

@@ -139,7 +139,7 @@ struct ReturnOptions {
 template <bool is_chain>
 void fields(ReturnOptions<is_chain>& o, auto& field) {
   field("steps", o.steps, between(24, 1536),
-        "time steps, each with one control; together they last 12 for any number");
+        "number of time steps, each with one control; the total time is 12 for any number");
   field("loss", o.loss, {"", "square"}, "square: ‖y − y*‖², as published, instead of half of it");
   field(kEpochOption, o.epoch, between(0, 1e6),
         "N: mode=learn takes the same N samples batch by batch, again and again; 0: new "
@@ -266,10 +266,10 @@ void register_oscillators(ProblemRegistry& registry) {
        .source = "Thuerey et al., Physics-based Deep Learning, chapter on half-inverse gradients; "
                  "Schnell, Holl, Thuerey (2022)",
        .note =
-           "Published as a learning problem, with the loss ‖y − y*‖², loss=square here; by "
-           "default half of that, so that 2η here equals η there. mode=direct finds "
-           "the controls (24 by default) of one initial state. Infinitely many of them return to it, and "
-           "the error in x is the distance from the nearest.",
+           "Published as a learning problem, with the loss ‖y − y*‖² (loss=square). The default "
+           "loss is half of it, so a step length of 2η here equals η there. mode=direct finds the "
+           "controls (24 by default) of one initial state. Infinitely many controls lead back to "
+           "this state, and the error in x is the distance from the nearest of them.",
        .aim = Aim::loss,  // any control that returns will do
        .panels = panels_of("Learning curves")},
       make_linear_chain));
@@ -280,10 +280,10 @@ void register_oscillators(ProblemRegistry& registry) {
        .formula = "ẍ₁ = −x₁ + (x₂ − x₁)³,  ẍ₂ = −x₂ − (x₂ − x₁)³ + 3u(t),  y* = the initial state",
        .source = "Schnell, Holl, Thuerey (2022), published scripts",
        .note =
-           "Published as a learning problem, with the loss ‖y − y*‖², loss=square here; by "
-           "default half of that, so that 2η here equals η there. mode=direct finds "
-           "the controls (96 by default) of one initial state. The network is the scripts'; the book's has "
-           "activation=tanh.",
+           "Published as a learning problem, with the loss ‖y − y*‖² (loss=square). The default "
+           "loss is half of it, so a step length of 2η here equals η there. mode=direct finds the "
+           "controls (96 by default) of one initial state. The network is that of the scripts; "
+           "that of the book has activation=tanh.",
        .aim = Aim::loss,  // any control that returns will do
        .in_all = false,
        .panels = panels_of("Fig. 2b: learning curves")},

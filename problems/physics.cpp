@@ -53,4 +53,27 @@ void ByJacobian::pullback(BatchRef u, BatchOut JTu, Workspace& w) const {
     JTu.col(b).noalias() = J.middleCols(b * k, k).transpose() * u.col(b);
 }
 
+const Real* BySparseJacobian::saved_values(Workspace& w) const {
+  if (w.saved.empty()) w.saved.resize(1);
+  Matrix& values = w.saved[0];
+  if (!w.saved_is_current) {
+    values.resize(pattern_.values(), 1);
+    sparse_jacobian(values.col(0), w);
+    w.saved_is_current = true;
+  }
+  return values.data();
+}
+
+void BySparseJacobian::pushforward(BatchRef v, BatchOut Jv, Workspace& w) const {
+  pattern_.multiply(saved_values(w), v.col(0), Jv.col(0));
+}
+
+void BySparseJacobian::pullback(BatchRef u, BatchOut JTu, Workspace& w) const {
+  pattern_.multiply_transposed(saved_values(w), u.col(0), JTu.col(0));
+}
+
+void BySparseJacobian::jacobian(BatchOut J, Workspace& w) const {
+  pattern_.expand(saved_values(w), J);
+}
+
 }  // namespace isoline::problems

@@ -6,6 +6,7 @@
 #include "core/array.h"
 #include "core/errors.h"
 #include "core/random.h"
+#include "core/sparse.h"
 #include "core/workspace.h"
 
 namespace isoline::problems {
@@ -110,6 +111,12 @@ class Physics {
   // J of each sample, side by side: (m, k·B). By default from the cheaper product.
   virtual void jacobian(BatchOut J, Workspace& w) const;
 
+  // Where J of a sample is sparse: its pattern, which is fixed, and the values there.
+  virtual const SparsePattern* sparse_pattern() const { return nullptr; }
+  virtual void sparse_jacobian(VectorOut, Workspace&) const {
+    throw NotApplicable("the physics declares no sparse Jacobian");
+  }
+
   // Σᵢ uᵢ ∇²Pᵢ of each sample, side by side: (k, k·B), u (m, B).
   virtual bool has_curvature() const { return false; }
   virtual void curvature(BatchRef, BatchOut, Workspace&) const {
@@ -138,6 +145,23 @@ class ByJacobian : public Physics {
 
  private:
   const Matrix& saved_jacobian(Workspace& w) const;
+};
+
+// Products of one sample by a sparse Jacobian, whose values are computed once a forward pass, in
+// w.saved[0].
+class BySparseJacobian : public Physics {
+ public:
+  explicit BySparseJacobian(SparsePattern pattern) : pattern_(std::move(pattern)) {}
+  Index inputs() const final { return pattern_.columns; }
+  Index outputs() const final { return pattern_.rows(); }
+  const SparsePattern* sparse_pattern() const final { return &pattern_; }
+  void pushforward(BatchRef v, BatchOut Jv, Workspace& w) const override;
+  void pullback(BatchRef u, BatchOut JTu, Workspace& w) const override;
+  void jacobian(BatchOut J, Workspace& w) const override;
+
+ private:
+  const Real* saved_values(Workspace& w) const;
+  SparsePattern pattern_;
 };
 
 // y = A x with A = Aᵀ, whose products are the forward pass again.

@@ -23,6 +23,10 @@ Problem::Problem(ProblemParts parts) : parts_(std::move(parts)) {
   require(batch_.target.rows() == outputs(), "the target does not fit the physics' outputs");
   require(parts_.network->outputs() == inputs(), "the network does not fit the physics' inputs");
   require(parts_.network->parameters() == unknowns(), "the start does not fit the network");
+  if (const SparsePattern* pattern = sparse_pattern())
+    require(pattern->defect(outputs(), inputs()).empty(), [&] {
+      return "the pattern of the sparse Jacobian is wrong: " + pattern->defect(outputs(), inputs());
+    });
   if (!parts_.field) return;
   const Field& field = *parts_.field;
   const Index cells = field.is_history() ? field.columns : field.rows * field.columns;
@@ -32,6 +36,26 @@ Problem::Problem(ProblemParts parts) : parts_(std::move(parts)) {
           "x and y do not fit the grid of the field");
   require(field.is_history() == bool(parts_.history) && (!field.is_history() || field.rows > 1),
           "a field over time needs its history, of two rows at least, and no other field has one");
+}
+
+ProblemParts Problem::parts() && {
+  if (!is_learned()) {
+    parts_.input = std::move(batch_.input);
+    parts_.context = std::move(batch_.context);
+    parts_.target = std::move(batch_.target);
+  }
+  return std::move(parts_);
+}
+
+void Problem::set_target(const Matrix& target) {
+  batch_.target = target;
+  batch_.truth.resize(0, 0);
+  parts_.aim = Aim::loss;
+  parts_.minimum = parts_.scale = parts_.x_scale = std::nullopt;
+  parts_.minimum_error = 0;
+  parts_.truth.reset();
+  parts_.x_error = nullptr;
+  parts_.x_floor = nullptr;
 }
 
 // L at y = 0 if there is a signal y*, otherwise at the standard start; f_L itself if it is more
@@ -87,19 +111,21 @@ OracleSet Problem::offers() const {
   const Products has = products();
   if (has.has_pullback) offered.add(Oracle::pullback);
   if (has.has_pushforward) offered.add(Oracle::pushforward);
-  // A dense matrix must need at most 1 GiB and at most a few products per sample: the Jacobian of a
-  // grid costs as many solves as the grid has cells.
-  constexpr Real kMostEntries = 1 << 27;
+  // A dense matrix must need at most a few products per sample: the Jacobian of a grid costs as
+  // many solves as the grid has cells.
   constexpr Index kMostProducts = 64;
-  const Real entries = static_cast<Real>(residuals()) * static_cast<Real>(unknowns());
   const bool is_small = has_identity_network() || std::min(inputs(), outputs()) <= kMostProducts;
-  if (is_small && entries <= kMostEntries && (has.has_pullback || has.has_pushforward)) {
+  if (is_small && is_dense_feasible(Oracle::jacobian) &&
+      (has.has_pullback || has.has_pushforward)) {
     offered.add(Oracle::jacobian);
     offered.add(Oracle::sensitivity);
   }
+  if (sparse_pattern()) offered.add(Oracle::sparse_jacobian);
   if (parts_.physics->has_curvature()) {
-    if (has_identity_network() || inputs() <= kMostProducts) offered.add(Oracle::curvature);
-    if (has_identity_network()) offered.add(Oracle::hessian);
+    if ((has_identity_network() || inputs() <= kMostProducts) &&
+        is_dense_feasible(Oracle::curvature))
+      offered.add(Oracle::curvature);
+    if (has_identity_network() && is_dense_feasible(Oracle::hessian)) offered.add(Oracle::hessian);
     if (parts_.network->has_curvature()) offered.add(Oracle::hessian_product);
   }
   if (parts_.network->has_layer_factors()) offered.add(Oracle::layer_factors);
@@ -107,6 +133,27 @@ OracleSet Problem::offers() const {
   if (inverse_kind() != Inverse::none) offered.add(Oracle::inverse);
   if (batch_.truth.size() > 0) offered.add(Oracle::truth);
   return offered;
+}
+
+std::array<Index, 2> Problem::dense_shape(Oracle oracle) const {
+  switch (oracle) {
+    case Oracle::jacobian:
+      return {residuals(), unknowns()};
+    case Oracle::sensitivity:
+      return {outputs(), inputs() * samples()};
+    case Oracle::hessian:
+      return {unknowns(), unknowns()};
+    case Oracle::curvature:
+      return {inputs(), inputs() * samples()};
+    default:
+      return {0, 0};
+  }
+}
+
+bool Problem::is_dense_feasible(Oracle oracle) const {
+  constexpr Real kMostEntries = 1 << 27;
+  const auto [rows, columns] = dense_shape(oracle);
+  return static_cast<Real>(rows) * static_cast<Real>(columns) <= kMostEntries;
 }
 
 OracleCounts Problem::prices() const {
@@ -118,6 +165,7 @@ OracleCounts Problem::prices() const {
                           .pullback_price = products().pullback_price,
                           .has_pushforward = products().has_pushforward,
                           .has_pullback = products().has_pullback,
+                          .widest_row = sparse_pattern() ? sparse_pattern()->widest_row() : 0,
                           .inverse_price = parts_.physics->inverse_price(),
                           .has_network = !has_identity_network()};
   OracleCounts prices{};

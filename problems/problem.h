@@ -2,6 +2,7 @@
 // problem is one with the identity network. Const: what depends on θ lives in a Point.
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <concepts>
 #include <functional>
@@ -100,6 +101,7 @@ struct ProblemParts {
 class Problem {
  public:
   explicit Problem(ProblemParts parts);
+  ProblemParts parts() &&;  // to make another problem of
 
   Index unknowns() const { return parts_.start.drawn.size(); }  // n
   Index inputs() const { return parts_.physics->inputs(); }     // k
@@ -114,6 +116,10 @@ class Problem {
   Aim aim() const { return parts_.aim; }
   std::optional<Real> minimum() const { return parts_.minimum; }
   void set_minimum(Real loss) { parts_.minimum = loss; }  // the best known, where none is declared
+  // The start and the target of the user, for a direct problem, of the sizes of its own. What is
+  // known of the solution for its own target does not hold for another one.
+  void set_start(Vector start) { parts_.start.drawn = std::move(start); }
+  void set_target(const Matrix& target);
   Real minimum_error() const { return parts_.minimum_error; }
   const std::optional<Matrix>& truth() const { return parts_.truth; }  // of a direct problem
   const auto& window() const { return parts_.window; }
@@ -147,6 +153,14 @@ class Problem {
   void draw_validation(Batch& out) const { draw("validation", 0, parts_.samples.validation, out); }
 
   OracleSet offers() const;
+  // Rows and columns of an oracle's dense matrix, and whether it takes at most 1 GiB.
+  std::array<Index, 2> dense_shape(Oracle oracle) const;
+  bool is_dense_feasible(Oracle oracle) const;
+  // Where J is sparse: its pattern, else nothing.
+  const SparsePattern* sparse_pattern() const {
+    const bool is_of_theta = has_identity_network() && samples() == 1;
+    return is_of_theta ? parts_.physics->sparse_pattern() : nullptr;
+  }
   OracleCounts prices() const;  // declared, in forwards
 
   void forward(VectorRef theta, const Batch& batch, Point& at) const;
@@ -180,7 +194,11 @@ class Problem {
   void layer_moments(BatchRef w, std::vector<LayerMoments>& out, VectorOut JTw, Point& at) const {
     parts_.network->layer_moments(pulled_to_x(w, at), out, JTw, at.network);
   }
-  void jacobian(Matrix& J, Point& at) const;          // (m·B, n)
+  void jacobian(Matrix& J, Point& at) const;  // (m·B, n)
+  void sparse_jacobian(Vector& values, Point& at) const {
+    values.resize(parts_.physics->sparse_pattern()->values());
+    parts_.physics->sparse_jacobian(values, at.physics);
+  }
   void sensitivity(Matrix& dy_dx, Point& at) const {  // (m, k·B)
     dy_dx.resize(outputs(), at.x().size());
     parts_.physics->jacobian(dy_dx, at.physics);

@@ -199,10 +199,12 @@ ProblemParts process_parts(const ProblemHandshake& said, const std::shared_ptr<S
 Problem make_process(const OptionValues& options, const Draw& draw) {
   const auto given = read_options<ProcessOptions>(options);
   auto session = std::make_shared<Session>(given.command);
-  ProblemHandshake said = greet_problem(session->line, draw.instance_seed(), given.startup);
+  const OptionValues declared = declared_values(options);
+  ProblemHandshake said =
+      greet_problem(session->line, draw.instance_seed(), given.startup, declared);
   if (!said.drawn.empty() && draw.start_seed() != draw.instance_seed()) {  // it samples its starts
     Session other(given.command);
-    said.drawn = greet_problem(other.line, draw.start_seed(), given.startup).drawn;
+    said.drawn = greet_problem(other.line, draw.start_seed(), given.startup, declared).drawn;
   }
   return Problem(process_parts(said, session, draw));
 }
@@ -210,8 +212,10 @@ Problem make_process(const OptionValues& options, const Draw& draw) {
 Foreign introduce(const OptionValues& options) {
   static Introductions<ProblemHandshake> all;
   const auto given = read_options<ProcessOptions>(options);
+  const OptionValues declared = declared_values(options);
   Foreign foreign =
-      all.of(given.command, [&](Line& line) { return greet_problem(line, 0, given.startup); })
+      all.of(given.command, declared,
+             [&](Line& line) { return greet_problem(line, 0, given.startup, declared); })
           .foreign;
   if (!given.label.empty()) foreign.label = given.label;
   return foreign;

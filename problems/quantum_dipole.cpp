@@ -249,7 +249,7 @@ struct Options {
 };
 void fields(Options& o, auto& field) {
   field("steps", o.steps, between(48, 3072),
-        "time steps, each with one control; together they last 19.2 for any number");
+        "number of time steps, each with one control; the total time is 19.2 for any number");
   field("loss", o.loss, {"", "residual"},
         "residual: y = (I − aaᵀ)ψ and y* = 0, the same loss as a sum of squares");
   field(kEpochOption, o.epoch, between(0, 1e6),
@@ -345,10 +345,10 @@ void register_quantum_dipole(ProblemRegistry& registry) {
                   "a = f₁ψ₂ + f₂ψ₃",
        .source = "Schnell, Holl, Thuerey (2022), published scripts",
        .note =
-           "Published as a learning problem. mode=direct finds the controls (384 by default) of one target, "
-           "from u = 1, since the gradient vanishes at u = 0. loss=residual has the same loss as "
-           "the sum of squares ‖(I − aaᵀ)ψ‖², which least-squares methods can use. The targets are "
-           "real, as published: the phases that the scripts sample are not used.",
+           "Published as a learning problem. mode=direct finds the controls (384 by default) of "
+           "one target, from u = 1, since the gradient vanishes at u = 0. loss=residual has the "
+           "same loss as the sum of squares ‖(I − aaᵀ)ψ‖², which least-squares methods can use. "
+           "The targets are real, as published: the phases that the scripts sample are not used.",
        .aim = Aim::loss,  // any control that arrives will do
        .in_all = false,
        .panels =

@@ -154,6 +154,8 @@ void register_sine(ProblemRegistry& registry) {
                   {.title = "Fig. 5c: ξ = 32, φ = 45°",
                    .kind = "curve",
                    .where = {{"xi", 32}, {"phi", 45}}},
+                  {.title = "Appendix: learning curves", .kind = "curve"},
+                  {.title = "Appendix: loss", .kind = "series", .quantity = "loss"},
                   {.title = "Fig. 5d: relative error over ξ, φ = 0",
                    .kind = "sweep",
                    .where = {{"phi", 0}},

@@ -155,8 +155,8 @@ void register_toys(ProblemRegistry& registry) {
        .source = "Thuerey et al., Physics-based Deep Learning, chapter "
                  "Scale-Invariance and Inversion",
        .note =
-           "The book's loss is |P|², loss=square here; by default half of that, so that 2η here "
-           "equals η there.",
+           "The loss of the book is |P|² (loss=square). The default loss is half of it, so a step "
+           "length of 2η here equals η there.",
        .aim = Aim::x},  // P is one to one
       make_scaling));
   registry.add(problem_entry({.name = "square",

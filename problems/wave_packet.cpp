@@ -24,7 +24,7 @@ struct Options {
 };
 void fields(Options& o, auto& field) {
   field("samples", o.samples, between(8, 65536), "times m at which the signal is sampled");
-  field("noise", o.noise, between(0, 10), "standard deviation σ of the noise in y*");
+  field("sigma", o.noise, between(0, 10), "standard deviation σ of the noise in y*");
   fields(o.learning, field);
 }
 

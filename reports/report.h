@@ -45,17 +45,30 @@ inline void trim_for_report(Record& record, bool is_claimed) {
   if (!is_claimed) drop(record.curve.gradient_norm, record.curve.step_norm);
 }
 
-// Writes every format into the folder, which it makes, several at a time.
+// Writes every format into the folder, which it makes, several at a time. The formats of an earlier
+// report are replaced after the last one is written: a process that is killed leaves one of both.
 inline void write_report(const Document& document, const std::filesystem::path& out) {
-  std::filesystem::create_directories(out);
+  namespace fs = std::filesystem;
+  fs::create_directories(out);
+  for (const std::string& name : names_in(out))
+    if (is_abandoned(out / name)) fs::remove(out / name);
   malloc_trim(0);  // what the sections took and gave back
-  share(std::size(kFormats), [&](std::size_t i) {
+  const auto beside = [&](const Format& format) { return temporary_of(out / format.file); };
+  const auto write = [&](std::size_t i) {
     const std::string file = kFormats[i].file, text = kFormats[i].text(document);
     // Formats for terminals and editors. A page shows no control characters, and has scripts; the
     // fields of CSV, the longest text, are printable already.
     const bool is_safe = file.ends_with(".html") || file.ends_with(".csv");
-    write_text(out / file, is_safe ? text : printable(text));
-  });
+    write_text(beside(kFormats[i]), is_safe ? text : printable(text));
+  };
+  try {
+    share(std::size(kFormats), write);
+  } catch (...) {
+    std::error_code unknown;
+    for (const Format& format : kFormats) fs::remove(beside(format), unknown);
+    throw;
+  }
+  for (const Format& format : kFormats) fs::rename(beside(format), out / format.file);
 }
 
 }  // namespace isoline::reports

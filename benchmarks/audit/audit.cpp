@@ -18,6 +18,7 @@
 #include "benchmarks/run/execute.h"
 #include "benchmarks/run/isolate.h"
 #include "core/json.h"
+#include "core/spec.h"
 #include "optimizers/optimizer.h"
 #include "problems/problem.h"
 
@@ -245,9 +246,13 @@ bool is_positive(Real value) { return std::isfinite(value) && value > 0; }
 
 }  // namespace
 
-AuditedOptimizer audit_optimizer(const Catalog& catalog, const std::string& name) {
+AuditedOptimizer audit_optimizer(const Catalog& catalog, const std::string& text) {
+  const Spec spec = parse_spec(text);
+  const std::string& name = spec.name;
   const OptimizerEntry& entry = catalog.optimizers.at(name);
-  const Component component = complete_optimizer(catalog, name, options_without_floors(entry));
+  OptionValues options = options_without_floors(entry);
+  options.set_all(options_of(spec));
+  const Component component = complete_optimizer(catalog, name, options);
   const Subject subject{catalog, entry, component.options};
   AuditedOptimizer audited{.name = name, .spec = component.spec};
   audited.reason = subject.why_inapplicable(bent_problem());

@@ -30,10 +30,10 @@ constexpr const char* kExamples =
     "  isoline run --problem 'sine[xi=1|32]' --optimizer 'adam[rate=1e-3],ceres-lm' --seeds 5\n"
     "  isoline run quick --optimizer adam     the cells of a suite with this optimizer\n"
     "  isoline describe sip                   formula, options, required derivatives, source\n"
-    "  isoline check rosenbrock               are its derivatives right?\n"
-    "  isoline audit gd adam sip              its measured scaling, invariance and order\n"
+    "  isoline check rosenbrock               are the derivatives of this problem right?\n"
+    "  isoline audit gd adam sip              measured scaling, invariance and order of methods\n"
     "  isoline compare results/old results/new    what is worse than before?\n"
-    "  isoline claims notebook                do the numbers of the notebook hold?\n"
+    "  isoline claims notebook                do the claims of the notebook hold?\n"
     "  isoline help run                       the options of a command, with examples\n\n"
     "Exit codes: 0 success, 1 wrong usage, 2 failed cells or a regression, 3 improvements only, "
     "4 not comparable, 130 interrupted.";
@@ -100,8 +100,8 @@ double read_time(const std::string& option, const std::string& text) {
 }
 
 // "2GB", "1.5GiB" or bytes; a unit is 1024 of the one before. Less than 16MB starts no cell.
-std::int64_t read_bytes(const std::string& option, const std::string& text) {
-  const double least = 16 * kKilo * kKilo, most = std::pow(kKilo, 5);
+std::int64_t read_bytes(const std::string& option, const std::string& text, int least_megabytes) {
+  const double least = least_megabytes * kKilo * kKilo, most = std::pow(kKilo, 5);
   std::string amount = text;
   for (char& letter : amount)
     letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
@@ -109,7 +109,8 @@ std::int64_t read_bytes(const std::string& option, const std::string& text) {
   const auto value = number_in<double>(amount);
   const double bytes = value ? *value * unit : -1;
   require(bytes >= least && bytes <= most, [&] {
-    return fmt::format("{} must be from 16MB to 1024TB, such as 2GB, got '{}'", option, text);
+    return fmt::format("{} must be from {}MB to 1024TB, such as 2GB, got '{}'", option,
+                       least_megabytes, text);
   });
   return static_cast<std::int64_t>(bytes);
 }
@@ -410,6 +411,12 @@ void VerbArguments::whole(const char* name, std::int64_t& value, const char* abo
   whole_number(verb_, name, value, about, range);
 }
 
+void VerbArguments::whole_or_never(const char* name, std::int64_t& value, const char* about) {
+  number(verb_, name, "N|never", value, about, [](auto& of, auto& text) {
+    return text == "never" ? std::int64_t{0} : read_whole(of, text, {});
+  });
+}
+
 Argument VerbArguments::real(const char* name, double& value, const Range& range,
                              const char* about) {
   return Argument(*number(verb_, name, "FLOAT", value, about,
@@ -424,8 +431,10 @@ void VerbArguments::time(const char* name, double& seconds, const char* about) {
   number(verb_, name, "TIME", seconds, about, read_time);
 }
 
-void VerbArguments::memory(const char* name, std::int64_t& bytes, const char* about) {
-  number(verb_, name, "SIZE", bytes, about, read_bytes);
+void VerbArguments::memory(const char* name, std::int64_t& bytes, const char* about,
+                           int least_megabytes) {
+  number(verb_, name, "SIZE", bytes, about,
+         [=](auto& of, auto& text) { return read_bytes(of, text, least_megabytes); });
 }
 
 void VerbArguments::plugins() {

@@ -40,6 +40,9 @@ void override_blocks(const RunArguments& given, Suite& suite) {
     if (given.work > 0) block.budget.work = given.work;
     if (given.target >= 0) block.budget.target = given.target;
     if (given.seconds > 0) block.budget.seconds = given.seconds;
+    if (given.stall >= 0)
+      block.budget.stall =
+          given.stall == kStallIterations ? std::nullopt : std::optional(given.stall);
     if (given.threads > 0) block.threads = given.threads;
   }
 }
@@ -53,7 +56,8 @@ void declare_cells(VerbArguments& verb, RunArguments& given) {
   verb.text("--problem", given.problem, "Problems: 'sine[xi=1|32,phi=45],square'").joined();
   verb.text("--optimizer", given.optimizer, "Optimizers: 'adam[rate=1e-3],ceres-lm'").joined();
   const Argument seeds =
-      verb.text("--seeds", given.seeds, "5 (0 to 4), 0..9, =5, or 2:1 for instance 2 with start 1");
+      verb.text("--seeds", given.seeds,
+                "Seeds: 5 (seeds 0 to 4), 0..9, =5 (seed 5), or 2:1 (instance 2, start 1)");
   verb.text("--instances", given.instances,
             "Instances, each with every start of --starts: 10, 0..9 or =5 (default: =0)")
       .excludes(seeds);
@@ -63,14 +67,21 @@ void declare_cells(VerbArguments& verb, RunArguments& given) {
   verb.whole("--iterations", given.iterations, "Limit of the iterations of a cell");
   verb.whole("--work", given.work, "Limit of the work of a cell, in forward solves");
   verb.time("--time", given.seconds,
-            "Time limit of a cell: 10s, 2m; it is killed after twice this processor time");
+            "Time limit of a cell: 10s, 2m; a cell that uses twice this processor time is killed");
   verb.real("--target", given.target, between(0, 1),
             "Tolerance at which a run stops, relative to the scale of the loss or, if the success "
             "criterion is x, to the norm of x* (default: 1e-10)");
+  verb.whole_or_never("--stall", given.stall,
+                      "Iterations without progress after which a cell ends (default: 100)");
+  verb.text("--start", given.start, "Start of every problem: a .npy or .csv file of n numbers");
+  verb.text("--target-data", given.target_data,
+            "Target y* of every problem: a .npy or .csv file of m numbers");
   verb.whole("--threads", given.threads, "Threads of the libraries within a cell", kThreads);
   verb.text("--rates", given.rates, "Table of tuned rates: builtin, none or a file").shown();
-  verb.text("--best", given.best,
-            "Table of `isoline best`: f_L of problems that declare no least loss");
+  verb.text(
+      "--best", given.best,
+      "Table that `isoline best` wrote, of the lowest known losses of problems that do not declare "
+      "f_L");
   verb.flag("--allow-large", given.allow_large, "Plan more than a million cells");
   verb.plugins();
 }
@@ -79,9 +90,10 @@ void declare_what_is_done(VerbArguments& verb, RunArguments& given) {
   verb.text(
       "--out", given.out,
       "Result folder (default: results/SUITE; for your own study or a part of a suite, a name "
-      "that follows from the plan)");
+      "derived from the plan)");
   verb.flag("--force", given.force, "Run finished cells again");
-  verb.flag("--reuse", given.reuse, "Keep the records of another build");
+  verb.flag("--reuse", given.reuse,
+            "Keep the finished records of another build, and do not run their cells again");
   verb.texts("--retry", given.retry,
              "Run cells with these statuses again: failed,crashed,timeout,memory")
       .between_commas();
@@ -93,15 +105,16 @@ void declare_run(VerbArguments& verb, RunArguments& given) {
   verb.flag("--exclusive", given.exclusive, "One cell at a time, for reliable times");
   verb.whole("--repeat", given.repeat, "Timings per cell", {1, 1000});
   verb.memory("--memory", given.memory_bytes,
-              "Memory limit of a cell, 256MB or more (default: 4GB)");
+              "Memory limit of a cell, 256MB or more (default: 4GB)", 256);
   declare_what_is_done(verb, given);
   verb.flag("--no-report", given.no_report, "Do not write a report");
   verb.flag("--uncertified", given.uncertified,
-            "Run external problems whose derivatives fail their checks; each table marks them");
+            "Also run external problems that fail their checks; each table marks these problems");
   verb.flag("--keep-output", given.keeps_output,
             "Keep the output of each cell in its record, up to 64 KiB");
-  verb.flag("--fields", given.keeps_fields,
-            "Keep x of grid problems at six iterations for every seed (default: for seed 0 only)");
+  verb.flag(
+      "--fields", given.keeps_fields,
+      "For problems on a grid, keep x at six iterations for every seed (default: seed 0 only)");
   verb.flag("--spectrum", given.keeps_spectra,
             "Keep the singular values of J = ∂y/∂θ at iterations 0, 1, 2, 4, 8, … and the last; "
             "finished cells without them run again");
@@ -120,10 +133,6 @@ void declare_run(VerbArguments& verb, RunArguments& given) {
 }
 
 PlannedRun planned_run(const RunArguments& given, const Catalog& catalog) {
-  constexpr std::int64_t kLeastMemory = 256'000'000;  // the libraries' own arrays take half of it
-  require(given.memory_bytes == 0 || given.memory_bytes >= kLeastMemory, [&] {
-    return fmt::format("--memory must be at least 256MB, got {} bytes", given.memory_bytes);
-  });
   if (!given.best.empty()) read_as("--best", [&] { BestLosses::add_known(given.best); });
   const bool is_limited = !given.problem.empty() || !given.optimizer.empty();
   const bool is_suite = !given.suite.empty() || !is_limited;
@@ -136,6 +145,8 @@ PlannedRun planned_run(const RunArguments& given, const Catalog& catalog) {
                      .optimizers = {given.optimizer.empty() ? "*" : given.optimizer}}};
   }
   override_blocks(given, suite);
+  if (!given.start.empty()) suite.problem_options.set(kStartOption, given.start);
+  if (!given.target_data.empty()) suite.problem_options.set(kTargetOption, given.target_data);
   Rates rates = Rates::named(given.rates);
   const std::uint64_t most = given.allow_large ? kMostWhereLarge : kMostCells;
   const PlanSize size = size_of(catalog, suite);
@@ -177,8 +188,9 @@ void print_counts(const Preview& shown, int jobs) {
   say(stdout, preview_text(counts_of(shown.cells), jobs) + "\n");
   if (shown.likened > 0)
     say(stdout,
-        fmt::format("{} of problems not probed: taken to be like others of the same problem\n",
-                    reports::counted(shown.likened, "setting")));
+        fmt::format(
+            "{} of problems not probed: assumed to be like the other settings of the problem\n",
+            reports::counted(shown.likened, "setting")));
 }
 
 Preview preview_of(const PlannedRun& all, const RunArguments& given,

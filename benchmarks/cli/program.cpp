@@ -15,6 +15,7 @@
 #include "benchmarks/cli/verb.h"
 #include "benchmarks/plan/catalog.h"
 #include "benchmarks/run/isolate.h"
+#include "benchmarks/run/process_group.h"
 #include "core/errors.h"
 #include "core/records/provenance.h"
 #include "core/shell.h"
@@ -88,24 +89,12 @@ int left_with(int code, const std::string& program, const char* what) {
   return code;
 }
 
-}  // namespace
-
-int main(int count, char** arguments, const std::function<benchmarks::Catalog()>& catalog,
-         const SourceTree& tree) {
-  open_standard_streams();
-  prepare_libraries(arguments);
-  std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is a write that fails, and says so
-  if (!tree.commit.empty()) set_program_tree(tree.commit, tree.is_dirty);
-  benchmarks::set_program_sources(tree.sources);
-  const std::string program = std::filesystem::path(arguments[0]).filename().string();
-  benchmarks::Session session(command_of(program, count, arguments), catalog);
+int code_of(const std::string& program, int count, char** arguments, benchmarks::Session& session) {
   try {
     const int code = benchmarks::parse_and_run(program, count, arguments, session);
-    if (std::fflush(stdout) != 0)
-      return left_with(kWorse, program,
-                       fmt::format("cannot write standard output: {}", strerror(errno)).c_str());
-    if (session.plugins().empty()) return code;
-    _exit(code);  // what a library does when it is unloaded costs nothing that is done
+    if (std::fflush(stdout) == 0) return code;
+    return left_with(kWorse, program,
+                     fmt::format("cannot write standard output: {}", strerror(errno)).c_str());
   } catch (const UsageError& error) {
     return left_with(kUsage, program, error.what());
   } catch (const std::bad_alloc&) {
@@ -113,6 +102,23 @@ int main(int count, char** arguments, const std::function<benchmarks::Catalog()>
   } catch (const std::exception& error) {
     return left_with(kWorse, program, error.what());
   }
+}
+
+}  // namespace
+
+int main(int count, char** arguments, const std::function<benchmarks::Catalog()>& catalog,
+         const SourceTree& tree) {
+  open_standard_streams();
+  prepare_libraries(arguments);
+  benchmarks::ignore_signals_of_children();
+  std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is a write that fails, and says so
+  if (!tree.commit.empty()) set_program_tree(tree.commit, tree.is_dirty);
+  benchmarks::set_program_sources(tree.sources);
+  const std::string program = std::filesystem::path(arguments[0]).filename().string();
+  benchmarks::Session session(command_of(program, count, arguments), catalog);
+  const int code = code_of(program, count, arguments, session);
+  if (session.plugins().empty()) return code;
+  _exit(code);  // what a library does when it is unloaded costs nothing that is done
 }
 
 }  // namespace isoline

@@ -66,7 +66,7 @@ void print_failures(const Outcome& outcome, const std::filesystem::path& folder)
   for (std::size_t i = 0; i < std::min(kMost, outcome.failures.size()); ++i)
     say(stderr, fmt::format("{}\n", outcome.failures[i]));
   if (outcome.failures.size() > kMost)
-    say(stderr, fmt::format("… and {} more\n", outcome.failures.size() - kMost));
+    say(stderr, fmt::format("… and {} more failures\n", outcome.failures.size() - kMost));
   if (outcome.crash) say(stderr, debugging_advice(*outcome.crash, folder));
 }
 
@@ -76,7 +76,7 @@ void print_outcome(const Outcome& outcome, const std::filesystem::path& folder, 
     say(stderr, fmt::format("{}: the results of its repetitions differ\n", name));
   for (const std::string& remark : outcome.remarks) say(stderr, remark + "\n");
   if (!outcome.missing.empty())
-    say(stderr, fmt::format("{} of {} disappeared during the run, the first is that of {}; "
+    say(stderr, fmt::format("{} of {} disappeared during the run; the first one is that of {}; "
                             "the same command runs the missing cells\n",
                             reports::counted(outcome.missing.size(), "record"), outcome.planned,
                             outcome.missing.front()));

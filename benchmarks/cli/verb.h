@@ -70,10 +70,12 @@ class VerbArguments {
   // The help shows a default that lies within the range.
   void whole(const char* name, int& value, const char* about, WholeRange range = {});
   void whole(const char* name, std::int64_t& value, const char* about, WholeRange range = {});
+  // "never" is 0.
+  void whole_or_never(const char* name, std::int64_t& value, const char* about);
   Argument real(const char* name, double& value, const Range& range, const char* about);
   void seed(const char* name, std::uint64_t& value, const char* about);
   void time(const char* name, double& seconds, const char* about);
-  void memory(const char* name, std::int64_t& bytes, const char* about);
+  void memory(const char* name, std::int64_t& bytes, const char* about, int least_megabytes = 16);
   void plugins();  // --plugin, of the session
 
  private:

@@ -275,7 +275,7 @@ struct Library {
 };
 
 const Library kLibraries[] = {
-    {"ceres-lm", 2, 1, 3, plain_ceres_lm},
+    {"ceres-lm[linear-solver=dense-qr]", 2, 1, 3, plain_ceres_lm},
     {"ceres-lbfgs", 20, 10, 101, plain_ceres_lbfgs},
     {"nlopt-lbfgs", 20, 10, 101, plain_nlopt_lbfgs, true},
 };
@@ -314,6 +314,23 @@ void register_libraries() {
                   [=] { return library_pair(library, true); });
     register_pair(name + "/whole", library.pairs, {}, [=] { return library_pair(library, false); });
   }
+}
+
+// A step of ours in bundle adjustment over Ceres' by a dense Schur complement, on one problem. The
+// first of them includes the analysis of the pattern.
+void register_bundle() {
+  const char* const spec = std::getenv("ISOLINE_BAL") ? "bal[file=problem-49-7776-pre.txt]"
+                                                      : "bal[cameras=49,points=7776]";
+  register_pair(fmt::format("bundle/levenberg-marquardt/{}", spec), 5, {.ratio = 1.1}, [=] {
+    const auto problem = std::make_shared<const Problem>(make_problem(spec));
+    const auto step_seconds = [problem](const char* method) {
+      constexpr int kSteps = 10;
+      const Library steps{method, kSteps, 1, 1, nullptr};
+      return solve_of_ours(*problem, steps).second.wall_seconds / kSteps;
+    };
+    return Pair{[=] { return step_seconds("levenberg-marquardt"); },
+                [=] { return step_seconds("ceres-lm[linear-solver=dense-schur]"); }};
+  });
 }
 
 // --- a forward pass and a pullback of the grid problems over the fastest transforms of FFTW that
@@ -504,6 +521,7 @@ int main(int count, char** arguments) {
   isoline::prepare_libraries(arguments);
   register_metering();
   register_libraries();
+  register_bundle();
   register_transforms();
   register_round_trips();
   register_spectral();

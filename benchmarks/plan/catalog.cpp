@@ -3,16 +3,20 @@
 #include "benchmarks/plan/catalog.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <sstream>
 
 #include "benchmarks/plan/rates.h"
 #include "core/files.h"
+#include "core/foreign/handshake.h"
 #include "core/foreign/plugin_library.h"
 #include "core/options.h"
+#include "core/records/npy.h"
 #include "core/records/provenance.h"
 #include "optimizers/optimizer.h"
+#include "problems/features.h"
 #include "problems/problem.h"
 
 namespace isoline::benchmarks {
@@ -98,18 +102,65 @@ std::string with_foreign(const Component& component, const std::string& sources)
   return component.foreign ? digest(sources + digest_of(*component.foreign)) : sources;
 }
 
+// The entry with the options that another program declares; first what it says with its defaults.
 template <class Entry>
-Component complete(const Entry& entry, const OptionValues& given) {
+Entry with_declared(Entry entry, const OptionValues& given, std::optional<Foreign>& foreign) {
+  if (!entry.introduce) return entry;
+  OptionValues known;
+  for (const OptionField& field : entry.options)
+    if (const OptionValue* value = given.find(field.name)) known.set(field.name, *value);
+  foreign = entry.introduce(complete_options(entry.options, entry.name, known));
+  entry.options.insert(entry.options.end(), foreign->options.begin(), foreign->options.end());
+  return entry;
+}
+
+template <class Entry>
+Component complete(const Entry& registered, const OptionValues& given) {
+  std::optional<Foreign> foreign;
+  Entry entry = with_declared(registered, given, foreign);
+  OptionTable features;  // they stand in options only where they differ from their defaults
+  if constexpr (std::is_same_v<Entry, ProblemEntry>) {
+    features = problems::feature_table(entry.options);
+    entry.options.insert(entry.options.end(), features.begin(), features.end());
+  }
   OptionValues options = complete_options(entry.options, entry.name, given);
   Component component{.name = entry.name,
                       .spec = short_spec(entry.options, entry.name, options),
                       .asked = asked_spec(entry.options, entry.name, given, options),
                       .is_learned = asks_to_learn(options),
                       .sources = source_digest(entry.file)};
-  if (entry.introduce) component.foreign = entry.introduce(options);
+  if (foreign && !foreign->options.empty())
+    foreign->label = short_spec(foreign->options, foreign->label, declared_values(options));
+  component.foreign = std::move(foreign);
   component.sources = with_foreign(component, component.sources);
+  for (const OptionField& feature : features)
+    if (options.at(feature.name) == feature.standard) options.erase(feature.name);
   component.options = std::move(options);
   return component;
+}
+
+// With the data of another model, that is the problem with these options instead.
+Problem made_with_features(const ProblemEntry& entry, const Component& problem,
+                           const OptionValues& options, std::uint64_t seed) {
+  const Draw draw(seed, problem.name);
+  OptionTable declared = entry.options;
+  if (problem.foreign)
+    declared.insert(declared.end(), problem.foreign->options.begin(),
+                    problem.foreign->options.end());
+  const OptionTable table = problems::feature_table(declared);
+  OptionValues own, features;
+  for (const auto& [name, value] : options) {
+    const bool is_feature = std::ranges::find(table, name, &OptionField::name) != table.end();
+    (is_feature ? features : own).set(name, value);
+  }
+  Problem plain = entry.make(own, draw);
+  std::optional<Matrix> target;
+  if (const std::string model = features.text("model"); !model.empty()) {
+    OptionValues other = own;
+    other.set_all(options_of(parse_spec(entry.name + "[" + model + "]")));
+    target = entry.make(complete_options(declared, entry.name, other), draw).target();
+  }
+  return problems::with_features(std::move(plain), features, draw, target);
 }
 
 // The sources of a method and of the method inside it.
@@ -120,6 +171,76 @@ std::string digest_of(const Catalog& catalog, const OptimizerEntry& entry,
   for (const std::string& spec : entry.inside(options, is_learning))
     all += source_digest(catalog.optimizers.at(parse_spec(spec).name).file);
   return digest(all);
+}
+
+// A start and a target of the user's own.
+
+constexpr std::size_t kFileDigits = 16;
+
+struct NamedFile {
+  std::string path, digest;
+};
+
+// "mine.npy", or "mine.npy@0123456789abcdef".
+NamedFile named_file(const std::string& given) {
+  const auto at = given.rfind('@');
+  const bool has_digest = at != given.npos && given.size() - at == kFileDigits + 1 &&
+                          given.find_first_not_of("0123456789abcdef", at + 1) == given.npos;
+  return has_digest ? NamedFile{given.substr(0, at), given.substr(at + 1)} : NamedFile{given, ""};
+}
+
+// The problem's entry with the options for files, each with the digest of its content.
+ProblemEntry with_files(ProblemEntry entry, OptionValues& given) {
+  require(!asks_to_learn(given), [&] {
+    return fmt::format("{}: a learned problem has no start and no target of its own", entry.name);
+  });
+  for (const char* option : {kStartOption, kTargetOption}) {
+    entry.options.push_back({option, std::string(), {}, {}, ""});
+    if (given.text(option).empty()) continue;
+    const NamedFile file = named_file(given.text(option));
+    const std::string now = digest(read_text(file.path));
+    require(file.digest.empty() || file.digest == now, [&] {
+      return fmt::format(
+          "{}: {}: the content of this file has changed: its digest is {}, and was {}", entry.name,
+          file.path, now, file.digest);
+    });
+    given.set(option, file.path + "@" + now);
+  }
+  return entry;
+}
+
+// Its numbers, row by row; a field's grid is stored column by column.
+Matrix numbers_in_file(const Problem& problem, const std::string& what, const std::string& given,
+                       Index wanted) {
+  const std::string path = named_file(given).path;
+  const NumberArray array = read_numbers(path);
+  const auto& field = problem.field();
+  const bool is_grid = field && !field->is_history() &&
+                       array.shape == std::vector<Index>{field->rows, field->columns};
+  require(static_cast<Index>(array.values.size()) == wanted, [&] {
+    return fmt::format("{}: its shape is ({}), but the {} has {} numbers{}", path,
+                       fmt::join(array.shape, ", "), what, wanted,
+                       field && !field->is_history() && field->rows * field->columns == wanted
+                           ? fmt::format(", ({}, {}) as a grid", field->rows, field->columns)
+                           : "");
+  });
+  Matrix numbers = Eigen::Map<const Vector>(array.values.data(), wanted);
+  if (is_grid)
+    numbers.reshaped(field->rows, field->columns) =
+        Eigen::Map<const Matrix>(array.values.data(), field->columns, field->rows).transpose();
+  return numbers;
+}
+
+Problem made_without_best(const Catalog& catalog, const Component& problem, std::uint64_t seed) {
+  OptionValues options = problem.options;
+  const std::string start = options.text(kStartOption), target = options.text(kTargetOption);
+  for (const char* option : {kStartOption, kTargetOption}) options.erase(option);
+  Problem made = made_with_features(catalog.problems.at(problem.name), problem, options, seed);
+  if (!start.empty())
+    made.set_start(numbers_in_file(made, "start of " + problem.name, start, made.unknowns()));
+  if (!target.empty())
+    made.set_target(numbers_in_file(made, "target of " + problem.name, target, made.outputs()));
+  return made;
 }
 
 bool can_learn(const ProblemEntry& entry) {
@@ -150,6 +271,12 @@ void require_no_learning(const ProblemEntry& entry, const OptionValues& options)
 
 }  // namespace
 
+OptionTable options_with_features(const ProblemEntry& entry) {
+  OptionTable all = entry.options;
+  for (OptionField& field : problems::feature_table(entry.options)) all.push_back(std::move(field));
+  return all;
+}
+
 Catalog builtin_catalog() {
   Catalog catalog;
   problems::register_problems(catalog.problems);
@@ -170,9 +297,12 @@ void add_plugin(Catalog& catalog, const std::string& path) {
 
 Component complete_problem(const Catalog& catalog, const std::string& name,
                            const OptionValues& options) {
-  const ProblemEntry& entry = catalog.problems.at(name);
+  const ProblemEntry& declared = catalog.problems.at(name);
+  OptionValues given = options;
+  const bool has_files = given.contains(kStartOption) || given.contains(kTargetOption);
+  const ProblemEntry entry = has_files ? with_files(declared, given) : declared;
   if (asks_to_learn(options)) require_learnable(catalog, entry);
-  Component problem = complete(entry, options);
+  Component problem = complete(entry, given);
   if (can_learn(entry) && !problem.is_learned) require_no_learning(entry, problem.options);
   if (problem.is_learned) {
     const std::string network = parse_spec(problem.options.text(kNetworkOption)).name;
@@ -199,21 +329,27 @@ Component complete_problem(const Catalog& catalog, const Spec& spec) {
   return complete_problem(catalog, spec.name, options_of(spec));
 }
 
+OptimizerEntry entry_of(const Catalog& catalog, const std::string& optimizer,
+                        const OptionValues& given) {
+  std::optional<Foreign> foreign;
+  OptimizerEntry entry = with_declared(catalog.optimizers.at(optimizer), given, foreign);
+  if (foreign && !foreign->tunable.empty()) entry.tunable.option = foreign->tunable;
+  return entry;
+}
+
 Component complete_optimizer(const Catalog& catalog, const Spec& spec) {
   return complete_optimizer(catalog, spec.name, options_of(spec));
 }
 
 Problem make_problem(const Catalog& catalog, const Component& problem, std::uint64_t seed) {
-  const ProblemEntry& entry = catalog.problems.at(problem.name);
-  Problem made = entry.make(problem.options, Draw(seed, problem.name));
+  Problem made = made_without_best(catalog, problem, seed);
   const std::optional<Real> best = BestLosses::known().find(problem, seed);
   if (best && !made.minimum()) made.set_minimum(*best);
   return made;
 }
 
 bool declares_minimum(const Catalog& catalog, const Component& problem, std::uint64_t seed) {
-  const ProblemEntry& entry = catalog.problems.at(problem.name);
-  return entry.make(problem.options, Draw(seed, problem.name)).minimum().has_value();
+  return made_without_best(catalog, problem, seed).minimum().has_value();
 }
 
 }  // namespace isoline::benchmarks

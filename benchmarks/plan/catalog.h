@@ -36,6 +36,12 @@ Catalog builtin_catalog();  // everything in problems/ and optimizers/
 // name is taken.
 void add_plugin(Catalog& catalog, const std::string& path);
 
+// The options of the problem itself, and the features that all problems have.
+OptionTable options_with_features(const ProblemEntry& entry);
+inline const OptionTable& options_with_features(const OptimizerEntry& entry) {
+  return entry.options;
+}
+
 // A component as a request names it, its options complete.
 Component complete_problem(const Catalog& catalog, const std::string& name,
                            const OptionValues& options);
@@ -43,6 +49,10 @@ Component complete_problem(const Catalog& catalog, const Spec& spec);
 Component complete_optimizer(const Catalog& catalog, const std::string& name,
                              const OptionValues& options);
 Component complete_optimizer(const Catalog& catalog, const Spec& spec);
+
+// The entry of a method with the options that another program declares.
+OptimizerEntry entry_of(const Catalog& catalog, const std::string& optimizer,
+                        const OptionValues& given);
 
 // With the best loss known for f_L, where it declares none.
 Problem make_problem(const Catalog& catalog, const Component& problem, std::uint64_t seed);

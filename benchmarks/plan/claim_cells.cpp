@@ -139,8 +139,8 @@ std::string unknown_claim(const std::string& wrong, const std::vector<std::strin
   std::string guess;
   for (const std::string& name : close)
     guess += fmt::format("{} '{}'", guess.empty() ? "did you mean" : ",", name);
-  return fmt::format("unknown claim '{}'; {}{}`isoline claims --list --all` lists them", wrong,
-                     guess, guess.empty() ? "" : "? ");
+  return fmt::format("unknown claim '{}'; {}{}`isoline claims --list --all` lists all claims",
+                     wrong, guess, guess.empty() ? "" : "? ");
 }
 
 }  // namespace
@@ -176,6 +176,16 @@ Json json_of(const std::vector<Claim>& claims) {
   Json list = Json::array();
   for (const Claim& claim : claims) list.push_back(*claim.json);
   return list;
+}
+
+std::vector<Record> published_records(const Catalog& catalog) {
+  std::vector<Record> records;
+  for (const auto& [name, text] : builtin_published()) {
+    Request& asked = records.emplace_back(record_from_text(std::string(text), name)).request;
+    asked.problem = complete_problem(catalog, asked.problem.name, asked.problem.options);
+    asked.optimizer = complete_optimizer(catalog, asked.optimizer.name, asked.optimizer.options);
+  }
+  return records;
 }
 
 }  // namespace isoline::benchmarks

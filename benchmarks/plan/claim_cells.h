@@ -3,12 +3,15 @@
 // cells.
 #pragma once
 
+#include <map>
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "benchmarks/plan/suite.h"
+#include "core/records/record.h"
 
 namespace isoline::benchmarks {
 
@@ -38,5 +41,13 @@ std::vector<Claim> chosen_claims(std::vector<Claim> claims, const std::vector<st
 std::vector<Request> cells_of(const std::vector<Claim>& claims, bool with_long);
 
 Json json_of(const std::vector<Claim>& claims);  // a list, for the report
+
+std::string_view
+embedded_papers();  // benchmarks/papers.json: the contents of the texts, and the scripts
+
+// The records of runs that take hours, by name of file. `published_records` reads them, and
+// gives options that a component got later their defaults, so that claims find them.
+const std::map<std::string, std::string_view>& builtin_published();
+std::vector<Record> published_records(const Catalog& catalog);
 
 }  // namespace isoline::benchmarks

@@ -41,6 +41,9 @@ Budget budget_from(const Json& json) {
   budget.work = amount_in(json, "work", budget.work);
   if (json.contains("seconds")) budget.seconds = real_of(json["seconds"]);
   budget.target = json.value("target", budget.target);
+  if (json.contains("stall"))
+    budget.stall = json["stall"].is_string() ? 0 : amount_in(json, "stall", kStallIterations);
+  if (budget.stall == kStallIterations) budget.stall.reset();  // the cell of the standard
   return budget;
 }
 
@@ -53,15 +56,17 @@ std::vector<std::uint64_t> seeds_from(const Json& json) {
 
 MatrixBlock block_from(const Json& json) {
   const std::vector<std::string> none;
-  return {.problems = json.at("problems"),
-          .optimizers = json.at("optimizers"),
-          .except_problems = json.value("except_problems", none),
-          .except_optimizers = json.value("except_optimizers", none),
-          .seeds = seeds_from(json),
-          .budget = budget_from(json.value("budget", Json::object())),
-          .threads = json.value("threads", 1),
-          .hard_seconds = json.value("hard_seconds", 0.0),
-          .rates = json.value("rates", "")};
+  MatrixBlock block{.problems = json.at("problems"),
+                    .optimizers = json.at("optimizers"),
+                    .except_problems = json.value("except_problems", none),
+                    .except_optimizers = json.value("except_optimizers", none),
+                    .features = json.value("features", none),
+                    .seeds = seeds_from(json),
+                    .threads = json.value("threads", 1),
+                    .hard_seconds = json.value("hard_seconds", 0.0),
+                    .rates = json.value("rates", "")};
+  block.budget = budget_from(json.value("budget", Json::object()));
+  return block;
 }
 
 bool is_selector(const std::string& text) { return text == "*" || text.starts_with('@'); }
@@ -120,6 +125,21 @@ std::vector<Spec> parsed_specs(const std::vector<std::string>& texts, std::uint6
   return specs;
 }
 
+// Each problem of a block, with each of its features in turn.
+std::vector<Spec> featured_problems(const Catalog& catalog, const MatrixBlock& block,
+                                    std::uint64_t most) {
+  std::vector<Spec> plain = parsed_specs(problem_specs(catalog, block), most), all;
+  if (block.features.empty()) return plain;
+  for (const std::string& feature : block.features)
+    for (Spec problem : plain) {
+      if (feature != "plain")
+        for (auto& option : parse_spec("feature[" + feature + "]").options)
+          problem.options.push_back(std::move(option));
+      all.push_back(std::move(problem));
+    }
+  return all;
+}
+
 }  // namespace
 
 Component with_rates(const Catalog& catalog, const Spec& spec, const Rates::Row* row) {
@@ -173,12 +193,15 @@ std::vector<Request> expand(const Catalog& catalog, const Suite& suite, const Ra
     const std::vector<Spec> specs = parsed_specs(optimizer_specs(catalog, block), most);
     // All problems that share a row of rates use one component.
     std::map<std::pair<const Spec*, const Rates::Row*>, Component> optimizers;
-    for (const Spec& problem_spec : parsed_specs(problem_specs(catalog, block), most)) {
-      const Component problem = complete_problem(catalog, problem_spec);
+    for (const Spec& problem_spec : featured_problems(catalog, block, most)) {
+      OptionValues options = options_of(problem_spec);
+      options.set_all(suite.problem_options);
+      const Component problem = complete_problem(catalog, problem_spec.name, options);
       std::map<std::string, const Rates::Row*> rows;  // null: no row, or the suite uses defaults
       for (const Spec& spec : specs) {
         const auto [row, is_first] = rows.try_emplace(spec.name);
-        if (is_first && block.rates != "none")
+        const bool has_rates = catalog.optimizers.at(spec.name).needs_argument.empty();
+        if (is_first && has_rates && block.rates != "none")
           row->second = rates.find(problem, spec.name, block.rates);
         const auto [optimizer, is_new] = optimizers.try_emplace({&spec, row->second});
         if (is_new) optimizer->second = with_rates(catalog, spec, row->second);
@@ -225,7 +248,7 @@ std::vector<Wanted> wanted_in(const Registered& registry, const std::string& tex
   for (const Spec& spec : parse_specs(text)) {
     Wanted wanted{.name = spec.name, .options = {}};
     if (!is_selector(spec.name)) {
-      const auto& table = registry.at(spec.name).options;
+      const OptionTable table = options_with_features(registry.at(spec.name));
       const OptionValues complete = complete_options(table, spec.name, options_of(spec));
       for (const auto& [name, value] : options_of(spec))
         wanted.options.set(name, complete.at(name));
@@ -306,14 +329,16 @@ class Settings {
 PlanSize size_of(const Catalog& catalog, const MatrixBlock& block) {
   const Settings problems(problem_specs(catalog, block));
   const Settings optimizers(optimizer_specs(catalog, block));
-  PlanSize size{
-      .cells = product_of(block.seeds.size(), product_of(problems.total(), optimizers.total())),
-      .largest = ""};
+  const std::uint64_t features = std::max<std::size_t>(1, block.features.size());
+  PlanSize size{.cells = product_of(product_of(block.seeds.size(), features),
+                                    product_of(problems.total(), optimizers.total())),
+                .largest = ""};
   const auto add = [&](std::uint64_t count, const std::string& words) {
     if (count > 1) size.largest += (size.largest.empty() ? "" : " × ") + words;
   };
   if (size.cells == 0) return size;
   add(block.seeds.size(), count_text(block.seeds.size()) + " seeds");
+  add(features, count_text(features) + " features");
   add(problems.total(), problems.words("problems"));
   add(optimizers.total(), optimizers.words("optimizers"));
   return size;

@@ -20,6 +20,7 @@ using Json = nlohmann::json;
 struct MatrixBlock {
   std::vector<std::string> problems, optimizers;
   std::vector<std::string> except_problems, except_optimizers;  // names
+  std::vector<std::string> features = {};  // of each problem in turn: "plain", "noise=0.01"
   std::vector<std::uint64_t> seeds = {0};
   Budget budget;
   int threads = 1;
@@ -32,6 +33,7 @@ struct MatrixBlock {
 struct Suite {
   std::string name, title;
   std::vector<MatrixBlock> blocks;
+  OptionValues problem_options = {};  // of every problem, besides those of its spec
 };
 
 // The spec's own options, and those of the row that it leaves open; the row may be null.

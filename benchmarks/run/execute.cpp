@@ -47,6 +47,7 @@ void run(const Catalog& catalog, const Request& request, Trace& trace, Checkpoin
   set_text(trace.privileges, fmt::format("{}", fmt::join(privileges, "\n")));
   Meter meter(problem, request.budget, granted, trace);
   Vector start = problem.start();
+  if (returned && returned->size() > 0) start = *returned;
   if (perturbation != 0) start = perturbed_start(std::move(start), request, perturbation);
   const Vector theta = drive(*method, meter, std::move(start), checkpoint);
   if (returned) *returned = theta;
@@ -109,6 +110,21 @@ Spectrum spectrum_of(const Trace::Spectra& kept) {
     spectrum.sigma.emplace_back(kept.sigma[i], kept.sigma[i] + kept.values);
   }
   return spectrum;
+}
+
+std::optional<Uncertainty> uncertainty_of(const Trace::Uncertainty& kept) {
+  if (kept.unknowns == 0) return std::nullopt;
+  const auto first = [&](const double* values) {
+    return std::vector<Real>(values, values + kept.unknowns);
+  };
+  Uncertainty known{.x = first(kept.x),
+                    .standard_deviation = first(kept.deviation),
+                    .correlation = {},
+                    .variance = kept.variance,
+                    .degrees_of_freedom = kept.degrees_of_freedom,
+                    .condition = kept.condition};
+  for (int i = 0; i < kept.unknowns; ++i) known.correlation.push_back(first(kept.correlation[i]));
+  return known;
 }
 
 Curve curve_of(const Trace& trace) {
@@ -360,6 +376,7 @@ Record record_of(const Request& request, const Trace& trace) {
                              .truth = grid_of(trace.shown_truth)};
   record.fields = fields_of(trace.frames);
   if (trace.spectra.are_wanted) record.spectrum = spectrum_of(trace.spectra);
+  record.uncertainty = uncertainty_of(trace.uncertainty);
   record.privileges = lines_of(trace.privileges);
   record.foreign = {request.problem.foreign, request.optimizer.foreign};
   record.is_nondeterministic = trace.stopped_by_clock || record.status == Status::timeout ||

@@ -50,7 +50,8 @@ Vector drive(Optimizer& method, Meter& meter, Vector theta, Checkpoint& checkpoi
 
 // Creates the components of the request and drives them. The status is in the trace in all cases:
 // an exception ends as `failed`, `memory` or `inapplicable`, and a stopped run as `interrupted`.
-// `returned` gets the last θ. A perturbation other than 0 moves the start in the last bit.
+// `returned` gets the last θ, and is the start if it is not empty. A perturbation other than 0
+// moves the start in the last bit.
 void execute(const Catalog& catalog, const Request& request, Trace& trace,
              Checkpoint checkpoint = {}, Vector* returned = nullptr, int perturbation = 0);
 

@@ -330,6 +330,15 @@ void Worker::finish(const ProcessGroup::End& end) {
 
 IsolatedText isolated_text(const std::function<std::string()>& work, double seconds,
                            std::int64_t memory_bytes, const std::function<void()>& waiting) {
+  return isolated_text([&](Trace&) { return work(); }, seconds, memory_bytes,
+                       [&](const Trace&) {
+                         if (waiting) waiting();
+                       });
+}
+
+IsolatedText isolated_text(const std::function<std::string(Trace&)>& work, double seconds,
+                           std::int64_t memory_bytes,
+                           const std::function<void(const Trace&)>& waiting) {
   constexpr std::size_t kMost = std::size_t{1} << 30;
   constexpr double kIdleSeconds = 60;
   const double idle_seconds = std::min(seconds, kIdleSeconds);
@@ -339,7 +348,7 @@ IsolatedText isolated_text(const std::function<std::string()>& work, double seco
     if (answer.descriptor < 0) throw std::runtime_error(strerror(errno));
     worker.start(
         [&](Trace& trace) {
-          const std::string text = work();
+          const std::string text = work(trace);
           if (text.size() > kMost) throw std::runtime_error("its answer has more than 1 GiB");
           if (!(std::ofstream(answer.path, std::ios::binary) << text).flush())
             throw std::runtime_error(strerror(errno));
@@ -359,7 +368,7 @@ IsolatedText isolated_text(const std::function<std::string()>& work, double seco
       worker.interrupt();
       return {{}, "this program was stopped"};
     }
-    if (waiting) waiting();
+    waiting(worker.trace());
     worker.wait(kLookMilliseconds);
   }
   switch (const Trace& trace = worker.trace(); trace.status) {

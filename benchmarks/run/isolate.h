@@ -183,5 +183,9 @@ struct IsolatedText {
 IsolatedText isolated_text(const std::function<std::string()>& work, double seconds,
                            std::int64_t memory_bytes = Limits{}.memory_bytes,
                            const std::function<void()>& waiting = {});
+// The same for work that leaves its progress in the trace, which `waiting` reads.
+IsolatedText isolated_text(const std::function<std::string(Trace&)>& work, double seconds,
+                           std::int64_t memory_bytes,
+                           const std::function<void(const Trace&)>& waiting);
 
 }  // namespace isoline::benchmarks

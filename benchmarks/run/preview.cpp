@@ -50,8 +50,9 @@ std::optional<RecordOutline> outline_of(const fs::path& file) {
 
 std::string question_of(const std::string& problem, const std::string& optimizer,
                         const Budget& budget, int threads) {
-  return fmt::format("{}\n{}\n{} {} {} {} {}", problem, optimizer, budget.iterations, budget.work,
-                     budget.seconds, budget.target, threads);
+  return fmt::format("{}\n{}\n{} {} {} {} {} {}", problem, optimizer, budget.iterations,
+                     budget.work, budget.seconds, budget.target,
+                     budget.stall.value_or(kStallIterations), threads);
 }
 
 // --- which pairs are inapplicable

@@ -121,14 +121,21 @@ void signal_all_groups(int signal) {
     if (const pid_t process = leader; process > 0) ::kill(-process, signal);
 }
 
+// Whether a program sent it that this process has started, in whatever group.
+bool is_from_child(const siginfo_t& sent) {
+  const pid_t group = sent.si_code <= 0 && sent.si_pid > 0 ? getpgid(sent.si_pid) : -1;
+  siginfo_t state{};
+  return group > 0 && (is_leader(group) || waitid(P_PID, static_cast<id_t>(group), &state,
+                                                  WEXITED | WNOHANG | WNOWAIT) == 0);
+}
+
 void hear(int signal, siginfo_t* sent, void*) {
   if (signal == SIGTSTP) {
     signal_all_groups(SIGSTOP);
     raise(SIGSTOP);
     return signal_all_groups(SIGCONT);
   }
-  const pid_t group = sent->si_code <= 0 && sent->si_pid > 0 ? getpgid(sent->si_pid) : -1;
-  if (group > 0 && is_leader(group)) return;  // from a process of one of our groups
+  if (is_from_child(*sent)) return;
   if (asked_to_end() == Asked::stop) {
     signal_all_groups(SIGKILL);
     _exit(kInterrupted);
@@ -344,6 +351,20 @@ void end_what_killed_runs_left() {
     if (is_orphan && !own.empty() && namespace_of(std::to_string(process)) == own)
       ::kill(process, SIGKILL);
   }
+}
+
+void ignore_signals_of_children() {
+  struct sigaction action {};
+  struct sigaction earlier {};
+  action.sa_flags = SA_SIGINFO | SA_RESTART;
+  action.sa_sigaction = [](int signal, siginfo_t* sent, void*) {
+    if (is_from_child(*sent)) return;
+    std::signal(signal, SIG_DFL);
+    raise(signal);
+  };
+  for (const int signal : {SIGTERM, SIGHUP})
+    if (sigaction(signal, nullptr, &earlier) == 0 && earlier.sa_handler == SIG_DFL)
+      sigaction(signal, &action, nullptr);
 }
 
 InterruptGuard::InterruptGuard() : is_outermost_(!std::exchange(is_guarded, true)) {

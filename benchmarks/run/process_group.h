@@ -79,6 +79,10 @@ class ProcessGroup {
 // Processes of cells whose program was killed by SIGKILL, and so could not end them.
 void end_what_killed_runs_left();
 
+// SIGTERM and SIGHUP that a program sends to this process, which started it, are ignored from now
+// on, in all verbs.
+void ignore_signals_of_children();
+
 // While a guard exists, Ctrl-C asks to finish the running cells. A second Ctrl-C, SIGTERM (of a
 // scheduler, for example) or a closed terminal asks to stop them; one more ends this process and
 // all cells at once. Ctrl-Z stops the cells too, until all continue. Signals that a cell sends to

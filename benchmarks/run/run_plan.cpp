@@ -22,45 +22,78 @@ namespace isoline::benchmarks {
 namespace {
 
 // Empty if every property holds.
-std::string broken_property_of(const Catalog& catalog, const Request& request) {
+std::string broken_property_of(const Catalog& catalog, const Request& request, Trace& trace) {
   const Problem problem = make_problem(catalog, request.problem, request.seed);
   RandomStream stream(request.seed, request.problem.name, "check");
-  for (const problems::Finding& finding : problems::examine(problem, stream))
+  const auto show = [&](std::size_t done, std::size_t all) {
+    trace.last.iteration = static_cast<std::int64_t>(done);
+    trace.last.work = static_cast<std::int64_t>(all);
+  };
+  for (const problems::Finding& finding : problems::examine(problem, stream, show))
     if (!finding.holds())
       return fmt::format("'{}' is violated: {:.2e}, at most {:.1e} is allowed ({})",
                          finding.property, finding.figure, finding.limit, finding.reason);
   return "";
 }
 
+std::string build_of(const Component& problem) {
+  return build_digest({.problem = problem, .optimizer = {}});
+}
+
+// The build that has passed its checks in an earlier run of this folder; empty if none has.
+std::string certified_in(const std::filesystem::path& folder, const Component& problem) {
+  const Sheet sheet{.kind = "problem", .name = problem.name, .spec = problem.spec};
+  const std::filesystem::path file = folder / "components" / sheet.file_name();
+  if (is_there(file)) try {
+      return sheet_from_text(read_text(file), file.string()).certified;
+    } catch (const UsageError&) {  // the writer of sheets sets it aside
+    }
+  return "";
+}
+
 // UsageError with the first violated property of a problem of another program, and the measured
 // value, or with the reason if a problem cannot be checked, since it fails or does not answer; with
 // --uncertified, the label of such a problem says so instead, in each table.
-// Checks only problems with cells to run, each at the first of its seeds, in its own process.
-void require_certified(const Catalog& catalog, std::vector<Request>& requests, const Store& store,
-                       const RunOptions& options) {
+// Checks only problems with cells to run, each at the first of its seeds, in its own process, and
+// once for each build. Returns the builds that have passed, by problem.
+Certificates require_certified(const Catalog& catalog, std::vector<Request>& requests,
+                               const Store& store, const RunOptions& options) {
   constexpr double kCertificateSeconds = 120;
+  Certificates passed;
   std::set<std::string> seen;
   std::vector<const Request*> firsts;
-  for (const Request& request : requests)
-    if (request.problem.foreign && (options.force || !store.has(request)) &&
-        seen.insert(request.problem.spec).second)
+  for (const Request& request : requests) {
+    const std::string& spec = request.problem.spec;
+    if (!request.problem.foreign) continue;
+    const bool is_new = !passed.contains(spec);
+    if (is_new) passed[spec] = certified_in(store.folder(), request.problem);
+    if ((options.force || !store.has(request)) && passed[spec] != build_of(request.problem) &&
+        seen.insert(spec).second)
       firsts.push_back(&request);
+  }
   std::set<std::string> uncertified;
   Progress progress(options.progress, "certified", static_cast<std::int64_t>(firsts.size()), 0);
   for (const Request* request : firsts) {
     progress.started(request->problem.spec);
     const auto [broken, failure] =
-        isolated_text([&] { return broken_property_of(catalog, *request); }, kCertificateSeconds,
-                      Limits{}.memory_bytes, [&] { progress.show(); });
-    if (asked_to_end() != Asked::nothing) return;
+        isolated_text([&](Trace& trace) { return broken_property_of(catalog, *request, trace); },
+                      kCertificateSeconds, Limits{}.memory_bytes,
+                      [&](const Trace& trace) {
+                        if (trace.last.work > 0)
+                          progress.started(fmt::format("{}, {} of {} checks", request->problem.spec,
+                                                       trace.last.iteration, trace.last.work));
+                        progress.show();
+                      });
+    if (asked_to_end() != Asked::nothing) return passed;
     const std::string reason = broken.value_or("it cannot be checked: " + failure);
     require(reason.empty() || options.uncertified, [&] {
       return fmt::format(
-          "{} fails its checks and does not run: {}; `isoline check` lists all, and --uncertified "
-          "runs it with a mark",
+          "{} fails its checks and does not run: {}; `isoline check` lists its checks, and "
+          "--uncertified runs it nevertheless",
           request->problem.spec, reason);
     });
     if (!reason.empty()) uncertified.insert(request->problem.spec);
+    passed[request->problem.spec] = reason.empty() ? build_of(request->problem) : "";
     progress.finished({});
   }
   for (Request& request : requests)
@@ -68,23 +101,30 @@ void require_certified(const Catalog& catalog, std::vector<Request>& requests, c
       std::string& label = request.problem.foreign->label;
       label = (label.empty() ? request.problem.spec : label) + " (uncertified)";
     }
+  return passed;
 }
 
 }  // namespace
 
 void require_sound(const Catalog& catalog, const std::vector<Request>& requests) {
   constexpr double kSeconds = 60;
+  constexpr std::int64_t kNanoseconds = 3'000'000'000;  // for direct problems
+  const std::int64_t last = monotonic_nanoseconds() + kNanoseconds;
   const auto first_complaint = [&]() -> std::string {
     std::set<std::string> problems, optimizers;
     for (const Request& request : requests) try {
         const Component &problem = request.problem, &optimizer = request.optimizer;
         if (optimizers.insert(optimizer.spec).second)
           catalog.optimizers.at(optimizer.name).make(optimizer.options, catalog.optimizers);
-        // Direct problems were checked whole when their options were completed.
-        if (problem.is_learned && problems.insert(problem.spec).second)
+        // Direct problems take longer to make: those of a large sweep meet this in their cells.
+        const bool has_files = problem.options.contains(kStartOption);
+        const bool is_quick = monotonic_nanoseconds() < last && !problem.foreign;
+        if ((problem.is_learned || has_files || is_quick) && problems.insert(problem.spec).second)
           make_problem(catalog, problem, request.seed);
       } catch (const UsageError& error) {
-        return error.what();
+        const std::string text = error.what(), &name = request.problem.name;
+        const bool is_of_optimizer = text.find(request.optimizer.name) != text.npos;
+        return is_of_optimizer || text.find(name) != text.npos ? text : name + ": " + text;
       } catch (const std::exception&) {  // its cells end as `failed` and say so
       }
     return "";
@@ -153,11 +193,11 @@ Outcome run_plan(const Catalog& catalog, const WholePlan& whole, std::vector<Req
   Outcome outcome{.planned = static_cast<std::int64_t>(requests.size()), .is_interrupted = true};
   require_sound(catalog, requests);
   Store store(folder);
-  require_certified(catalog, requests, store, options);
+  const Certificates certificates = require_certified(catalog, requests, store, options);
   if (asked_to_end() != Asked::nothing) return outcome;
   store.plan(whole.name, whole.cells);
   write_used_rates(whole.rates, requests, store);
-  write_sheets(catalog, requests, store, options.progress);
+  write_sheets(catalog, requests, store, options.progress, certificates);
   if (asked_to_end() != Asked::nothing) return outcome;
   outcome = run_all(catalog, requests, store, options);
   if (!outcome.missing.empty()) {

@@ -377,8 +377,8 @@ std::optional<std::vector<Record>> perturbed_records(const Catalog& catalog,
     const Request& request = requests.emplace_back(request_again(catalog, record, kLongest));
     require(request.cell == record.cell && build_digest(request) == record.build, [&] {
       return title_of(request) +
-             ": its record is of another build; run it by this one (isoline run), or keep "
-             "it without perturbations (--perturbations 0)";
+             ": its record is of another build; run the cell again with this build (isoline run), "
+             "or keep its record without perturbations (--perturbations 0)";
     });
   }
   const HiddenFolder folder;

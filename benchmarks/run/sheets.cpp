@@ -51,6 +51,7 @@ struct Room {
   Matrix y, x;  // (m, B), (k, B)
   Vector gradient;
   Matrix J, H, dy_dx, bent;
+  Vector sparse;
   std::vector<networks::LayerFactor> factors;
   std::vector<networks::LayerMoments> moments;
   Workspace space;
@@ -61,6 +62,7 @@ const std::map<Oracle, std::function<void(const Problem&, Point&, Room&)>> kCall
     {Oracle::pullback, [](auto& p, auto& at, auto& r) { p.pullback(r.w, r.gradient, at); }},
     {Oracle::pushforward, [](auto& p, auto& at, auto& r) { p.pushforward(r.v, r.y, at); }},
     {Oracle::jacobian, [](auto& p, auto& at, auto& r) { p.jacobian(r.J, at); }},
+    {Oracle::sparse_jacobian, [](auto& p, auto& at, auto& r) { p.sparse_jacobian(r.sparse, at); }},
     {Oracle::hessian, [](auto& p, auto& at, auto& r) { p.hessian(r.H, at); }},
     {Oracle::curvature,
      [](auto& p, auto& at, auto& r) {
@@ -278,8 +280,12 @@ Sheet described(const char* kind, const Entry& entry, const Component& component
               .title = entry.title,
               .formula = entry.formula,
               .source = entry.source,
-              .note = entry.note,
-              .options_text = json_text(describe_options(entry.options))};
+              .note = entry.note};
+  OptionTable options = entry.options;
+  if (component.foreign)
+    options.insert(options.end(), component.foreign->options.begin(),
+                   component.foreign->options.end());
+  sheet.options_text = json_text(describe_options(options));
   if (const auto& foreign = component.foreign) {  // its words replace those of the adapter
     if (!foreign->label.empty()) sheet.title = foreign->label + ", by another program";
     if (!foreign->source.empty()) sheet.source = foreign->source;
@@ -293,8 +299,12 @@ Sheet described(const char* kind, const Entry& entry, const Component& component
 // Creates metadata, each in its own process: a failure costs the measured values of one file.
 class SheetWriter {
  public:
-  SheetWriter(const Catalog& catalog, Store& store, Progress::Style style)
-      : catalog_(catalog), store_(store), progress_(style, "sheets", 0, 0) {}
+  SheetWriter(const Catalog& catalog, Store& store, Progress::Style style,
+              const Certificates& certificates)
+      : catalog_(catalog),
+        store_(store),
+        progress_(style, "sheets", 0, 0),
+        certificates_(certificates) {}
 
   void write_problem(const Component& component) {
     if (!known_.insert("problem " + component.spec).second) return;
@@ -302,6 +312,8 @@ class SheetWriter {
     Sheet sheet = described_problem(catalog_, component);
     if (replace(sheet, [&] { return problem_sheet(catalog_, component); }))
       sheet.prices = prices_of(component, store_.folder() / "components" / sheet.file_name());
+    const auto passed = certificates_.find(component.spec);
+    if (passed != certificates_.end()) sheet.certified = passed->second;
     write(sheet);
   }
 
@@ -373,6 +385,7 @@ class SheetWriter {
   const Catalog& catalog_;
   Store& store_;
   Progress progress_;
+  const Certificates& certificates_;
   std::set<std::string> known_;
 };
 
@@ -463,8 +476,8 @@ Sheet optimizer_sheet(const Catalog& catalog, const Component& component) {
 }
 
 void write_sheets(const Catalog& catalog, const std::vector<Request>& requests, Store& store,
-                  Progress::Style style) {
-  SheetWriter writer(catalog, store, style);
+                  Progress::Style style, const Certificates& certificates) {
+  SheetWriter writer(catalog, store, style, certificates);
   for (const Request& request : requests) {
     if (asked_to_end() != Asked::nothing) return;
     writer.write_problem(request.problem);

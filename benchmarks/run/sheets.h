@@ -2,6 +2,7 @@
 // oracles.
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -34,7 +35,9 @@ Sheet optimizer_sheet(const Catalog& catalog, const Component& optimizer);
 // The metadata of every component of the plan, each created in its own process, with the measured
 // costs of a problem's oracles. If that fails, the metadata contain what the registry knows, and
 // the store gets a remark.
+using Certificates = std::map<std::string, std::string>;  // by problem: the build that has passed
 void write_sheets(const Catalog& catalog, const std::vector<Request>& requests, Store& store,
-                  Progress::Style style = Progress::Style::silent);
+                  Progress::Style style = Progress::Style::silent,
+                  const Certificates& certificates = {});
 
 }  // namespace isoline::benchmarks

@@ -65,7 +65,7 @@ Knob knob_inside(const Catalog& catalog, const OptimizerEntry& outer, const Comp
 // For an option that is named; UsageError where the method has no such number.
 Knob knob_named(const Catalog& catalog, const std::string& optimizer, const Component& problem,
                 const OptionValues& given, const std::string& option) {
-  const OptimizerEntry& entry = catalog.optimizers.at(optimizer);
+  const OptimizerEntry entry = entry_of(catalog, optimizer, given);
   const OptionField* field = field_of(entry, option);
   if (!field && option == "rate" && field_of(entry, kNested))
     return knob_inside(catalog, entry, problem, given);
@@ -308,7 +308,7 @@ std::vector<Real> mean_of(const std::vector<std::vector<Real>>& rows, std::size_
 
 std::optional<Knob> knob_of(const Catalog& catalog, const std::string& optimizer,
                             const Component& problem, const OptionValues& given) {
-  const OptimizerEntry& entry = catalog.optimizers.at(optimizer);
+  const OptimizerEntry entry = entry_of(catalog, optimizer, given);
   const Tunable& tunable = entry.tunable;
   if (tunable.option.empty()) return std::nullopt;
   const bool trains = problem.is_learned && field_of(entry, kNested);

@@ -7,6 +7,8 @@
 #include <filesystem>
 
 #include "benchmarks/cli/verb.h"
+#include "benchmarks/plan/catalog.h"
+#include "core/spec.h"
 #include "core/text.h"
 #include "reports/report.h"
 
@@ -29,7 +31,8 @@ void declare(VerbArguments& verb, AuditArguments& given) {
 
 int run(const AuditArguments& given, Session& session) {
   const Catalog& catalog = session.catalog();
-  for (const std::string& name : given.names) catalog.optimizers.at(name);  // or says which exist
+  for (const std::string& name : given.names)
+    complete_optimizer(catalog, parse_spec(name));  // or says what is wrong
   const std::vector<AuditedOptimizer> all =
       audit_all(catalog, given.names.empty() ? catalog.optimizers.ready().names() : given.names);
   if (!given.out.empty()) {

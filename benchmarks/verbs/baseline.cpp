@@ -25,9 +25,9 @@ struct BaselineArguments {
 
 void declare(VerbArguments& verb, BaselineArguments& given) {
   verb.texts("RESULTS", given.folders, "Result folders of `isoline run`").required();
-  verb.text("--out", given.out, "The file (default: standard output)");
+  verb.text("--out", given.out, "The baseline file (default: standard output)");
   verb.whole("--perturbations", given.perturbations,
-             "Runs of each cell from a start that differs in the last bit", {0, 100});
+             "Number of runs of each cell from starts that differ in the last bit", {0, 100});
   verb.whole("--jobs", given.jobs, "Number of cells at a time (default: one per core)", kJobs);
   verb.flag("--trust", given.trust, kTrust);
   verb.plugins();
@@ -51,7 +51,8 @@ std::vector<reports::Study> perturbed_studies(const BaselineArguments& given, Se
 int run(const BaselineArguments& given, Session& session) {
   reports::Study study = reports::read_study({given.folders.begin(), given.folders.end()});
   std::erase_if(study.runs, [](const Record& run) { return run.imported.has_value(); });
-  require(!study.runs.empty(), "there are no records to remember");
+  require(!study.runs.empty(),
+          "no records in these folders: `isoline run --out FOLDER` writes them");
   if (!given.out.empty()) require_ours(given.out, reports::kBaselineSchema);
   if (given.perturbations > 0)
     for (const Record& run : study.runs) require_trust(given.trust, run);
@@ -82,14 +83,14 @@ void register_baseline(VerbRegistry& registry) {
        .examples = "  isoline baseline results/quick --out baseline.json\n"
                    "  isoline compare baseline.json results/quick",
        .notes =
-           "The file has one line per cell: status, digest of the trace, final values, work to 1e-1, "
-           "1e-3 and 1e-6.\n"
+           "The file has one line per cell: status, digest of the trace, final values, work to "
+           "1e-1, 1e-3 and 1e-6.\n"
            "Each cell runs again from starts that differ in the last bit. A cell is chaotic if its "
-           "values then change by more than a tenth of a comparison's tolerance. `compare` compares "
-           "such cells by status and by the targets 1e-1, 1e-3 and 1e-6 that they reach, so rounding "
-           "alone is not a regression.\n"
-           "Runs of the portable preset (ISOLINE_PRESET=portable) give the same baseline on every "
-           "x86-64-v3 machine."},
+           "values then change by more than a tenth of a comparison's tolerance. `compare` "
+           "compares such cells by status and by the targets 1e-1, 1e-3 and 1e-6 that they reach, "
+           "so rounding alone is not a regression.\n"
+           "Runs of the portable preset (ISOLINE_PRESET=portable) give the same baseline on "
+           "every x86-64-v3 machine."},
       declare, run));
 }
 

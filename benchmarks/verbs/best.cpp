@@ -26,7 +26,9 @@ struct BestArguments {
 
 void declare(VerbArguments& verb, BestArguments& given) {
   verb.texts("DIR", given.folders, kFolders).required();
-  verb.text("--out", given.out, "Table of best losses; it keeps the lower of two losses").shown();
+  verb.text("--out", given.out,
+            "Table of best losses to write or to extend; the lower of two losses is kept")
+      .shown();
 }
 
 std::vector<Record> records_under(const std::vector<std::string>& folders) {

@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <span>
 
@@ -23,7 +24,7 @@ struct ClaimArguments {
   std::string out = "results/claims";
   int jobs = 0;
   bool is_list = false, as_json = false, no_run = false, with_long = false, lists_all = false;
-  bool as_papers = false;
+  bool as_papers = false, without_published = false;
 };
 
 void declare(VerbArguments& verb, ClaimArguments& given) {
@@ -36,6 +37,8 @@ void declare(VerbArguments& verb, ClaimArguments& given) {
   verb.flag("--papers", given.as_papers,
             "Print one Markdown table per paper, as in docs/papers.md");
   verb.flag("--no-run", given.no_run, "Judge by existing runs only");
+  verb.flag("--without-published", given.without_published,
+            "Leave out the records of benchmarks/published");
   verb.flag("--long", given.with_long, "Also run the cells that take hours");
 }
 
@@ -63,7 +66,8 @@ int list_claims(const std::vector<Claim>& claims, const ClaimArguments& given) {
                           reports::counted(groups.size(), "group"), reports::joined(groups),
                           listed_by_groups(claims, shown)));
   if (shown < claims.size())
-    say(stdout, fmt::format("… and {} more; --all lists them\n", claims.size() - shown));
+    say(stdout, fmt::format("… and {} more claim{}; --all lists them\n", claims.size() - shown,
+                            claims.size() - shown == 1 ? "" : "s"));
   return kGood;
 }
 
@@ -96,7 +100,10 @@ std::string papers_page(const std::vector<reports::Judgement>& judgements) {
          "`./isoline claims --no-run --papers --out results/papers` writes this page, with one row "
          "per claim in `benchmarks/claims` and the command that decides it. The runs are those of a "
          "result folder. [Claims](claims.md) explains the verdicts.\n" +
-         reports::markdown_section(reports::papers_section(judgements), reports::kAllRows);
+         reports::markdown_section(reports::papers_section(judgements), reports::kAllRows) +
+         reports::markdown_section(
+             reports::items_section(parse_json(std::string(embedded_papers()), "papers")),
+             reports::kAllRows);
 }
 
 int exit_code_of(const std::vector<reports::Judgement>& judgements) {
@@ -108,14 +115,22 @@ int exit_code_of(const std::vector<reports::Judgement>& judgements) {
   return has(reports::is_decided) ? kGood : kNotComparable;
 }
 
+// None of the default folder before its first run: then published records decide.
+std::vector<Record> runs_of(const ClaimArguments& given) {
+  std::error_code unknown;
+  if (given.out == ClaimArguments{}.out && !std::filesystem::exists(given.out, unknown)) return {};
+  return reports::read_study({given.out}).runs;
+}
+
 int run(const ClaimArguments& given, Session& session) {
   const std::vector<Claim> claims =
       chosen_claims(builtin_claims_of(session.catalog()), given.names);
   if (given.is_list) return list_claims(claims, given);
   Outcome outcome;
   if (!given.no_run) outcome = run_missing(given, claims, session);
-  const std::vector<reports::Judgement> judgements =
-      reports::judge(json_of(claims), reports::read_study({given.out}).runs);
+  const std::vector<reports::Judgement> judgements = reports::judge(
+      json_of(claims), runs_of(given),
+      given.without_published ? std::vector<Record>() : published_records(session.catalog()));
   say(stdout, given.as_json     ? json_text(reports::claims_json(judgements), 2) + "\n"
               : given.as_papers ? papers_page(judgements)
                                 : terminal_text_of(judgements, given.lists_all));
@@ -138,6 +153,8 @@ void register_claims(VerbRegistry& registry) {
            "A claim is reproduced if the measured values agree with the published one within its "
            "uncertainty, and partly reproduced if only the direction holds. With fewer than six seeds, "
            "a claim is consistent or at odds.\n"
+           "Records of runs that take hours come with the program (benchmarks/published). They count "
+           "where the result folder lacks a run, and state how many iterations and seeds they have.\n"
            "Exit codes: 0 success, 2 a claim is not reproduced or a run failed, 4 not comparable."},
       declare, run));
 }

@@ -1,6 +1,7 @@
 // isoline compare BASE NEW: lists what has become worse and better.
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "benchmarks/cli/terminal.h"
@@ -27,10 +28,9 @@ void declare(VerbArguments& verb, CompareArguments& given) {
             "Relative tolerance of values (default: values must agree bit for bit)");
   verb.real("--noise", given.noise, between(0, 10),
             "Least relative difference of times that counts (default: 0.1)");
-  verb.text(
-      "--allow", given.allowed,
-      "File (isoline.allowed/1) that lists, with reasons, cells that NEW may lack or may judge by "
-      "another success criterion");
+  verb.text("--allow", given.allowed,
+            "File (isoline.allowed/1) of cells, with reasons, that NEW may lack or whose success "
+            "criterion may differ");
   verb.flag("--common", given.is_common_only, "Allow NEW to lack any cell of BASE");
   verb.flag("--all", given.lists_all, "List every difference, not the first 20 lines");
   const Argument json = verb.flag("--json", given.as_json, "Print JSON");
@@ -45,6 +45,10 @@ int run(const CompareArguments& given, Session&) {
     require_valid(read_json(given.allowed), "allowed", given.allowed);
     options.allowed = reports::read_allowed(given.allowed);
   }
+  if (std::error_code unknown; std::filesystem::is_regular_file(given.before, unknown))
+    if (const Json json = read_json(given.before);
+        json.is_object() && json.value("schema", Json()) == reports::kBaselineSchema)
+      require_valid(json, "baseline", given.before);
   options.listener = progress_on_terminal("reading records");
   const reports::GateResult result = reports::compare_results(given.before, given.after, options);
   say(stdout, given.as_json       ? reports::gate_json(result)
@@ -62,21 +66,21 @@ void register_compare(VerbRegistry& registry) {
   registry.add(verb_of(
       {.name = "compare",
        .help_position = 40,
-       .summary = "Compare two results and list regressions",
+       .summary = "Compare two result folders and list regressions",
        .examples = R"(  isoline compare results/old results/new
   isoline compare baseline.json results/quick --tolerance 1e-6 --all
   isoline compare results/old results/new --markdown     for the summary of a job)",
        .notes =
            "Exit codes: 0 neither worse nor better; 2 worse, or NEW lacks a cell of BASE; 3 better "
-           "only; 4 not comparable. A cell is not comparable if a clock ended it, if its record "
-           "contradicts itself, if its success criterion, f_L, scale, floor or nominal costs differ, "
-           "or if another build computed it and --tolerance is missing.\n"
-           "Cells are paired by problem, optimizer, seed and budget as requested. If the default of an "
-           "option has changed, they are still compared, and the change is printed.\n"
-           "Times are compared if both sides have 9 repetitions (run --repeat 9), for the 20 slowest "
-           "such cells of BASE. They differ by a Mann-Whitney test with the Benjamini-Hochberg "
-           "correction at 0.05, and only if the whole 95 % interval of their ratio lies outside the "
-           "noise of the repetitions."},
+           "only; 4 not comparable. A cell is not comparable if a time limit ended it, if its "
+           "record contradicts itself, if its success criterion, f_L, scale, floor or nominal "
+           "costs differ, or if another build computed it and --tolerance is missing.\n"
+           "Cells are paired by problem, optimizer, seed and budget as requested. If the default "
+           "of an option has changed, the cells are still compared, and the change is printed.\n"
+           "Times are compared for cells with 9 repetitions in both folders (run --repeat 9), "
+           "for at most the 20 slowest cells of BASE. Two times differ if a Mann-Whitney test "
+           "finds it at a false discovery rate of 0.05, and if the whole 95 % interval of their "
+           "ratio lies outside the noise of the repetitions."},
       declare, run));
 }
 

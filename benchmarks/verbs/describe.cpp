@@ -36,15 +36,24 @@ struct Described {
   OptionValues options;  // the given values, and defaults for the others
 };
 
+// With the options that another program declares.
+OptionTable options_of(OptionTable registered, const Component& component) {
+  if (component.foreign)
+    registered.insert(registered.end(), component.foreign->options.begin(),
+                      component.foreign->options.end());
+  return registered;
+}
+
 Described described_as_problem(const Catalog& catalog, const Spec& spec) {
   const Component problem = complete_problem(catalog, spec);
-  return {problem_sheet(catalog, problem), catalog.problems.at(spec.name).options, problem.options};
+  return {problem_sheet(catalog, problem),
+          options_of(catalog.problems.at(spec.name).options, problem), problem.options};
 }
 
 Described described_as_optimizer(const Catalog& catalog, const Spec& spec) {
   const Component optimizer = complete_optimizer(catalog, spec);
-  return {optimizer_sheet(catalog, optimizer), catalog.optimizers.at(spec.name).options,
-          optimizer.options};
+  return {optimizer_sheet(catalog, optimizer),
+          options_of(catalog.optimizers.at(spec.name).options, optimizer), optimizer.options};
 }
 
 Described described(const Catalog& catalog, const Spec& spec) {
@@ -103,8 +112,9 @@ void print(const NetworkEntry& network, const OptionValues& options, bool as_jso
 }
 
 const char* aim_text(Aim aim) {
-  return aim == Aim::x ? "x: a run is solved if it finds the true x"
-                       : "loss: a run is solved if its loss is small, whatever its x is";
+  return aim == Aim::x
+             ? "x: the problem is solved if the run finds the true x"
+             : "loss: the problem is solved if the loss is small, whatever the error in x";
 }
 
 void print(const Sheet& sheet) {

@@ -54,8 +54,9 @@ int run(const ExportArguments& given, Session&) {
   const reports::Export made = format->write(compare_optimizers(study));
   std::error_code unknown;
   const bool is_file = made.files.contains("");
-  require(is_file || !is_there(out) || (fs::is_directory(out, unknown) && names_in(out).empty()),
-          [&] { return fmt::format("{} exists already: export into a new folder", given.out); });
+  require(
+      is_file || !is_there(out) || (fs::is_directory(out, unknown) && names_in(out).empty()),
+      [&] { return fmt::format("{} exists already: name a new folder with --out", given.out); });
   for (const auto& [name, text] : made.files) write_file(is_file ? out : out / name, text);
   for (const std::string& sentence : made.left_out)
     say(stderr, fmt::format("left out: {}\n", sentence));

@@ -165,9 +165,8 @@ void register_new(VerbRegistry& registry) {
            "  isoline new optimizer my-method --c          my_method.c, for a library\n"
            "  isoline new problem my-simulator --python    my_simulator.py, for a process",
        .notes =
-           "The file builds and passes its checks as it is; nothing is overwritten. `new` also "
-           "writes\n"
-           "CMakeLists.txt or isoline.h if it is missing."},
+           "The template builds and passes its checks. `new` also writes CMakeLists.txt or isoline.h "
+           "if it is missing, and does not overwrite any file."},
       declare, run));
 }
 

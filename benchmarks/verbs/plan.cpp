@@ -92,7 +92,9 @@ void print_shards(const PlannedRun& all, const Preview& shown, const ShardPlan& 
   for (std::size_t i = 0; i < listed; ++i)
     say(stdout, fmt::format("shard {:>9}  {}\n", Shard{i + 1, count}.text(),
                             preview_text(plan.shards[i], jobs)));
-  if (listed < count) say(stdout, fmt::format("… and {} more; --all lists them\n", count - listed));
+  if (listed < count)
+    say(stdout, fmt::format("… and {} more shard{}; --all lists them\n", count - listed,
+                            count - listed == 1 ? "" : "s"));
   double longest = 0;
   for (const PreviewCounts& shard : plan.shards)
     longest = std::max(longest, shard.seconds().value_or(0));
@@ -130,10 +132,12 @@ void register_plan(VerbRegistry& registry) {
   isoline plan quick --shards 16 --from results/before     sixteen shards of equal time
   isoline plan quick --shards 16 --json        for the matrix of a workflow)",
        .notes =
-           "The predicted time of a cell is its time in records of the result folder and of --from, or "
-           "that of the same cell with other seeds. Other cells have no prediction.\n"
-           "--shards writes the predictions to predicted.json once. `isoline run --shard` divides the "
-           "plan by this file only, so all tasks use the same shards, whenever they start."},
+           "The predicted time of a cell is its time in records of the result folder and of --from "
+           "or, without such a record, the time of the same cell with other seeds. Other cells "
+           "have no prediction.\n"
+           "--shards writes the predictions to predicted.json once. `isoline run --shard` "
+           "divides the plan by this file only, so all tasks use the same shards, whenever they "
+           "start."},
       declare, run));
 }
 

@@ -30,10 +30,10 @@ struct ReplayArguments {
 
 void declare(VerbArguments& verb, ReplayArguments& given) {
   verb.texts("RECORD", given.records,
-             "Records of `isoline run`: files in runs/; with --sample result folders")
+             "Records of `isoline run`, which are files in runs/; with --sample, result folders")
       .required();
-  verb.text("--sample", given.sample, "Replay a random sample of the records: 1%, or 20 of them");
-  verb.seed("--seed", given.seed, "Seed of the sample; 0: a new one each time, which is printed");
+  verb.text("--sample", given.sample, "Replay a random sample of the records, such as 1% or 20");
+  verb.seed("--seed", given.seed, "Seed of the sample; 0: a new seed each time, which is printed");
   verb.memory("--memory", given.memory_bytes, "Memory limit of a cell (default: 4GB)");
   verb.flag("--trust", given.trust, kTrust);
   verb.plugins();
@@ -56,7 +56,7 @@ std::string difference_of_builds(const Record& record, const Request& request) {
 std::string comparison_text(const Comparison& found) {
   if (!found.difference.empty()) return "differs: " + found.difference;
   if (found.is_up_to_there)
-    return fmt::format("equal up to iteration {}, where a clock or a kill ended one of them",
+    return fmt::format("equal up to iteration {}, where a time limit or a signal ended one of them",
                        found.iterations);
   return fmt::format("equal, {} iteration{}", found.iterations, found.iterations == 1 ? "" : "s");
 }
@@ -64,7 +64,9 @@ std::string comparison_text(const Comparison& found) {
 // The exit code of one record.
 int replay(const std::string& path, const ReplayArguments& given, Session& session) {
   require(!fs::is_directory(path), [&] {
-    return fmt::format("{} is a folder: name records, such as those in its runs/", path);
+    return fmt::format(
+        "{0} is a folder: pass the files of records, such as {0}/runs/*.json, or --sample 20",
+        path);
   });
   const Record record = read_unchecked_record(path);
   require_trust(given.trust, record);
@@ -89,7 +91,7 @@ int replay(const std::string& path, const ReplayArguments& given, Session& sessi
   if (run_all(session.catalog(), {request}, store, options).is_interrupted) return kInterrupted;
   std::optional<Record> again = store.find(request);
   if (!again) {
-    say(stdout, fmt::format("{}: not comparable: it was killed from outside\n", title));
+    say(stdout, fmt::format("{}: not comparable: another program killed its process\n", title));
     return kNotComparable;
   }
   again->cell = record.cell;  // compared above
@@ -148,11 +150,12 @@ void register_replay(VerbRegistry& registry) {
        .examples = "  isoline replay results/quick/runs/03a4d51c22cbf199-821e62446af5cbbe.json\n"
                    "  isoline replay results/quick --sample 1%",
        .notes =
-           "The cell runs in its own process, with the problem, options, seed, budget and threads of "
-           "the record. `replay` does not write any file. If a clock or a kill ended a run, it is "
-           "compared up to the last common iteration.\n"
-           "Exit codes: 0 equal; 2 different, and the first difference is printed; 4 not comparable: "
-           "another build computed the record (its parts are printed), or a component is missing."},
+           "The cell runs in its own process, with the problem, options, seed, budget and threads "
+           "of the record. `replay` does not write any file. If a time limit or a signal ended a "
+           "run, the runs are compared up to the last common iteration.\n"
+           "Exit codes: 0 equal; 2 different, and the first difference is printed; 4 not "
+           "comparable: another build computed the record (the parts that differ are printed), "
+           "or a component is missing."},
       declare, run));
 }
 

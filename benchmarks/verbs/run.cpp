@@ -38,7 +38,8 @@ void print_plan(const PlannedRun& all, int jobs, const RunArguments& given, Sess
                             request.optimizer.spec, seed_text(request.seed), fate_of(cells[i])));
   }
   if (listed < cells.size())
-    say(stdout, fmt::format("… and {} more; --all lists them\n", cells.size() - listed));
+    say(stdout, fmt::format("… and {} more cell{}; --all lists them\n", cells.size() - listed,
+                            cells.size() - listed == 1 ? "" : "s"));
 }
 
 // One shard of the run alone, in a folder of its own. The plan that is stored there stays

@@ -185,7 +185,7 @@ void register_status(VerbRegistry& registry) {
                .help_position = 90,
                .summary = "Show the progress of a run",
                .examples = "  isoline status results/quick\n  isoline status results/quick --json",
-               .notes = "Only reads the records, the plan and the predictions.\n"
+               .notes = "`status` only reads the records, the plan and the predictions.\n"
                         "Exit codes: 0 no failed cells, 2 failed cells."},
               declare, run));
 }

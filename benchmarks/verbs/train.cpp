@@ -24,7 +24,7 @@ namespace isoline::benchmarks {
 namespace {
 
 struct TrainArguments {
-  std::string problem, optimizer = "sip", out;
+  std::string problem, optimizer = "sip", out, from;
   std::uint64_t seed = 0;
   std::int64_t iterations = 1000, memory_bytes = 0;  // 0: as a cell's
   double seconds = 0;                                // 0: no limit
@@ -36,11 +36,13 @@ void declare(VerbArguments& verb, TrainArguments& given) {
   verb.text("PROBLEM", given.problem, "Problem: 'sine[xi=32]'; mode=learn is implied").required();
   verb.text("--out", given.out, "Output file, JSON").required();
   verb.text("--optimizer", given.optimizer, "Training method").shown();
+  verb.text("--from", given.from,
+            "Continue from a network of `train`: its parameters are the start");
   verb.whole("--iterations", given.iterations, "Steps of training");
   verb.seed("--seed", given.seed, "Seed of the start and of the samples");
   verb.whole("--threads", given.threads, "Threads of the libraries", kThreads);
   verb.time("--time", given.seconds,
-            "Time limit of training: 10s, 2m; at twice that, it is killed");
+            "Time limit of training: 10s, 2m; after twice this time, the process is killed");
   verb.memory("--memory", given.memory_bytes, "Memory limit (default: 4GB)");
   verb.flag("--quiet", given.quiet, "Show no progress");
   verb.plugins();
@@ -51,7 +53,7 @@ Request request_of(const TrainArguments& given, const Catalog& catalog) {
   OptionValues options = options_of(problem_spec);
   if (!options.contains(kModeOption)) options.set(kModeOption, kLearnMode);
   const Component problem = complete_problem(catalog, problem_spec.name, options);
-  require(problem.is_learned, "train: mode=direct has no network to train; leave it out");
+  require(problem.is_learned, "train: mode=direct has no network to train; remove this option");
   const Rates rates = Rates::builtin();
   return named({.problem = problem,
                 .optimizer = with_rates(catalog, spec, rates.find(problem, spec.name)),
@@ -90,10 +92,21 @@ void write(const Catalog& catalog, const Request& request, const Vector& theta, 
                 out);
 }
 
+// θ of a network of this very problem, however it was trained; nothing without a file.
+Vector start_from(const Catalog& catalog, const Request& request, const std::string& file) {
+  if (file.empty()) return {};
+  const TrainedNetwork network = read_network(file);
+  require(network.problem.spec == request.problem.spec, [&] {
+    return fmt::format("{} is a network of {}, not of {}", file, network.problem.spec,
+                       request.problem.spec);
+  });
+  require_fitting(network, make_problem(catalog, request.problem, request.seed));
+  return network.theta;
+}
+
 // In the worker: the run, then the network with its statistics.
-void train_and_write(const Catalog& catalog, const Request& request, const std::string& out,
-                     Trace& trace) {
-  Vector theta;
+void train_and_write(const Catalog& catalog, const Request& request, Vector theta,
+                     const std::string& out, Trace& trace) {
   execute(catalog, request, trace, {}, &theta);
   if (!is_trained(trace)) return;
   try {
@@ -127,11 +140,13 @@ int run(const TrainArguments& given, Session& session) {
   const Request request = request_of(given, session.catalog());
   require_writable(given.out);
   require_sound(session.catalog(), {request});
+  const Vector start = start_from(session.catalog(), request, given.from);
   Limits standard{.hard_seconds = kMostSeconds};  // unless --time is given
   if (given.memory_bytes > 0) standard.memory_bytes = given.memory_bytes;
   Worker worker;
-  worker.start([&](Trace& trace) { train_and_write(session.catalog(), request, given.out, trace); },
-               limits_of(request, standard), request.threads);
+  worker.start(
+      [&](Trace& trace) { train_and_write(session.catalog(), request, start, given.out, trace); },
+      limits_of(request, standard), request.threads);
   watch(worker, given.iterations, !given.quiet && isatty(STDERR_FILENO) != 0);
   const Trace& trace = worker.trace();
   require(trace.status != Status::inapplicable, [&] {
@@ -158,7 +173,8 @@ void register_train(VerbRegistry& registry) {
        .help_position = 210,
        .summary = "Train a network on a learning problem and write it to a file",
        .examples =
-           "  isoline train 'sine[xi=32]' --optimizer sip --iterations 1000 --out net.json"},
+           "  isoline train 'sine[xi=32]' --optimizer sip --iterations 1000 --out net.json\n"
+           "  isoline train 'sine[xi=32]' --from net.json --optimizer adam --out longer.json"},
       declare, run));
 }
 

@@ -42,23 +42,24 @@ void declare(VerbArguments& verb, TuneArguments& given) {
       .joined();
   verb.text("--grid", given.grid,
             "Option and its values, low..high x count (default: the method's tunable option "
-            "at seven values around its default, and more at an edge)");
-  verb.text(
-          "--unit", given.unit,
-          "Unit of the grid: one, cauchy (the problem's Cauchy step) or published (the published rate)")
+            "at seven values around its default, and more if the best value is at an edge)");
+  verb.text("--unit", given.unit,
+            "Unit of the grid: one, cauchy (the problem's Cauchy step) or published (the published "
+            "rate)")
       .one_of({"one", "cauchy", "published"})
       .shown();
   verb.flag("--leave-one-out", given.leaves_out,
-            "Choose the value for each family of problems on the other families, from one grid "
-            "per method for all problems");
+            "For each family of problems, choose the value that is best on the other families; all "
+            "problems share one grid per method");
   verb.text("--tuning-seeds", given.seeds, "Seeds, different from those of results").shown();
   verb.whole("--work", given.work, "Largest work per run");
   verb.whole("--iterations", given.iterations, "Largest number of iterations per run");
   verb.whole("--jobs", given.jobs, "Number of runs at a time (default: one per core)", kJobs);
   verb.text("--out", given.folder, "Folder of the records").shown();
-  verb.text("--table", given.table,
-            "Table of rates to write or to extend; with --leave-one-out also NAME-tuned.json, of "
-            "the best value on each problem");
+  verb.text(
+      "--table", given.table,
+      "Table of rates to write or to extend; with --leave-one-out, also NAME-tuned.json, with "
+      "the best value on each problem");
   verb.flag("--all", given.lists_all, "List every pair, not the first 20");
   verb.flag("--json", given.as_json, "Print the rows of the table as JSON");
   verb.plugins();
@@ -101,15 +102,19 @@ TuningPlan plan_of(const Catalog& catalog, const TuneArguments& given) {
   for (const Request& cell :
        given.suite.empty() ? cells_named(catalog, given) : cells_of(catalog, given)) {
     const std::string& name = cell.optimizer.name;
-    const optimizers::Tunable& tunable = catalog.optimizers.at(name).tunable;
-    if (tunable.option.empty() || !known.emplace(cell.problem.spec, name).second) continue;
+    const bool is_foreign = !catalog.optimizers.at(name).needs_argument.empty();
+    const std::string& known_as = is_foreign ? cell.optimizer.spec : name;
+    const auto tunable = entry_of(catalog, name, cell.optimizer.options).tunable.option;
+    if (tunable.empty() || !known.emplace(cell.problem.spec, known_as).second) continue;
     families.insert(cell.problem.name);
     // A common grid is around the defaults, whatever was published for a problem.
     const Rates::Row* row = given.leaves_out ? nullptr : rates.find(cell.problem, name);
     plan.pairs.push_back({.problem = cell.problem,
                           .optimizer = name,
                           .budget = cell.budget,
-                          .options = row && !row->is_from_grid ? row->options : OptionValues()});
+                          .options = is_foreign                  ? cell.optimizer.options
+                                     : row && !row->is_from_grid ? row->options
+                                                                 : OptionValues()});
   }
   require(!plan.pairs.empty(), "tune: none of these methods has an option to tune");
   require(!given.leaves_out || families.size() > 1,
@@ -125,7 +130,11 @@ void write_table(const TuneArguments& given, const TuningPlan& plan,
   const auto add = [&](const Json& some) {
     for (const Json& row : some) rows[{row.at("problem"), row.at("optimizer")}] = json_text(row);
   };
-  if (std::filesystem::exists(table)) add(read_json(table).at("rows"));
+  if (std::filesystem::exists(table)) {
+    const Json earlier = read_json(table);
+    require_valid(earlier, "rates", table.string());
+    add(earlier.at("rows"));
+  }
   add(new_rows);
   const Budget& budget = plan.pairs[0].budget;
   Json grid{{"points", plan.grid ? plan.grid->values.size() : kGridValues},
@@ -181,7 +190,7 @@ std::vector<reports::TableCell> tuning_row(const TunedOption& tuned) {
     remark = fmt::format("at the edge: the {} value tried", tuned.best == 0 ? "lowest" : "highest");
   if (const auto ties = tied_values(tuned); !ties.empty())
     remark += (remark.empty() ? "ties with " : "; ties with ") + reports::joined(ties);
-  if (is_failed(best)) remark = "every value failed; the one nearest to the default is used";
+  if (is_failed(best)) remark = "every value failed; the value nearest to the default is used";
   return {tuned.problem,
           tuned.optimizer,
           tuned.option,
@@ -199,7 +208,7 @@ std::string tuning_summary(const TuningResult& result) {
     ties += !tied_values(tuned).empty();
   }
   std::string text =
-      fmt::format("{} tuned: {} with the best at the edge of the grid, {} with a tie",
+      fmt::format("{} tuned: {} with the best value at the edge of the grid, {} with a tie",
                   reports::counted(result.tuned.size(), "pair"), edges, ties);
   if (result.inapplicable > 0) text += fmt::format("; {} not applicable", result.inapplicable);
   return text + fmt::format(". {} in {}.", reports::counted(std::size_t(result.outcome.run), "run"),
@@ -213,8 +222,9 @@ reports::Table left_out_table(const Json& rows) {
       .align = "lllrrrrl",
       .names = 2};
   table.caption =
-      "Value: the best on the other families. Score: its mean over these families; 1 is the least "
-      "work of the method's values. Tuning work: the nominal work of all trials of the method.";
+      "Value: the value that is best on the other families. Score: the mean score of this value "
+      "over the other families; 1 is the least work of all values of the method. Tuning work: the "
+      "nominal work of all trials of the method.";
   for (const Json& row : rows) {
     const Json& source = row.at("source");
     const auto grid = source.at("grid").begin();
@@ -243,8 +253,9 @@ std::string tuning_text(const TuningResult& result, bool lists_all) {
       .names = 2};
   table.caption =
       "Grid: one bar per value, from the lowest value to the highest; the tallest bar marks the "
-      "best, · a failed one. Work: median to the target; ✗: not reached. Left: median loss or error "
-      "in x at the end.";
+      "best value, and · a value whose runs failed. Work: the median work to the target with the "
+      "best value; ✗: at most half of the runs reached the target. Left: the median loss, or "
+      "error in x, that is left at the end of these runs.";
   for (const TunedOption& tuned : result.tuned) table.rows.push_back(tuning_row(tuned));
   if (!result.left_out_rows->empty()) table = left_out_table(*result.left_out_rows);
   if (!table.rows.empty()) section.tables.push_back(std::move(table));
@@ -282,9 +293,9 @@ void register_tune(VerbRegistry& registry) {
                    "  isoline tune --suite quick --optimizer adam --json\n"
                    "  isoline tune --leave-one-out sine,heat,burgers --table physics.json",
        .notes =
-           "The best value has the least median work to the target. If several are equal, it is the "
-           "one with the least remaining loss or error in x, and then the one nearest to the "
-           "default. The output lists ties and best values at an edge of the grid."},
+           "The best value has the least median work to the target. Ties are decided by the "
+           "least remaining loss or error in x, and then by the distance from the default. The "
+           "output lists ties and best values at an edge of the grid."},
       declare, run));
 }
 

@@ -21,8 +21,8 @@ import sys
 
 RUNGS = [10 ** (-j / 5) for j in range(51)]
 PLAIN_PRICES = {"forward": 1, "pullback": 1, "pushforward": 1, "hessian_product": 2}
-ORACLES = ("forward", "pullback", "pushforward", "jacobian", "hessian", "curvature", "sensitivity",
-           "hessian_product", "inverse", "network", "layer_factors", "layer_moments", "truth")
+ORACLES = ("forward", "pullback", "pushforward", "jacobian", "sparse_jacobian", "hessian", "curvature",
+           "sensitivity", "hessian_product", "inverse", "network", "layer_factors", "layer_moments", "truth")
 STATUSES = ("converged", "target", "budget", "stalled", "diverged")
 TIMES = ("wall_seconds", "processor_seconds")
 COLUMNS = ("loss", "iteration", "work", "x_error", "gradient_norm", "step_norm", *TIMES, *ORACLES[:-1])

@@ -181,6 +181,24 @@ def seed():
     return int(_greeted()[1].get("seed", 0))
 
 
+_declared, _tunable, _has_introduced = [], None, False
+
+
+def option(name, default, doc="", tunable=False):
+    """The value of an option of this script: of process[command="python3 mine.py",name=value].
+
+    Its type, a number, a whole number, true or false, or text, is that of the default. Call it
+    before problem() or optimizer(). `tunable`: `isoline tune` chooses this option of an optimizer.
+    """
+    global _tunable
+    if _has_introduced:
+        raise Refused(f"option {name} must be declared before problem() or optimizer() is called")
+    given = _greeted()[1].get("options", {})
+    _declared.append({"name": name, "default": default, "doc": doc})
+    _tunable = name if tunable else _tunable
+    return given.get(name, default)
+
+
 def _refuse(line, why):
     """Isoline shows the reason in the place of a description."""
     line.send(HELLO, FAILED, _text(why))
@@ -188,6 +206,7 @@ def _refuse(line, why):
 
 
 def _introduce(line, greeting, role, said):
+    global _has_introduced
     if greeting["role"] != role:
         article = "an" if role == "optimizer" else "a"
         wrong = f"this script is {article} {role}; use it as such, not as {greeting['role']}"
@@ -202,7 +221,10 @@ def _introduce(line, greeting, role, said):
         role=role,
         interpreter=f"{platform.python_implementation()} {platform.python_version()}",
         packages=packages,
+        options=_declared or None,
+        tunable=_tunable,
     )
+    _has_introduced = True
     for name, words in said.items():
         if isinstance(words, str):
             said[name] = words.encode(errors="replace").decode()  # JSON has no single surrogates
@@ -394,10 +416,10 @@ def problem(
     truth: the x that produced the target.
     drawn: the start of this seed(), instead of one that Isoline samples near `start`.
     bounds=(lower, upper): numbers or lists; Isoline does not call forward outside them.
-    aim="x": the user wants the true x, not only a small loss.
+    aim="x": the success criterion is the error in x, not the loss.
     start_scale="own": starts of other seeds differ by a tenth of each unknown, not of max(1, |x|).
     x_error(x) -> number: the distance to the nearest solution; without it, that to `truth`.
-    x_floor: the error in x that noisy data cannot better; up to 1.1 of it, x counts as found.
+    x_floor: the smallest error in x that noise in the data permits; up to 1.1 times that is solved.
     """
     line, greeting = _greeted()
     try:
@@ -516,7 +538,7 @@ class optimizer:
     """An optimizer that Isoline runs: x0, and the oracles of L and of r = (y − y*)/√B.
 
     needs: the required derivatives, of "pullback", "jacobian", "pushforward", "hessian_product".
-    least_squares=True: the method minimizes ½‖r‖², whatever the loss of the problem is.
+    least_squares=True: the method minimizes ½‖r‖², so it does not apply to problems with another loss.
     reports=True: the script calls report(x) once per iteration. Otherwise each new best point counts
     as one iteration.
     When the run is over, every method raises Stop, which exits the script.

@@ -392,10 +392,10 @@ def main():
     one.add_argument("--minimum", type=float, help="least attainable loss, if known")
     one.add_argument("--differences", action="store_true",
                      help="derivatives by central differences, for a model that only evaluates")
-    one.add_argument("--aim", choices=["loss", "x"], help="x: the user wants the truth, not only a small loss")
+    one.add_argument("--aim", choices=["loss", "x"], help="x: the success criterion is the error in x, not the loss")
     one.add_argument("--start-scale", choices=["own"],
                      help="own: starts of other seeds differ by a tenth of each unknown")
-    one.add_argument("--x-floor", type=float, help="the error in x that noisy data cannot better")
+    one.add_argument("--x-floor", type=float, help="smallest error in x that is attainable with noisy data")
     one.add_argument("--label", default="", help="name in tables")
     one.add_argument("--startup", type=float, default=30, help="seconds until the server must listen")
     one.add_argument("command", nargs="*", help="command that starts a server on the port in PORT")

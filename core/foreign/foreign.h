@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/options.h"
 #include "core/shell.h"
 
 namespace isoline {
@@ -26,6 +27,10 @@ struct Foreign {
   std::string interpreter;  // "CPython 3.11.2"; empty where it has none
   std::map<std::string, std::string> packages;  // versions by name, as it says itself
   std::string note, source;                     // as an entry's
+  // Options that a program declares besides those of the adapter, and the one of them that tuning
+  // chooses. Not in records, which hold their values.
+  OptionTable options = {};
+  std::string tunable = {};
 
   bool operator==(const Foreign&) const = default;
 };

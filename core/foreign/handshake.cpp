@@ -32,6 +32,16 @@ Foreign foreign_of_command(const std::string& command) {
   return {.door = "process", .command = command, .digest = digest_of_files(shell_words(command))};
 }
 
+OptionValues declared_values(OptionValues complete) {
+  for (const OptionField& field : option_table<ProcessOptions>()) complete.erase(field.name);
+  for (const char* of_harness : {kStartOption, kTargetOption}) complete.erase(of_harness);
+  return complete;
+}
+
+std::string options_text(const OptionValues& declared) {
+  return declared.empty() ? "" : json_text(to_json(declared));
+}
+
 void require_unedited(const std::optional<Foreign>& planned) {
   if (!planned || planned->door != "process") return;
   std::string now;  // empty while an editor replaces the file
@@ -147,6 +157,37 @@ class Said {
     }
     return all;
   }
+  OptionTable options(const char* name) const {
+    if (!has(name)) return {};
+    const std::string law = fmt::format(
+        "a list of at most {} objects with a new name of letters, digits and hyphens, and with a "
+        "default",
+        kMostPackages);
+    const Json& list = json_[name];
+    if (!list.is_array() || list.size() > kMostPackages) refuse(name, law);
+    OptionTable table = option_table<ProcessOptions>();
+    const std::size_t ours = table.size();
+    for (const Json& each : list) {
+      const bool is_whole = each.is_object() && each.contains("name") && each.contains("default") &&
+                            each["name"].is_string() && !each["default"].is_structured() &&
+                            !each["default"].is_null();
+      if (!is_whole) refuse(name, law);
+      const std::string option = each["name"];
+      const bool is_new = std::ranges::find(table, option, &OptionField::name) == table.end();
+      if (!is_new || option.empty() || option.size() > kMostName || option != option_name(option) ||
+          option.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789"
+                                   "-_") != option.npos)
+        refuse(name, law);
+      const std::string doc =
+          each.contains("doc") && each["doc"].is_string() ? each["doc"] : Json("");
+      Json standard;
+      standard[option] = each["default"];
+      table.push_back(
+          {option, option_values_from(standard).at(option), {}, {}, doc.substr(0, kMostWords)});
+    }
+    table.erase(table.begin(), table.begin() + static_cast<std::ptrdiff_t>(ours));
+    return table;
+  }
   // The lower ones, and the upper ones; both empty where there are none.
   std::pair<std::vector<Real>, std::vector<Real>> bounds(std::int64_t count) const {
     const char* name = "bounds";
@@ -204,6 +245,11 @@ Foreign foreign_of(const Said& said) {
   foreign.packages = said.texts("packages");
   foreign.note = said.text("note");
   foreign.source = said.text("source");
+  foreign.options = said.options("options");
+  foreign.tunable = said.text("tunable", kMostName);
+  const auto tunable = std::ranges::find(foreign.options, foreign.tunable, &OptionField::name);
+  require(foreign.tunable.empty() || tunable != foreign.options.end(),
+          [&] { return "tunable must name a declared option, got " + foreign.tunable; });
   return foreign;
 }
 
@@ -215,7 +261,8 @@ bool is_within(const std::vector<Real>& x, const ProblemHandshake& problem) {
 
 // The answer to our greeting. The caller handles a broken connection, as it handles a wrong
 // argument.
-std::string answer_to(Line& line, const Json& greeting, double seconds) {
+std::string answer_to(Line& line, Json greeting, double seconds, const OptionValues& declared) {
+  if (!declared.empty()) greeting["options"] = to_json(declared);
   try {
     line.send_text(Verb::hello, 0, json_text(greeting));
     return line.receive_text(Verb::hello, kMostHandshake, seconds);
@@ -279,14 +326,15 @@ MethodHandshake method_handshake(const std::string& text, const std::string& sen
           .reports = said.flag("reports")};
 }
 
-ProblemHandshake greet_problem(Line& line, std::uint64_t seed, double seconds) {
+ProblemHandshake greet_problem(Line& line, std::uint64_t seed, double seconds,
+                               const OptionValues& declared) {
   const Json greeting{{"protocol", kWireProtocol}, {"role", "problem"}, {"seed", seed}};
-  return problem_handshake(answer_to(line, greeting, seconds), line.sender());
+  return problem_handshake(answer_to(line, greeting, seconds, declared), line.sender());
 }
 
-MethodHandshake greet_method(Line& line, double seconds) {
+MethodHandshake greet_method(Line& line, double seconds, const OptionValues& declared) {
   const Json greeting{{"protocol", kWireProtocol}, {"role", "optimizer"}};
-  return method_handshake(answer_to(line, greeting, seconds), line.sender());
+  return method_handshake(answer_to(line, greeting, seconds, declared), line.sender());
 }
 
 }  // namespace isoline

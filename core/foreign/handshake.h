@@ -27,6 +27,9 @@ void fields(ProcessOptions& o, auto& field) {
   field("startup", o.startup, above(0), "seconds until it must introduce itself");
 }
 
+// The values of the options that a program has declared, out of all of a component.
+OptionValues declared_values(OptionValues complete);
+
 // The descriptions that programs have sent. Each program is started once for this, and again only
 // if its command or its files change.
 
@@ -40,14 +43,17 @@ Foreign foreign_of_command(const std::string& command);
 // results of other files must not be stored under their digest.
 void require_unedited(const std::optional<Foreign>& planned);
 
+std::string options_text(const OptionValues& declared);  // JSON; empty without options
+
 template <class Handshake>
 class Introductions {
  public:
   template <class Greet>
-  const Handshake& of(const std::string& command, const Greet& greet) {
+  const Handshake& of(const std::string& command, const OptionValues& declared,
+                      const Greet& greet) {
     const ChildProgram::Start start = door_to(command);
     const Foreign own = foreign_of_command(command);
-    const std::string key = own.digest + " " + command;
+    const std::string key = own.digest + " " + command + options_text(declared);
     if (const auto known = known_.find(key); known != known_.end()) return known->second;
     Line line(start);
     Handshake said = greet(line);
@@ -95,7 +101,8 @@ MethodHandshake method_handshake(const std::string& text, const std::string& sen
 
 // Greets a program that was just started, which has so many seconds to answer. UsageError if it
 // does not answer, or if the answer is invalid.
-ProblemHandshake greet_problem(Line& line, std::uint64_t seed, double seconds);
-MethodHandshake greet_method(Line& line, double seconds);
+ProblemHandshake greet_problem(Line& line, std::uint64_t seed, double seconds,
+                               const OptionValues& declared);
+MethodHandshake greet_method(Line& line, double seconds, const OptionValues& declared);
 
 }  // namespace isoline

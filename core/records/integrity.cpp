@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <vector>
 
 #include "core/files.h"
+#include "core/oracle.h"
 #include "core/records/record.h"
 #include "core/status.h"
 
@@ -32,6 +34,9 @@ class Invariants {
       : record_(record), curve_(record.curve), summary_(record.summary) {
     const bool is_own = !record.imported && record.status != Status::inapplicable;
     const bool broke_off = is_failure(record.status) || record.status == Status::interrupted;
+    const std::string cell = cell_digest(record.request);
+    hold(cell == record.cell, "its cell is {}, but the digest of its request is {}", record.cell,
+         cell);
     hold(
         record.criterion.empty() || record.criterion == digest_of(criterion_of(record)),
         "its criterion is not the digest of its f_L, scale, x_scale, x_floor, aim and nominal costs");
@@ -219,15 +224,22 @@ class Invariants {
 
 }  // namespace
 
+// The nominal cost of a sparse Jacobian belongs to it where a run counts one: so the criterion of
+// all other runs is that of records from before.
 Criterion criterion_of(const Record& record) {
-  return {record.minimum, record.scale, record.x_scale, record.x_floor, record.aim, record.prices};
+  constexpr auto kSparse = static_cast<std::size_t>(Oracle::sparse_jacobian);
+  OracleCounts prices = record.prices;
+  if (record.counts[kSparse] == 0) prices[kSparse] = 0;
+  return {record.minimum, record.scale, record.x_scale, record.x_floor, record.aim, prices};
 }
 
 std::string digest_of(const Criterion& criterion) {
+  std::vector<std::int64_t> prices(criterion.prices.begin(), criterion.prices.end());
+  const auto sparse = prices.begin() + static_cast<std::ptrdiff_t>(Oracle::sparse_jacobian);
+  if (*sparse == 0) prices.erase(sparse);
   return digest(fmt::format("{} {} {} {} {} {}", number_text(criterion.minimum),
                             number_text(criterion.scale), number_text(criterion.x_scale),
-                            criterion.x_floor, name_of(criterion.aim),
-                            fmt::join(criterion.prices, " ")));
+                            criterion.x_floor, name_of(criterion.aim), fmt::join(prices, " ")));
 }
 
 std::vector<std::string> broken_invariants(const Record& record) {

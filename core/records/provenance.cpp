@@ -121,7 +121,8 @@ const std::string& platform_digest() {
     std::string text =
         fmt::format("{} {} {} {} {} {} {}", build.compiler, build.build_type, build.flags,
                     build.instruction_set, caches.l1, caches.l2, caches.l3);
-    for (const char* name : {"Ceres", "NLopt", "Eigen", "OpenBLAS", "FFTW", "oneDNN", "Random123"})
+    for (const char* name :
+         {"Ceres", "NLopt", "cminpack", "GSL", "Eigen", "OpenBLAS", "FFTW", "oneDNN", "Random123"})
       text += fmt::format(" {} {}", name, build.libraries.at(name));
     return digest(text);
   }();

@@ -45,6 +45,12 @@ void require_equal_columns(const Record& record) {
   if (record.spectrum)
     require(record.spectrum->iterations.size() == record.spectrum->sigma.size(),
             "the numbers of its spectra and of their iterations differ");
+  if (const auto& known = record.uncertainty) {
+    const char* whose = "standard deviations";
+    require_length(known->x.size(), whose, known->standard_deviation);
+    require_length(known->x.size(), whose, known->correlation);
+    for (const auto& row : known->correlation) require_length(known->x.size(), whose, row);
+  }
   if (!record.hits) return;
   const Hits& hits = *record.hits;
   const std::size_t targets = hits.target.size();
@@ -57,6 +63,13 @@ void require_equal_columns(const Record& record) {
 
 }  // namespace
 
+constexpr const char *kCountLaw = R"({"minimum": 0})",
+                     *kCountsLaw = R"({"items": {"type": "integer", "minimum": 0}})",
+                     *kTimesLaw = R"({"items": {"allOf": [{"$ref": "#/definitions/number"},
+                                                          {"minimum": 0}]}})";
+// For hits: −1 if not reached.
+constexpr const char* kHitsLaw = R"({"items": {"type": "integer", "minimum": -1}})";
+
 void fields(Like<Component> auto& component, auto& field) {
   field("name", component.name);
   field("options", component.options);
@@ -67,10 +80,13 @@ void fields(Like<Component> auto& component, auto& field) {
 }
 
 void fields(Like<Budget> auto& budget, auto& field) {
-  field("iterations", budget.iterations);
-  field("work", Unlimited{budget.work});
-  field("seconds", budget.seconds);
-  field("target", budget.target);
+  field("iterations", budget.iterations, kCountLaw);
+  field("work", Unlimited{budget.work}, kCountLaw);
+  field("seconds", budget.seconds, kCountLaw);
+  field("target", budget.target, kCountLaw);
+  field.optional(
+      "stall", budget.stall,
+      R"({"minimum": 0, "description": "Iterations without progress, if not 100; 0: any"})");
 }
 
 void fields(Like<Request> auto& request, auto& field) {
@@ -153,11 +169,11 @@ constexpr const char* kDigestLaw = R"({"pattern": "^[0-9a-f]{16}$"})";
 constexpr const char* kTolerancesLaw = R"({"required": ["1e-1", "1e-3", "1e-6"]})";
 
 void fields(Like<Curve> auto& curve, auto& field) {
-  field("iteration", curve.iteration);
-  field("work", curve.work);
+  field("iteration", curve.iteration, kCountsLaw);
+  field("work", curve.work, kCountsLaw);
   field("counts", curve.counts);
-  field("wall_seconds", curve.wall_seconds);
-  field("processor_seconds", curve.processor_seconds);
+  field("wall_seconds", curve.wall_seconds, kTimesLaw);
+  field("processor_seconds", curve.processor_seconds, kTimesLaw);
   field("loss", curve.loss);
   field("x_error", curve.x_error);
   field("gradient_norm", curve.gradient_norm);
@@ -168,11 +184,11 @@ void fields(Like<Curve> auto& curve, auto& field) {
 
 void fields(Like<Hits> auto& hits, auto& field) {
   field("target", hits.target);
-  field("iteration", hits.iteration);
-  field("work", hits.work);
-  field("forwards", hits.forwards);
+  field("iteration", hits.iteration, kHitsLaw);
+  field("work", hits.work, kHitsLaw);
+  field("forwards", hits.forwards, kHitsLaw);
   field.optional("counts", hits.counts, R"({"description": "By oracle, -1 if not reached"})");
-  field("wall_seconds", hits.wall_seconds);
+  field("wall_seconds", hits.wall_seconds, kTimesLaw);
 }
 
 void fields(Like<Trajectory> auto& path, auto& field) {
@@ -181,18 +197,18 @@ void fields(Like<Trajectory> auto& path, auto& field) {
 }
 
 void fields(Like<Summary> auto& summary, auto& field) {
-  field("iterations", summary.iterations);
-  field("work", summary.work);
-  field("rejected_steps", summary.rejected_steps);
+  field("iterations", summary.iterations, kCountLaw);
+  field("work", summary.work, kCountLaw);
+  field("rejected_steps", summary.rejected_steps, kCountLaw);
   field("start_loss", summary.start_loss);
   field("loss", summary.loss);
   field("best_loss", summary.best_loss);
   field("start_x_error", summary.start_x_error);
   field("x_error", summary.x_error);
   field("gradient_norm", summary.gradient_norm);
-  field("wall_seconds", summary.wall_seconds);
-  field("processor_seconds", summary.processor_seconds);
-  field("peak_memory_bytes", summary.peak_memory_bytes);
+  field("wall_seconds", summary.wall_seconds, kCountLaw);
+  field("processor_seconds", summary.processor_seconds, kCountLaw);
+  field("peak_memory_bytes", summary.peak_memory_bytes, kCountLaw);
 }
 
 void fields(Like<Exhibit> auto& exhibit, auto& field) {
@@ -210,6 +226,15 @@ void fields(Like<FieldFrames> auto& frames, auto& field) {
 void fields(Like<Spectrum> auto& spectrum, auto& field) {
   field("iterations", spectrum.iterations);
   field("sigma", spectrum.sigma);
+}
+
+void fields(Like<Uncertainty> auto& known, auto& field) {
+  field("x", known.x);
+  field("standard_deviation", known.standard_deviation);
+  field("correlation", known.correlation);
+  field("variance", known.variance);
+  field("degrees_of_freedom", known.degrees_of_freedom);
+  field("condition", known.condition);
 }
 
 void fields(Like<Foreign> auto& foreign, auto& field) {
@@ -274,17 +299,21 @@ void fields(Like<Record> auto& record, auto& field) {
                  R"({"description": "x at some iterations, in the .npy file beside the record"})");
   field.optional("spectrum", record.spectrum,
                  R"({"description": "Singular values of J, if --spectrum was set"})");
+  field.optional("uncertainty", record.uncertainty,
+                 R"({"description": "Of a least-squares solution: x and its covariance"})");
   field("privileges", record.privileges);
   field.optional("foreign", record.foreign,
                  R"({"description": "Components that other programs computed"})");
   field("nondeterministic", record.is_nondeterministic);
-  field("repeat_wall_seconds", record.repeat_wall_seconds);
+  field("repeat_wall_seconds", record.repeat_wall_seconds, kTimesLaw);
   field("provenance", record.provenance);
   field.optional(
       "imported", record.imported,
       R"({"description": "The origin of an imported run, whose values are not verified"})");
   if constexpr (std::remove_cvref_t<decltype(field)>::kReads) {
     record.request.cell = record.cell;
+    record.request.problem.foreign = record.foreign.problem;
+    record.request.optimizer.foreign = record.foreign.optimizer;
     require_equal_columns(record);
   }
 }

@@ -95,6 +95,16 @@ struct Spectrum {
   bool operator==(const Spectrum&) const = default;
 };
 
+// A direct least-squares problem with more residuals than unknowns: x as it was returned, and
+// its covariance σ̂² (JᵀJ)⁻¹ there, σ̂² = ‖y − y*‖²/(m − n), as standard deviations and correlations.
+struct Uncertainty {
+  std::vector<Real> x, standard_deviation;
+  std::vector<std::vector<Real>> correlation;
+  Real variance = 0;                    // σ̂²
+  std::int64_t degrees_of_freedom = 0;  // m − n
+  Real condition = 0;                   // number of J, its columns scaled to norm 1
+};
+
 // The parts of a run that other programs computed.
 struct ForeignParts {
   std::optional<Foreign> problem = {}, optimizer = {};
@@ -142,6 +152,7 @@ struct Record {
   std::optional<Exhibit> exhibit;
   std::optional<FieldFrames> fields;  // of a problem on a grid
   std::optional<Spectrum> spectrum;
+  std::optional<Uncertainty> uncertainty;
   std::vector<std::string> privileges;
   ForeignParts foreign;
   bool is_nondeterministic = false;       // ended by a clock or a kill

@@ -103,6 +103,8 @@ void fields(Like<Sheet> auto& sheet, auto& field) {
   field.optional("landscape_x", sheet.landscape_x);
   field.optional("landscape_y", sheet.landscape_y);
   field.optional("prices", sheet.prices);
+  field.optional("certified", sheet.certified,
+                 R"({"description": "Build of the problem that passed its checks"})");
 }
 
 std::string Sheet::file_name() const {

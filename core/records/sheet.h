@@ -76,6 +76,7 @@ struct Sheet {
   std::optional<Field> field;                         // of a problem on a grid: what x and y are
   std::vector<Panel> panels;                          // of a problem: the figures of its paper
   std::optional<MeasuredPrices> prices;               // of a problem
+  std::string certified;  // of another program's problem: the build that passed its checks
 
   std::string file_name() const;
 };

@@ -2,10 +2,12 @@
 #include "core/results/advice.h"
 
 #include <algorithm>
+#include <cstdlib>
 #include <map>
 #include <optional>
 #include <set>
 #include <string>
+#include <string_view>
 
 #include "core/oracle.h"
 
@@ -24,6 +26,7 @@ bool can_ask(const Means& means, Oracle oracle) {
       return means.derivatives >= Derivatives::gradient;
     case Oracle::pushforward:
     case Oracle::jacobian:
+    case Oracle::sparse_jacobian:
     case Oracle::sensitivity:
       return means.derivatives >= Derivatives::jacobian;
     case Oracle::hessian:
@@ -55,6 +58,20 @@ bool can_run(const Comparison& c, const Cell& cell, const Means& means) {
          });
 }
 
+// Whether its data are as noisy as the reader's.
+bool has_noise(const ProblemAxis& problem, Real noise) {
+  constexpr Real kNear = 3;
+  constexpr std::string_view kOption = "noise=";
+  std::size_t at = problem.spec.find(kOption);
+  if (at != problem.spec.npos &&
+      (at == 0 || (problem.spec[at - 1] != '[' && problem.spec[at - 1] != ',')))
+    at = problem.spec.npos;
+  const Real of = at == problem.spec.npos
+                      ? 0
+                      : std::strtod(problem.spec.c_str() + at + kOption.size(), nullptr);
+  return noise == 0 ? of == 0 : of >= noise / kNear && of <= noise * kNear;
+}
+
 // Classical and toy problems count where there is little physics of that size.
 std::vector<std::size_t> settings_of_size(const Comparison& c, const Means& means) {
   std::vector<std::size_t> settings;
@@ -62,7 +79,7 @@ std::vector<std::size_t> settings_of_size(const Comparison& c, const Means& mean
     const ProblemAxis& problem = c.problems[p];
     const Index unknowns = problem.sheet == nullptr ? 0 : problem.sheet->unknowns;
     if (!problem.is_learned && !problem.is_ill_posed() && unknowns >= means.least_unknowns &&
-        unknowns <= means.most_unknowns)
+        unknowns <= means.most_unknowns && has_noise(problem, means.noise))
       settings.push_back(p);
   }
   std::set<std::string> physics;
@@ -87,49 +104,89 @@ std::vector<std::vector<std::size_t>> rows_by_method(const Comparison& c) {
   return methods;
 }
 
-}  // namespace
+// Methods on settings: the median work of each, and what an advice says of each.
+struct Trial {
+  Costs costs;
+  std::vector<Advised> all;
+};
 
-Advice advise(const Comparison& c, const Means& means) {
-  Advice advice{.settings = settings_of_size(c, means), .ranked = {}, .partial = {}};
-  const auto methods = rows_by_method(c);
-  Evidence evidence{
-      .costs = Costs(advice.settings.size(), std::vector<std::optional<Real>>(methods.size())),
-      .families = {},
-      .repetitions = {},
-      .others = {}};
-  std::vector<Advised> all(methods.size());
+Trial trial_of(const Comparison& c, const Means& means, const std::vector<std::size_t>& settings,
+               const std::vector<std::vector<std::size_t>>& methods) {
+  Trial trial{Costs(settings.size(), std::vector<std::optional<Real>>(methods.size())),
+              std::vector<Advised>(methods.size())};
   for (std::size_t m = 0; m < methods.size(); ++m) {
     std::size_t most = 0;
     std::vector<Real> works;
     for (const std::size_t s : methods[m]) {
-      std::size_t settings = 0;
-      for (std::size_t i = 0; i < advice.settings.size(); ++i) {
-        const Cell& cell = c.cell(advice.settings[i], s);
-        if (cell.planned == 0 || evidence.costs[i][m] || !can_run(c, cell, means)) continue;
+      std::size_t measured = 0;
+      for (std::size_t i = 0; i < settings.size(); ++i) {
+        const Cell& cell = c.cell(settings[i], s);
+        if (cell.planned == 0 || trial.costs[i][m] || !can_run(c, cell, means)) continue;
         const Real work = cell.median(Measure::work, c.yardstick.tightest().rung);
         works.push_back(work <= means.budget ? work : kNever);
-        evidence.costs[i][m] = works.back();
-        settings += cell.is_measured();
+        trial.costs[i][m] = works.back();
+        measured += cell.is_measured();
       }
-      if (settings <= most) continue;
-      most = settings;
-      all[m].optimizer = s;
+      if (measured <= most) continue;
+      most = measured;
+      trial.all[m].optimizer = s;
     }
     if (most == 0)  // it can be run nowhere
-      for (auto& row : evidence.costs) row[m].reset();
-    all[m].settings = most == 0 ? 0 : works.size();
-    all[m].solved = std::size_t(std::ranges::count_if(works, [](Real w) { return w < kNever; }));
-    all[m].work = median_of(std::move(works));
+      for (auto& row : trial.costs) row[m].reset();
+    Advised& one = trial.all[m];
+    one.settings = most == 0 ? 0 : works.size();
+    one.solved = std::size_t(std::ranges::count_if(works, [](Real w) { return w < kNever; }));
+    one.work = median_of(std::move(works));
   }
-  for (const std::size_t p : advice.settings) evidence.families.push_back(c.problems[p].name);
-  const auto decision = advice.settings.empty() ? std::nullopt : decide(evidence);
+  return trial;
+}
+
+// The method that was run on some of the settings alone and solves more of them than the first of
+// those that were run on all: it would not be ranked. Of several, that with the most settings.
+std::optional<std::size_t> better_on_some(const Trial& trial, std::size_t first) {
+  constexpr std::size_t kFewest = 3;
+  std::optional<std::size_t> better;
+  for (std::size_t m = 0; m < trial.all.size(); ++m) {
+    const std::size_t settings = trial.all[m].settings;
+    if (settings < kFewest || settings == trial.costs.size() ||
+        (better && settings <= trial.all[*better].settings))
+      continue;
+    std::size_t solved = 0;
+    for (const auto& row : trial.costs) solved += row[m] && row[first] && *row[first] < kNever;
+    if (trial.all[m].solved > solved) better = m;
+  }
+  return better;
+}
+
+}  // namespace
+
+Advice advise(const Comparison& c, const Means& means) {
+  Advice advice{.settings = settings_of_size(c, means), .ranked = {}, .partial = {}};
+  advice.of_size = advice.settings.size();
+  const auto methods = rows_by_method(c);
+  Trial trial = trial_of(c, means, advice.settings, methods);
+  const auto decided = [&] {
+    Evidence evidence{.costs = trial.costs, .families = {}, .repetitions = {}, .others = {}};
+    for (const std::size_t p : advice.settings) evidence.families.push_back(c.problems[p].name);
+    return advice.settings.empty() ? std::nullopt : decide(evidence);
+  };
+  auto decision = decided();
+  if (decision && !decision->places.empty())
+    if (const auto m = better_on_some(trial, decision->places[0].method)) {
+      std::vector<std::size_t> shared;
+      for (std::size_t i = 0; i < advice.settings.size(); ++i)
+        if (trial.costs[i][*m]) shared.push_back(advice.settings[i]);
+      advice.settings = std::move(shared);
+      trial = trial_of(c, means, advice.settings, methods);
+      decision = decided();
+    }
   for (std::size_t i = 0; decision && i < decision->places.size(); ++i) {
     const Place& place = decision->places[i];
-    advice.ranked.push_back(all[place.method]);
+    advice.ranked.push_back(trial.all[place.method]);
     advice.ranked.back().score = place.score;
     advice.ranked.back().is_in_group = place.is_in_group;
   }
-  for (const Advised& one : all)
+  for (const Advised& one : trial.all)
     if (one.settings > 0 && one.settings < advice.settings.size()) advice.partial.push_back(one);
   return advice;
 }

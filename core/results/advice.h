@@ -21,7 +21,11 @@ struct Means {
   bool has_inverse = false;  // a local inverse of the physics
   Index least_unknowns = 0, most_unknowns = std::numeric_limits<Index>::max();
   Real budget = kNever;  // of work, in forward solves
+  Real noise = 0;  // in the data, over their rms: settings with up to three times less or more
 };
+// The classes of unknowns that a reader chooses from: up to 10, 11 to 100, more than 100.
+inline constexpr std::array<std::array<Index, 2>, 3> kSizeClasses = {
+    {{0, 10}, {11, 100}, {101, Means{}.most_unknowns}}};
 
 // A method under one name, whatever it saw on each setting.
 struct Advised {
@@ -33,9 +37,12 @@ struct Advised {
   bool is_in_group = false;   // not significantly worse than the best
 };
 struct Advice {
-  std::vector<std::size_t> settings;  // of that size
-  std::vector<Advised> ranked;        // run on all of them, best first; none where none solves any
-  std::vector<Advised> partial;       // run on some
+  std::size_t of_size = 0;  // settings of that size
+  // Those that count: all of that size, or those of a method that was run on some alone and solves
+  // more of them than the first of the others.
+  std::vector<std::size_t> settings;
+  std::vector<Advised> ranked;   // run on all that count, best first; none where none solves any
+  std::vector<Advised> partial;  // run on some
 };
 // On direct problems whose x the data determine. What a method needs is what its runs were counted
 // to ask for.

@@ -2,6 +2,8 @@
 // the bootstrap, tests by ranks.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -29,6 +31,13 @@ struct Spread {
 // of the two in the middle, infinite if either is.
 Spread spread_of(std::vector<Real> values);
 Real median_of(std::vector<Real> values);
+
+// The correct digits of a figure with this relative error, within 0 and the eleven that NIST
+// certifies; 0 where it is not a number.
+inline Real log_relative_error(Real error) {
+  constexpr Real kCertified = 11;
+  return error >= 0 ? std::clamp(-std::log10(error), 0.0, kCertified) : 0;
+}
 
 // The share of its problems that each solver solves within a factor of the least cost.
 // Dolan, Moré (2002), Math. Program. 91:201–213; but n_p is a solver's own: a problem never asked

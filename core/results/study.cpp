@@ -240,7 +240,7 @@ Study read_study(const std::vector<std::string>& folders, const Listener& listen
   for (const fs::path folder : folders) {
     require(!fs::is_regular_file(folder, unknown), [&] {
       return folder.string() +
-             " is a file, not a result folder: unpack an archive first, with tar -xf";
+             " is a file and not a result folder; if it is an archive, unpack it with tar -xf";
     });
     require(fs::is_directory(folder, unknown),
             [&] { return folder.string() + ": no such result folder"; });

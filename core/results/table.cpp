@@ -78,11 +78,14 @@ std::map<std::string, std::string> names_by_spec(const Study& study, Component R
   return names;
 }
 
-// "P⁻¹" where the physics are inverted for it; else in the words of its records.
+// "P⁻¹" where the physics are inverted for it; else "the exact Hessian", "the ground truth".
 std::string given_by(const std::set<std::string>& privileges) {
   std::string text;
   for (const std::string& privilege : privileges) {
-    const std::string given = is_inverse_of_physics(privilege) ? "P⁻¹" : privilege;
+    const std::string given = is_inverse_of_physics(privilege) ? "P⁻¹"
+                              : privilege == name_of(Privilege::estimate)
+                                  ? "an estimate from how the data were made"
+                                  : "the " + privilege;
     if (text.find(given) == std::string::npos) text += (text.empty() ? "" : " and ") + given;
   }
   return text;
@@ -524,6 +527,8 @@ std::string budget_options(const Request& request) {
   if (budget.work < Budget{}.work) options += fmt::format(" --work {}", budget.work);
   if (budget.seconds < Budget{}.seconds) options += fmt::format(" --time {}s", budget.seconds);
   if (budget.target != Budget{}.target) options += fmt::format(" --target {}", budget.target);
+  if (budget.stall)
+    options += " --stall " + (*budget.stall > 0 ? std::to_string(*budget.stall) : "never");
   if (request.threads != 1) options += fmt::format(" --threads {}", request.threads);
   return options;
 }

@@ -146,9 +146,10 @@ VectorOut component_part(VectorOut all, Index which, Index cells) {
 
 void check(const FlowOptions& o) {
   require(o.N >= 4 && o.N % 2 == 0, [&] {
-    return fmt::format("the flow needs an even number of cells a side, at least 4, got {}", o.N);
+    return fmt::format("N, the number of grid points per side, must be even and at least 4, got {}",
+                       o.N);
   });
-  require(o.dt > 0, [&] { return fmt::format("the time step must be above 0, got {}", o.dt); });
+  require(o.dt > 0, [&] { return fmt::format("the time step dt must be above 0, got {}", o.dt); });
   require(o.viscosity >= 0,
           [&] { return fmt::format("the viscosity must be at least 0, got {}", o.viscosity); });
   const Real most = kMostViscous * o.dx() * o.dx() / o.dt;

@@ -201,8 +201,8 @@ std::string why_incomparable(const ComparedCell& a, const ComparedCell& b,
     if (!side->doubt.empty())
       return fmt::format("{} contradicts itself: {}", side == &a ? "BASE" : "NEW", side->doubt);
   if (a.is_cut || b.is_cut)
-    return fmt::format("a clock or a kill ended it in {} ({})", b.is_cut ? "NEW" : "BASE",
-                       name_of(b.is_cut ? b.status : a.status));
+    return fmt::format("a time limit or a signal ended the run in {} ({})",
+                       b.is_cut ? "NEW" : "BASE", name_of(b.is_cut ? b.status : a.status));
   if (options.tolerance || a.build == b.build) return "";
   return "another build or instruction set; pass --tolerance to compare the values";
 }
@@ -341,9 +341,9 @@ class Gate {
     for (std::size_t i = 0; i < is_used_.size(); ++i)
       if (!is_used_[i])
         result_.remarks.push_back(fmt::format(
-            "the list of allowed cells contains {} × {}, which NEW does not {}: remove the entry",
+            "the file of allowed cells has an entry for {} × {}, but NEW does not {}: remove it",
             options_.allowed[i].problem, options_.allowed[i].optimizer,
-            options_.allowed[i].is_of_criterion ? "judge otherwise" : "lack"));
+            options_.allowed[i].is_of_criterion ? "judge them differently" : "lack them"));
   }
 
   void offer_times(const ComparedCell& a, const ComparedCell& b) {
@@ -378,8 +378,8 @@ class Gate {
   void add_remarks() {
     const std::tuple<std::size_t, const char*, std::string> all[] = {
         {result_.chaotic, "chaotic cell",
-         "compared by status and the targets 1e-1, 1e-3 and 1e-6: a change of the start in the last "
-         "bit changes the values by more than a tenth of the tolerance"},
+         "compared by status and the targets 1e-1, 1e-3 and 1e-6: a change of the start in the "
+         "last bit changes the values by more than a tenth of the tolerance"},
         {too_few_, "cell",
          fmt::format("with too few repetitions to compare times: use --repeat {} --exclusive",
                      kLeastRepetitions)},
@@ -443,7 +443,7 @@ void conclude(GateResult& result, const GateOptions& options) {
   if (!worse.empty() || !slower.empty() || !lack.empty()) {
     settle(kWorse, "worse", {settings, lack, worse, slower});
   } else if (result.joined == 0) {
-    settle(kNotComparable, "not comparable", {"the two sides have no common cell"});
+    settle(kNotComparable, "not comparable", {"BASE and NEW have no common cell"});
   } else if (const auto& all = result.incomparable; !all.empty()) {
     const std::string first = all[0].title + ": " + all[0].reason;
     settle(kNotComparable,

@@ -281,7 +281,7 @@ Json claim_json(const Judgement& judgement) {
             {"survives", judgement.survives},
             {"needs_iterations", judgement.needs},
             {"why", judgement.why},
-            {"caveat", judgement.caveat},
+            {"caveat", joined(judgement.caveats, " ")},
             {"measured", measurement_json(judgement.measured)},
             {"evidence", evidence_json(judgement.evidence)},
             {"sets", list_of(judgement.sets, set_json)},

@@ -123,9 +123,10 @@ std::string every_cell(const Comparison& c) {
       if (c.cell(p, s).planned > 0 && !c.cell(p, s).is_measured()) text += line_of(c, p, s, width);
   }
   std::string marks = fmt::format(
-      "Median {} to each tolerance, in {}; runs that reach {}; median ms to {}; median final loss. "
-      "{} *: the least of its problem; ✗: at most half of the runs reached it; n/a: not applicable",
-      counted_name(c), unit_name(c), tau_name(c), tau_name(c), success_text(c));
+      "Runs: the runs that reach {}, out of all. Columns of tolerances: median {} to the "
+      "tolerance, in {}. ms: median wall time to {}. Loss: median final loss. {} *: the least of "
+      "its problem; ✗: at most half of the runs reached the tolerance; n/a: not applicable",
+      tau_name(c), counted_name(c), unit_name(c), tau_name(c), success_text(c));
   if (std::ranges::any_of(c.problems, &ProblemAxis::lacks_least_loss))
     marks += "; ?: least loss unknown";
   if (c.is_any_timed_together) marks += "; ≈: timed while other runs used the machine";
@@ -243,7 +244,8 @@ std::string terminal_section(const Section& section, std::size_t most_rows) {
     while (text.ends_with("\n\n")) text.pop_back();
   }
   if (limit.hidden == 0) return text;
-  return text + fmt::format("… and {} more; --all lists them\n", limit.hidden);
+  return text + fmt::format("… and {} more row{}; --all lists them\n", limit.hidden,
+                            limit.hidden == 1 ? "" : "s");
 }
 
 std::string terminal_claim(const Section& claim) {

@@ -48,12 +48,12 @@ std::string deeds_html(const Comparison& c, std::size_t s) {
         if (is_failure(c.runs[run].record->status)) message = c.runs[run].record->message;
       add(failed, fmt::format("{} of {} runs: {}", cell.failed, cell.runs.size(), message));
     } else if (!work.is_solved() && !c.problems[p].lacks_least_loss()) {
-      add(unsolved, fmt::format("{}; final loss {} at best", status_text(cell.statuses),
+      add(unsolved, fmt::format("{}; lowest final loss {}", status_text(cell.statuses),
                                 figure(cell.loss.low)));
     }
   }
   std::string html;
-  for (const auto& [term, items] : {std::pair("wins", &won),
+  for (const auto& [term, items] : {std::pair("least work on", &won),
                                     {"does not solve", &unsolved},
                                     {"failed on", &failed},
                                     {"not applicable to", &inapplicable}})
@@ -124,16 +124,18 @@ std::string reading(const Comparison& c, std::size_t s) {
   const OptimizerAxis& axis = c.optimizers[s];
   const Standing& standing = axis.tightest();
   if (axis.runs == 0)
-    return axis.applicable == 0 ? "It is not applicable to any of these problems." : "";
-  std::string text = fmt::format("{}: solves {} of these {} to {}", place_text(c, s),
-                                 standing.solved, standing.settings, tau_name(c));
+    return axis.applicable == 0 ? "This method is not applicable to any of these problems." : "";
+  std::string text = fmt::format("{}: solves {} of {} to {}", place_text(c, s), standing.solved,
+                                 standing.settings, tau_name(c));
   if (standing.wins > 0)
-    text += fmt::format(", {} with the least {} of all", standing.wins, counted_name(c));
+    text +=
+        fmt::format(", {} with the least {} of all ranked methods", standing.wins, counted_name(c));
   if (standing.typical < kNever)
-    text += fmt::format(", typically for {:.3g}× the least", standing.typical);
-  return text + fmt::format(
-                    "; {} of {} runs reach it{}.", standing.reached, standing.runs,
-                    axis.failed > 0 ? fmt::format("; of all its runs {} failed", axis.failed) : "");
+    text += fmt::format(", with a median slowdown of {:.3g}", standing.typical);
+  return text +
+         fmt::format(
+             "; {} of {} runs reach this tolerance{}.", standing.reached, standing.runs,
+             axis.failed > 0 ? fmt::format("; {} runs on any problem failed", axis.failed) : "");
 }
 
 std::string sheet_html(const Sheet* sheet, const std::string& facts = "") {

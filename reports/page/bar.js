@@ -15,8 +15,8 @@ function presetsOf(kind) {
   const all = KINDS[kind].names.map((_, index) => index);
   const presets = {all, none: []};
   if (kind === 's' && DATA.privileges.some((sees) => sees !== '') && DATA.privileges.includes('')) {
-    presets['without privileges'] = all.filter((index) => DATA.privileges[index] === '');
-    presets['with privileges'] = all.filter((index) => DATA.privileges[index] !== '');
+    presets['without extra information'] = all.filter((index) => DATA.privileges[index] === '');
+    presets['with extra information'] = all.filter((index) => DATA.privileges[index] !== '');
   }
   if (kind === 's' && all.length > 10) presets['best 10'] = all.slice(0, 10);
   return presets;
@@ -116,9 +116,9 @@ function noteOf() {
   const notes = [];
   if (isFiltered())
     notes.push(`${shownOf('s').length} of ${KINDS.s.names.length} methods and ${shownOf('p').length} of ${KINDS.p.names.length} ` +
-        'problems are shown; all values still refer to all of them.');
+        'problems are shown; all values still refer to all methods and problems.');
   if (!isOwn())
-    notes.push(`Tables and curves are for τ = ${tauName(view.target)} by ${measureNow().counted}; sentences, intervals and statistics ` +
+    notes.push(`Tables and curves are for τ = ${tauName(view.target)} by ${measureNow().counted}; sentences, intervals and statistics are ` +
         `for the report’s τ = ${tauName(DEFAULT_TARGET)} by ${DATA.measures[DEFAULT_MEASURE].counted}.`);
   return notes.join(' ');
 }

@@ -23,6 +23,23 @@ function sparkline(p, s) {
 
 const withCopy = (command) => [element('code', {}, command), ' ', Object.assign(pressable('copy', undefined, (event) => copyText(command, event.currentTarget)), {className: 'copy'})];
 
+// What stands behind a row of the ranking: the method's median on each setting that counts.
+function openMethod(s) {
+  const drawer = document.getElementById('drawer'), close = pressable('close', undefined, () => drawer.close()), {counted, unit} = measureNow();
+  const settings = DATA.common.filter((p) => cellOf(DATA.problems[p], s) !== undefined), least = (p) => Math.min(...DATA.ranked.map((other) => cellOf(DATA.problems[p], other)).filter((cell) => cell !== undefined).map((cell) => takenBy(cell)));
+  const table = element('table', {className: 'settings-of'});
+  filledTable(table, worded('heat', {measure: counted, tau: tauName(view.target), unit: unit === counted ? '' : worded('unit', {unit})}), [element('tr', {}, ...worded('method-columns').split(' | ').map((head) => element('th', {scope: 'col'}, head)))], settings.map((p) => {
+    const cell = cellOf(DATA.problems[p], s), row = element('tr', {}, element('th', {scope: 'row'}, DATA.problems[p].spec), ...isMeasured(cell) ? [cellWith(amount(takenBy(cell))), cellWith(amount(least(p))), cellWith(`${reachedOf(cell)}/${cell.reached.length}`)] : [cellWith('n/a'), cellWith(amount(least(p))), cellWith('')]);
+    Object.assign(row.dataset, {p, s});
+    return row;
+  }));
+  drawer.replaceChildren(close, element('h3', {}, DATA.optimizers[s]), element('p', {}, element('a', {href: `#optimizer-${s}`}, worded('method-card'))), table);
+  drawer.querySelector('p a').addEventListener('click', () => drawer.close());
+  document.getElementById('tip').hidden = true;
+  if (!drawer.open) drawer.show();
+  close.focus();
+}
+
 function openDrawer(p, s) {
   const drawer = document.getElementById('drawer'), [title, ...lines] = explanationOf(p, s), {records = [], reached = []} = cellOf(DATA.problems[p], s) ?? {}, command = commandOf(p, s);
   const close = pressable('close', undefined, () => drawer.close()), curves = element('a', {href: `#problem-${p}`}, 'all curves of this problem');
@@ -31,8 +48,8 @@ function openDrawer(p, s) {
     showLines(p, [...linesShown(p), s]);
   });
   drawer.replaceChildren(close, element('h3', {}, title), ...lines.map((line) => element('p', {}, line)), ...sparkline(p, s), element('p', {}, curves),
-      ...command === undefined ? [] : [element('p', {}, 'All its runs: ', ...withCopy(command))],
-      ...records.length === 0 ? [] : [element('p', {}, records.length < reached.length ? `The first ${records.length} of ${reached.length} records:` : 'Records, and what repeats each:'), element('ul', {}, ...records.map((name) => {
+      ...command === undefined ? [] : [element('p', {}, 'All runs of this cell: ', ...withCopy(command))],
+      ...records.length === 0 ? [] : [element('p', {}, records.length < reached.length ? `The first ${records.length} of ${reached.length} records:` : 'Records, each with the command that repeats its run:'), element('ul', {}, ...records.map((name) => {
         const file = `${DATA.runs}${name}.json`;
         return element('li', {}, DATA.runs === '' ? `${name}.json` : element('a', {href: file}, `${name}.json`), element('br'), ...withCopy(`./isoline replay RESULTS/runs/${name}.json`));
       }))]);
@@ -43,6 +60,9 @@ function openDrawer(p, s) {
 
 document.addEventListener('keydown', ({key}) => { if (key === 'Escape') document.getElementById('drawer').close(); });
 document.addEventListener('click', (event) => {
+  const ranked = event.target.closest('#standings-table td'), of = event.target.closest('.settings-of td')?.parentElement.dataset;
+  if (ranked !== null) openMethod(Number(ranked.parentElement.dataset.s));
+  if (of !== undefined) openDrawer(Number(of.p), Number(of.s));
   const cell = event.target.closest('#heat td[data-p], .reached td, #cells td'), chart = event.target.closest('.curves > .chart');
   const point = chart && !isDragged ? nearest(chart, event) : undefined, {p} = (chart ?? cell)?.closest('[data-p]')?.dataset ?? {};
   if (point) openDrawer(Number(p), lineOf(point.group));

@@ -65,7 +65,7 @@ function makeFields(article) {
   });
   slider.setAttribute('aria-valuetext', `step ${most} of ${most}`);
   fields.querySelector('.steps').append(element('label', {}, 'Step ', told, ' ', slider),
-      element('small', {}, ' from the start to the end of each run, spread as the logarithm of its iterations'));
+      element('small', {}, ' from the start to the end of each run, evenly spaced in the logarithm of the iteration'));
 }
 
 ON_UNPACK.push((place) => {

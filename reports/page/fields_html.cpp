@@ -54,7 +54,7 @@ std::string quantity_name(const Quantity& quantity) {
 }
 // For x, and for all that follows from it if it is a history.
 std::string quantity_name(const FoundFields& all) {
-  return all.is_history() ? all.x.name + " → " + quantity_name(all.y) : quantity_name(all.x);
+  return all.is_history() ? all.x.name + " to " + quantity_name(all.y) : quantity_name(all.x);
 }
 
 // The captions of the snapshots.
@@ -62,7 +62,7 @@ struct Labels {
   std::string x = "x", truth = "x*", rest = "x − x*";
 };
 Labels labels_of(const FoundFields& all) {
-  return all.is_history() ? Labels{"x → y", "x* → y*", "x − x* → y − y*"} : Labels{};
+  return all.is_history() ? Labels{"x to y", "x* to y*", "x − x* to y − y*"} : Labels{};
 }
 
 std::string short_figure(Real value) { return figure(std::stod(fmt::format("{:.3g}", value))); }
@@ -108,8 +108,8 @@ std::string given_html(const FoundFields& all) {
       "<figure class=given><div class=two>{}</div><figcaption><b>The data{}.</b> {}{}; its colour "
       "scale ends at ±{}.</figcaption></figure>",
       pictures, frames.has_truth() ? ", and the true x" : "",
-      html_text("y* is the " + quantity_name(all.y)), all.is_history() ? ", in the top row" : "",
-      short_figure(all.y_scale));
+      html_text("y* is the " + quantity_name(all.y)),
+      all.is_history() ? " (top row of its image)" : "", short_figure(all.y_scale));
 }
 
 std::string found_html(const Comparison& c, const FoundFields& all, const FoundField& found) {
@@ -157,7 +157,7 @@ std::string key_html(const FoundFields& all) {
 std::string fields_reading(const Comparison& c, const FoundFields& all) {
   const std::string seed = fmt::format("seed {}", seed_text(all.seed));
   const std::string sample = all.is_learned ? "the first validation sample, " + seed : seed;
-  std::string text = fmt::format("The best method of each kind: {}.", sample);
+  std::string text = fmt::format("The best method of each kind, on {}.", sample);
   if (!all.frames().has_truth()) return text;
   const auto end = [](const FoundField& found) { return found.apart.back(); };
   const auto [least, most] = std::ranges::minmax_element(all.found, {}, end);

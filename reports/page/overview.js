@@ -31,8 +31,8 @@ function trackOf(s, score) {
 function standingRow({s, score, solved, settings, wins, typical, reached, runs, failed}, place, isRest, remark = '') {
   const row = element('tr', {className: `${isRest ? 'rest' : ''} ${isOwn() && DATA.group.includes(s) ? 'tied' : ''}`}, cellWith(place),
       element('th', {scope: 'row', title: remark && worded('pinned-title')}, ...nameOfMethod(s), ...remark === '' ? [] : [element('small', {}, remark)]), trackOf(s, score), cellWith(score.toFixed(3)), cellWith(String(solved), `/${settings}`),
-      cellWith(wins === 0 ? '·' : String(wins)), cellWith(multiple(typical)), cellWith(String(reached), `/${runs}`),
-      cellWith(failed === 0 ? '·' : String(failed), '', {className: failed === 0 ? '' : 'lost'}));
+      cellWith(String(wins)), cellWith(multiple(typical)), cellWith(String(reached), `/${runs}`),
+      cellWith(String(failed), '', {className: failed === 0 ? '' : 'lost'}));
   row.dataset.s = s;
   return row;
 }

@@ -86,8 +86,13 @@ std::string title_of(const Comparison& c) {
 std::string legend_html(const Comparison& c) {
   const Marks shown = marks_shown(c);
   std::string legend;
-  if (shown.is_foreign) legend += " · " + html_text(words("marks.foreign"));
-  if (shown.is_imported) legend += " · " + html_text(words("marks.imported"));
+  const auto add = [&](const char* key) {
+    std::string text = words(key);
+    if (text.ends_with('.')) text.pop_back();  // entries of a list
+    legend += "; " + html_text(text);
+  };
+  if (shown.is_foreign) add("marks.foreign");
+  if (shown.is_imported) add("marks.imported");
   return legend;
 }
 
@@ -106,12 +111,13 @@ std::string published_html(const Document& document) {
     return std::ranges::count_if(facts,
                                  [&](Verdict verdict) { return verdict >= from && verdict <= to; });
   };
-  std::string html = fmt::format(
-      "<p class=checked>{} <a href=\"#claims\">{}</a> · <a href=\"#figures\">{}</a></p>",
-      html_text(words("page.published", count(Verdict::reproduced, Verdict::consistent),
-                      count(Verdict::stronger, Verdict::stronger),
-                      count(Verdict::partly, Verdict::not_reproduced))),
-      html_text(words("page.each-claim")), html_text(words("page.all-figures")));
+  std::string html =
+      fmt::format("<p class=checked>{} <a href=\"#claims\">{}</a>; <a href=\"#figures\">{}</a></p>",
+                  html_text(words("page.published", count(Verdict::reproduced, Verdict::consistent),
+                                  count(Verdict::stronger, Verdict::stronger),
+                                  count(Verdict::partly, Verdict::not_reproduced),
+                                  count(Verdict::too_short, Verdict::not_comparable))),
+                  html_text(words("page.each-claim")), html_text(words("page.all-figures")));
   const Judgement* best = nullptr;
   for (const Judgement& one : document.claims)
     if (is_decided(one.verdict) && is_supported(one.verdict) && one.evidence.kind == "ratio" &&
@@ -121,8 +127,9 @@ std::string published_html(const Document& document) {
   if (best == nullptr) return html;
   const std::vector<Plot> plots = claim_plots(best->evidence, best->id + "-first");
   if (plots.empty()) return html;
-  return fmt::format("{}<p class=reading><a href=\"#claim-{}\">{}</a></p>{}", html, best->id,
-                     html_text(best->sentence), plot_html(plots[0]));
+  return fmt::format("{}<p class=reading><a href=\"#claim-{}\">{}</a> {}</p>{}", html, best->id,
+                     html_text(best->sentence), html_text(words("page.quantity", best->quantity)),
+                     plot_html(plots[0]));
 }
 
 // The first tab: alerts; a sentence that decides, of which all that these runs say opens; facts.

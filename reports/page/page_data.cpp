@@ -70,8 +70,8 @@ std::string cell_json(const Comparison& c, std::size_t p, std::size_t s) {
   std::vector<std::string> reached;
   for (const std::size_t run : cell.runs)
     reached.push_back(std::to_string(c.runs[run].targets.size()));
-  constexpr std::size_t kRecords = 5'000, kLeast = 1;  // of all cells; of one
-  const std::size_t most = std::max(kLeast, kRecords / (c.problems.size() * c.optimizers.size()));
+  constexpr std::size_t kEach = 6;
+  const std::size_t most = is_large(c) ? 1 : kEach;
   const std::span runs(cell.runs.data(), std::min(most, cell.runs.size()));
   const std::string records = json_list(runs, [&](std::size_t run) {
     const std::string name = c.runs[run].record->file_name();
@@ -147,7 +147,7 @@ std::string claims_about(const Document& document) {
 std::string places_json(const std::vector<Ranked>& places) {
   return json_list(places, [](const Ranked& place) {
     const Standing& standing = place.standing;
-    return fmt::format("{},{:.4g},{},{},{},{}", place.optimizer, standing.score, standing.solved,
+    return fmt::format("{},{:.5f},{},{},{},{}", place.optimizer, standing.score, standing.solved,
                        standing.wins,
                        standing.typical < kNever ? fmt::format("{:.3g}", standing.typical) : "null",
                        standing.reached);
@@ -239,7 +239,7 @@ std::string script_words(std::string_view prefix) {
 // and each once with its text, its settings and [optimizer, solved, settings, score, median work,
 // whether in the group] of its methods, one after the other.
 constexpr std::array<std::array<Index, 2>, 4> kSizes = {
-    {{0, Means{}.most_unknowns}, {0, 10}, {11, 100}, {101, Means{}.most_unknowns}}};
+    {{0, Means{}.most_unknowns}, kSizeClasses[0], kSizeClasses[1], kSizeClasses[2]}};
 constexpr std::array<Real, 4> kBudgets = {kNever, 10'000, 1'000, 100};
 
 std::string advice_json(const Comparison& c) {

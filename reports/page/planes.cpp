@@ -136,9 +136,9 @@ std::string path_reading(const Comparison& c, std::vector<Path> all, Rows Trajec
   constexpr Real kStraight = 1.0005;
   const Real least = length(straight);
   return fmt::format(
-      "Shortest path: {}, {}. Longest path: {}, {} the direct distance.",
+      "Shortest path: {}, {}. Longest path: {}, with {} the direct distance.",
       shown_spec(c.optimizers[straight.optimizer].label),
-      least < kStraight ? "a straight line" : multiple(least) + " the direct distance",
+      least < kStraight ? "a straight line" : "with " + multiple(least) + " the direct distance",
       shown_spec(c.optimizers[winding.optimizer].label), multiple(length(winding)));
 }
 
@@ -165,8 +165,8 @@ std::string planes_html(const Comparison& c, std::size_t p) {
   return html +
          fmt::format(
              "</div><p class=legend>Thin lines: contours of the loss, {}. The paths are those of "
-             "the lowest seed; points mark the steps of short runs. ○: start; ●: solution in "
-             "x, target in y.</p>",
+             "the run with the lowest seed; points mark the steps of short runs. ○: start; ●: "
+             "solution in x, target in y.</p>",
              levels_text(sheet->landscape_x ? *sheet->landscape_x : *sheet->landscape_y));
 }
 

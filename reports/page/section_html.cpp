@@ -66,10 +66,10 @@ std::string rows_html(const Table& table) {
   return html;
 }
 
-// " · <b>name</b>: meaning"; the first entry does not have the dot.
+// "; <b>name</b>: meaning"; the first entry does not have the semicolon.
 void add_meaning(std::string& html, const std::string& name, const std::string& meaning) {
   if (!meaning.empty())
-    html += fmt::format("{}<b>{}</b>: {}", html.empty() ? "" : " · ", html_text(name),
+    html += fmt::format("{}<b>{}</b>: {}", html.empty() ? "" : "; ", html_text(name),
                         html_text(meaning));
 }
 
@@ -214,8 +214,8 @@ std::string details_html(const Comparison& c) {
   constexpr std::size_t kMost = 20'000;  // rows of some 200 bytes
   if (c.problems.size() * c.optimizers.size() > kMost)
     return fmt::format(
-        "<p class=lead>Of more than {} cells there is no table here: all of them stand "
-        "in report.csv.</p>",
+        "<p class=lead>This report has more than {} cells, too many for a table: report.csv "
+        "contains all of them.</p>",
         kMost);
   const auto spread_cell = [](const Spread& spread, std::string (*text)(Real)) {
     TableCell cell = spread.n == 0 ? "" : text(spread.median);
@@ -277,7 +277,7 @@ constexpr Property kProperties[] = {
     {"one step", "reaches a regular solution in one step"},
     {"superlinear", "order 1.5 or more near a regular solution"},
     {"order if singular", "order 1.5 or more where J is singular at the solution"},
-    {"as declared", "called only the oracles that its entry lists"}};
+    {"as declared", "no measurement contradicts what the method declares"}};
 
 // Whether each property holds; no value if it was not measured.
 std::array<std::optional<bool>, std::size(kProperties)> answers_of(
@@ -330,7 +330,8 @@ std::string methods_html(const Comparison& c) {
     add_meaning(legend, name, meaning);
   }
   html +=
-      "<th scope=col>required derivatives<th scope=col id=privileges>extra information (†)<tbody>\n";
+      "<th scope=col>required derivatives<th scope=col id=privileges>extra information "
+      "(†)<tbody>\n";
   for (std::size_t s = 0; s < c.optimizers.size(); ++s) html += row_html(c, s);
   return "<div class=\"scroll pane\" tabindex=0 role=region aria-label=Methods>" + html +
          "</table></div><p class=legend>Measured on small problems with known solutions, with "

@@ -340,7 +340,8 @@ std::string names_html(const Drawing& drawing) {
                     line_attributes(line, i, "name"), swatch(), html_text(line.name));
   }
   if (!drawing.plot.published.empty())
-    shown += fmt::format("<span class=goal>{} published, with its error</span>", swatch());
+    shown +=
+        fmt::format("<span class=goal>{} published value, with its uncertainty</span>", swatch());
   if (count > 0)
     others = fmt::format("<details><summary>{} more</summary><div class=names>{}</div></details>",
                          count, others);

@@ -2,7 +2,7 @@
 // What a cell sorts by: its leading number, ✗ as infinite, words otherwise, nothing last.
 function sortKey(cell) {
   const text = (cell?.firstChild?.textContent ?? '').trim();
-  if (text === '' || text === '·') return {group: 2, value: 0};
+  if (text === '') return {group: 2, value: 0};
   if (text.startsWith('✗')) return {group: 0, value: Infinity};
   const number = Number(text.replace(/[≈/×].*$/, ''));
   return Number.isNaN(number) ? {group: 1, value: text.toLowerCase()} : {group: 0, value: number};

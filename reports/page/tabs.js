@@ -46,6 +46,8 @@ function showTab(tab, isNamed) {
   for (const other of TABS) other.classList.toggle('open', other === tab);
   for (const link of document.querySelectorAll('.bars nav a'))
     if (link.hash === `#${tab.id}`) link.setAttribute('aria-current', 'page'); else link.removeAttribute('aria-current');
+  const nav = document.querySelector('.bars nav'), current = nav.querySelector('[aria-current]');
+  nav.scrollLeft = current.offsetLeft - nav.clientWidth / 2;  // on a phone the tabs scroll
   unpackAll(tab, isNamed ? soon : undefined);
   for (const place of new Set([...tab.querySelectorAll('.one')].map((one) => one.parentElement)))
     if (place.querySelector(':scope > .chosen') === null && tab.id === 'problems') showOne(place.querySelector(':scope > .one'));

@@ -17,6 +17,7 @@ std::string means_text(const Means& means) {
     text += words("means.most", means.most_unknowns);
   else if (means.least_unknowns > 0)
     text += words("means.least", means.least_unknowns);
+  if (means.noise > 0) text += words("means.noise", 100 * means.noise);
   return means.budget < kNever ? text + words("means.budget", means.budget) : text;
 }
 
@@ -41,6 +42,8 @@ std::string advice_text(const Comparison& c, const Means& means, const Advice& a
     text += " " + (group.empty() ? words("advice.alone", advice.ranked.size())
                                  : words("advice.group", first_of(std::move(group), 3)));
   }
+  if (advice.settings.size() < advice.of_size)
+    text += " " + words("advice.shared", advice.settings.size(), advice.of_size);
   std::vector<std::string> partial;
   for (const Advised& one : advice.partial)
     partial.push_back(words("advice.on", name(one), one.settings, one.solved));

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <nlohmann/json.hpp>
 
 #include "core/seeds.h"
 #include "reports/sections/words.h"
@@ -66,8 +67,9 @@ Table terms_table(const Evidence& evidence, const std::string& id) {
   for (std::size_t i = 0; i < evidence.terms.size(); ++i) {
     const EvidenceTerm& term = evidence.terms[i];
     const auto [low, high] = std::ranges::minmax(term.runs, {}, &EvidenceRun::figure);
+    const char* otherwise = evidence.is_over_time ? "at equal processor time" : "at the end";
     table.rows.push_back(
-        {names[i], term.iteration ? fmt::format("at iteration {}", *term.iteration) : "at the end",
+        {names[i], term.iteration ? fmt::format("at iteration {}", *term.iteration) : otherwise,
          TableCell(figure(term.level), {{"median", term.level}}), figure(low.figure),
          figure(high.figure), std::to_string(term.runs.size())});
   }
@@ -198,9 +200,10 @@ std::vector<Reading> claim_notes(const Judgement& judgement) {
   if (!judgement.survives.empty())
     notes.push_back(
         {"Not refutable", words("claim.survives", joined(judgement.survives, " and "))});
+  if (!judgement.reached.empty()) notes.push_back({"Published records", judgement.reached + "."});
   if (judgement.fact != judgement.id)
     notes.push_back({"Fact", fmt::format("Counts as one fact with {}.", judgement.fact)});
-  if (!judgement.caveat.empty()) notes.push_back({"Caveat", judgement.caveat});
+  for (const std::string& caveat : judgement.caveats) notes.push_back({"Caveat", caveat});
   return notes;
 }
 
@@ -281,11 +284,12 @@ Section papers_section(const std::vector<Judgement>& judgements) {
                                      : fmt::format("{:.0f} min", seconds / kMinute);
     };
     const bool has_runs = judgement.measured.has_value();
-    const bool is_long = !judgement.sets.empty() && judgement.sets.back().is_long;
+    const bool is_long = takes_hours(judgement.sets);
     const bool is_not_run = !has_runs && !judgement.sets.empty();
     std::string verdict = verdict_text(judgement);
     if (!is_decided(judgement.verdict) && !judgement.why.empty()) verdict += ": " + judgement.why;
     if (is_not_run && judgement.verdict != Verdict::undecidable) verdict = "not run";
+    if (!judgement.reached.empty()) verdict += "; " + judgement.reached;
     table->rows.push_back(
         {judgement.sentence, judgement.place,
          fmt::format("isoline claims {}{}", judgement.id, is_long ? " --long" : ""),
@@ -293,6 +297,22 @@ Section papers_section(const std::vector<Judgement>& judgements) {
          : is_long ? "hours"
                    : kNothing,
          judgement.published, measured_text(judgement), verdict});
+  }
+  return section;
+}
+
+Section items_section(const nlohmann::json& papers) {
+  Section section = worded_section("items");
+  section.tables = {worded_table("items-table"), worded_table("scripts-table")};
+  Table &items = section.tables[0], &scripts = section.tables[1];
+  for (const auto& item : papers.at("items"))
+    items.rows.push_back({item.at("from").get<std::string>(), item.at("item").get<std::string>(),
+                          item.at("state").get<std::string>(),
+                          joined(item.at("by").get<std::vector<std::string>>())});
+  for (const auto& script : papers.at("scripts")) {
+    auto& row = scripts.rows.emplace_back();
+    for (const char* key : {"script", "command", "time", "agrees"})
+      row.emplace_back(script.at(key).get<std::string>());
   }
   return section;
 }

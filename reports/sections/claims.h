@@ -52,7 +52,8 @@ std::string column_words(const std::string& column);       // "error in x"
 // slope of log m over log at, crossing (where the first half of the terms passes from below the
 // second half to above it, in `at`), position (of the first, from 1; a tie counts half), order
 // (Kendall's τ with that of the terms). Of the first half of the terms over the second: ratio_slope
-// and trend, the slope and the order of these ratios.
+// and trend, the slope and the order of these ratios. mean_difference, of means over all runs of
+// two terms, and share are not of medians.
 Real quantity_of(const std::string& kind, const std::vector<Real>& medians,
                  const std::vector<Real>& at);
 // The value of a quantity that indicates no direction; nothing if it has no such value.
@@ -172,6 +173,7 @@ struct CellSet {
   bool is_long = false;               // hours: run only when asked for
   bool is_deciding = false;
 };
+bool takes_hours(const std::vector<CellSet>& sets);  // the deciding one, or all if none decides
 // The command that runs the claim again, in a folder of its own.
 std::string repeat_command(const std::string& id, const std::vector<CellSet>& sets);
 
@@ -190,12 +192,14 @@ struct OtherReading {
 };
 
 struct Judgement {
-  std::string id, sentence, source, quantity, published, caveat;
+  std::string id, sentence, source, quantity, published;
+  std::vector<std::string> caveats;
   std::string paper, place;  // of the source: "Someone (2022)", "Figure 1"
   std::string fact;          // the claim whose fact this one restates, or itself
   Verdict verdict = Verdict::not_comparable;
   std::string why;      // it is too short, undecidable, or not comparable
   std::string reading;  // how the published figure was read off a plot, where it was
+  std::string reached;  // the share of its iterations and seeds that published records have
   std::optional<Measurement> measured;
   std::optional<Agreement> band;
   Evidence evidence;          // none where nothing decides it
@@ -212,8 +216,11 @@ struct Judgement {
   bool is_covered = false;            // all cells of one of its lengths are among the records
 };
 
-// In the order of the claims. The first set of cells that is complete counts: the longest.
-std::vector<Judgement> judge(const nlohmann::json& claims, const std::vector<Record>& runs);
+// In the order of the claims. The first set of cells that is complete counts: the longest. After
+// the runs, published records count, also those of fewer iterations and seeds than a claim asks
+// for.
+std::vector<Judgement> judge(const nlohmann::json& claims, const std::vector<Record>& runs,
+                             const std::vector<Record>& published = {});
 // The verdict on each fact, the weakest of the decided claims that restate it: of verifications, or
 // of all others.
 std::vector<Verdict> verdicts_on_facts(const std::vector<Judgement>& judgements,
@@ -224,6 +231,7 @@ Section claims_summary(const std::vector<Judgement>& judgements);  // a line eac
 Section claim_section(const Judgement& judgement);  // one of them whole, with its evidence
 // A table a paper: what it says, and the command, the time and the verdict of each claim.
 Section papers_section(const std::vector<Judgement>& judgements);
+Section items_section(const nlohmann::json& papers);  // benchmarks/papers.json: the texts' contents
 std::string claims_reading(const std::vector<Judgement>& judgements);  // how many of each verdict
 std::string verdict_text(const Judgement& judgement);                  // "partly on 3 seeds"
 std::string marked_verdict(const Judgement& judgement);                // "≈ partly on 3 seeds"

@@ -11,6 +11,7 @@
 #include <unordered_map>
 
 #include "core/json.h"
+#include "core/text.h"
 #include "reports/sections/claims.h"
 #include "reports/sections/figures.h"
 #include "reports/sections/words.h"
@@ -171,7 +172,8 @@ std::string quantity_text(const Json& claim) {
   const std::string kind = quantity.at("kind");
   std::vector<std::string> terms;
   for (const Json& term : quantity.at("terms")) terms.push_back(term_text(term));
-  return fmt::format("{} of the {}, {}: {}", kind, column_words(quantity.at("column")),
+  const std::string name = kind == "mean_difference" ? "mean difference" : kind;
+  return fmt::format("{} of the {}, {}: {}", name, column_words(quantity.at("column")),
                      iteration_text(quantity, quantity.contains("clock") ? "at equal processor time"
                                                                          : "at the end"),
                      joined(terms, kind == "ratio" ? " / " : ", "));
@@ -401,8 +403,8 @@ void measure_in(Judgement& out, const Measured& from) {
   for (const std::string& cell : std::set<std::string>(out.cells.begin(), out.cells.end()))
     out.seconds += from.runs.at(cell)->summary.processor_seconds;
   const bool is_known = take(out, from);
-  if (set.contains("deviation"))
-    out.caveat = set["deviation"].get<std::string>() + (out.caveat.empty() ? "" : " ") + out.caveat;
+  if (set.contains("deviation")) out.caveats.insert(out.caveats.begin(), set["deviation"]);
+  out.reached = set.value("reached", "");
   out.evidence = evidence_of(claim, set.at("terms"), from.runs, from.iterations());
   for (std::size_t i = 0; i < out.contrasts.size(); ++i)
     out.contrasts[i].evidence = evidence_of(
@@ -430,7 +432,7 @@ Judgement judge_one(const Json& claim, const ByCell& runs) {
     if (claim["source"].contains(part))
       out.source += ", " + claim["source"][part].get<std::string>();
   out.place = claim["source"].value("figure", claim["source"].value("section", ""));
-  out.caveat = claim.value("caveat", "");
+  if (claim.contains("caveat")) out.caveats = {claim["caveat"]};
   out.published = published_text(claim);
   out.reading = reading_text(claim);
   out.is_of_one_run = claim.at("published").contains("runs");
@@ -473,26 +475,130 @@ bool has_rivals(const Json& claim) {
   return std::ranges::any_of(contrasts, has_rivals);
 }
 
-std::string repeat_command(const std::string& id, const std::vector<CellSet>& sets) {
-  if (sets.empty()) return "";
+bool takes_hours(const std::vector<CellSet>& sets) {
   const auto deciding = std::ranges::find_if(sets, &CellSet::is_deciding);
-  const bool is_long =
-      deciding != sets.end() ? deciding->is_long : std::ranges::all_of(sets, &CellSet::is_long);
-  return fmt::format("./isoline claims {0} --out results/{0}{1}", id, is_long ? " --long" : "");
+  return deciding != sets.end() ? deciding->is_long
+                                : !sets.empty() && std::ranges::all_of(sets, &CellSet::is_long);
 }
 
-std::vector<Judgement> judge(const Json& claims, const std::vector<Record>& runs) {
+std::string repeat_command(const std::string& id, const std::vector<CellSet>& sets) {
+  if (sets.empty()) return "";
+  return fmt::format("./isoline claims {0} --out results/{0}{1}", id,
+                     takes_hours(sets) ? " --long" : "");
+}
+
+namespace {
+
+// Published records as the beginnings of what claims ask for: the longest by the digest that its
+// cell has at each length. Their keys are their own, so that runs of a folder come before them.
+using Beginnings = std::map<std::string, const Record*>;
+std::string published_key(const Record& record) { return "published " + record.cell; }
+
+std::int64_t reached_iterations(const Record& record) {
+  return record.is_nondeterministic ? record.summary.iterations : record.request.budget.iterations;
+}
+
+Beginnings beginnings_of(const Json& claims, const std::vector<Record>& published) {
+  std::set<std::int64_t> lengths;
+  for (const Json& claim : claims)
+    for (const Json& set : claim.value("cells", Json::array()))
+      lengths.insert(set.at("iterations").get<std::int64_t>());
+  Beginnings all;
+  for (const Record& record : published)
+    for (const std::int64_t length : lengths) {
+      if (length < reached_iterations(record) || is_failure(record.status)) continue;
+      Request asked = record.request;
+      asked.budget.iterations = length;
+      asked.budget.seconds = Budget{}.seconds;
+      const Record*& longest = all[cell_digest(asked)];
+      if (!longest || reached_iterations(*longest) < reached_iterations(record)) longest = &record;
+    }
+  return all;
+}
+
+// The part of a set of cells that published records have: the seeds that all its terms have, with
+// the iterations that all have made. Nothing if there are none.
+std::optional<Json> published_part(const Json& set, const Beginnings& beginnings) {
+  Json part = set;
+  std::vector<Json*> lists;  // of digests, by seed
+  const auto add = [&](Json& terms) {
+    for (Json& term : terms)
+      for (Json& alternative : term) lists.push_back(&alternative.at("cells"));
+  };
+  add(part.at("terms"));
+  if (part.contains("contrast_terms"))
+    for (Json& terms : part["contrast_terms"]) add(terms);
+  const std::size_t seeds = lists.at(0)->size();
+  std::int64_t iterations = set.at("iterations");
+  std::set<std::string> builds;
+  std::vector<Json> kept(lists.size(), Json::array());
+  for (std::size_t seed = 0; seed < seeds; ++seed) {
+    std::vector<const Record*> records;
+    for (const Json* list : lists) {
+      const auto found = beginnings.find(list->at(seed).get<std::string>());
+      if (found != beginnings.end()) records.push_back(found->second);
+    }
+    if (records.size() < lists.size()) continue;
+    for (std::size_t i = 0; i < lists.size(); ++i) {
+      kept[i].push_back(published_key(*records[i]));
+      iterations = std::min(iterations, reached_iterations(*records[i]));
+      builds.insert(
+          fmt::format("{} (commit {})", records[i]->build, records[i]->provenance.build->commit));
+    }
+  }
+  if (kept.at(0).empty()) return std::nullopt;
+  for (std::size_t i = 0; i < lists.size(); ++i) *lists[i] = kept[i];
+  part["iterations"] = iterations;
+  part["reached"] =
+      words("claim.published-part", isoline::count_text(std::uint64_t(iterations)),
+            isoline::count_text(set.at("iterations").get<std::uint64_t>()), kept[0].size(), seeds);
+  part["deviation"] =
+      words("claim.published-builds", joined({builds.begin(), builds.end()}), builds.size()) +
+      (set.contains("deviation") ? " " + set["deviation"].get<std::string>() : "");
+  return part;
+}
+
+// Each part comes after its whole, and before sets that have no more seeds, if it is long enough.
+Json with_published(Json claim, const Beginnings& beginnings) {
+  if (!claim.contains("cells")) return claim;
+  const auto seeds_of = [](const Json& set) {
+    return set.at("terms").at(0).at(0).at("cells").size();
+  };
+  Json sets = claim["cells"];
+  for (const Json& set : claim["cells"]) {
+    const std::optional<Json> part = published_part(set, beginnings);
+    if (!part) continue;
+    auto at = std::ranges::find(sets, set) + 1;
+    const bool is_long_enough = part->at("iterations") >= needed_iterations(claim);
+    while (at != sets.end() && (!is_long_enough || seeds_of(*part) < seeds_of(*at))) ++at;
+    sets.insert(at, *part);
+  }
+  claim["cells"] = std::move(sets);
+  return claim;
+}
+
+}  // namespace
+
+std::vector<Judgement> judge(const Json& claims, const std::vector<Record>& runs,
+                             const std::vector<Record>& published) {
   ByCell by_cell;
-  for (const Record& record : runs) by_cell.emplace(record.cell, &record);
+  // An inapplicable run has no values.
+  const auto is_empty = [](const Record& record) { return record.curve.iteration.empty(); };
+  for (const Record& record : runs)
+    if (!is_empty(record)) by_cell.emplace(record.cell, &record);
   // A limit of time that did not end a run has not changed what it computed.
   for (const Record& record : runs) {
     Request asked = record.request;
-    if (record.is_nondeterministic || asked.budget.seconds == Budget{}.seconds) continue;
+    if (record.is_nondeterministic || asked.budget.seconds == Budget{}.seconds || is_empty(record))
+      continue;
     asked.budget.seconds = Budget{}.seconds;
     by_cell.emplace(cell_digest(asked), &record);
   }
+  for (const Record& record : published) by_cell.emplace(published_key(record), &record);
+  const Beginnings beginnings = beginnings_of(claims, published);
   std::vector<Judgement> judgements;
-  for (const Json& claim : claims) judgements.push_back(judge_one(claim, by_cell));
+  for (const Json& claim : claims)
+    judgements.push_back(judge_one(with_published(claim, beginnings), by_cell));
   return judgements;
 }
 

@@ -82,14 +82,14 @@ const std::vector<Real>* series_of(const Record& record, const std::string& name
   return found == record.series.end() ? nullptr : &found->second;
 }
 
-// The error in x over iterations, or a series by its name. A run that has ended keeps its last
-// value.
+// The error in x over iterations, the loss, or a series by its name. A run that has ended keeps its
+// last value.
 Figure curve_figure(const Comparison& c, std::size_t p, const std::string& name) {
-  const bool is_error = name.empty();
+  const bool is_error = name.empty(), is_loss = name == "loss";
   Figure out{.x_label = "iterations",
              .y_label = is_error ? words("figure.error") : name,
              .is_log_x = true,
-             .is_log_y = is_error};
+             .is_log_y = is_error || is_loss};
   out.lines = lines_of(c, p, [&](const Records& records, FigureLine& line) {
     const auto& iterations = std::ranges::max(records, {}, [](const Record* record) {
                                return record->curve.iteration.size();
@@ -97,7 +97,9 @@ Figure curve_figure(const Comparison& c, std::size_t p, const std::string& name)
     for (const std::size_t i : thinned(iterations.size(), kPoints)) {
       std::vector<Real> values;
       for (const Record* record : records)
-        if (const auto* one = is_error ? &record->curve.x_error : series_of(*record, name);
+        if (const auto* one = is_error  ? &record->curve.x_error
+                              : is_loss ? &record->curve.loss
+                                        : series_of(*record, name);
             one != nullptr && !one->empty())
           values.push_back((*one)[std::min(i, one->size() - 1)]);
       add_point(line, static_cast<Real>(iterations[i]), std::move(values));
@@ -272,6 +274,10 @@ std::vector<Figure> figures(const Comparison& c) {
   std::set<std::string> known;
   const auto add = [&](Figure figure, const std::string& problem, const Panel& panel) {
     if (figure.lines.empty() && figure.pictures.empty()) return;
+    const bool is_there = std::ranges::any_of(all, [&](const Figure& other) {
+      return panel.kind == "curve" && other.kind == "curve" && other.problem == problem;
+    });
+    if (is_there) return;  // a panel for each problem, besides those of one
     std::tie(figure.problem, figure.title, figure.kind) =
         std::tie(problem, panel.title, panel.kind);
     all.push_back(std::move(figure));

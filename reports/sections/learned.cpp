@@ -70,7 +70,7 @@ struct Side {
   std::size_t optimizer = 0;
   const Cell* cell = nullptr;
   std::string name;
-  Spread seconds;  // of the processor: to the end, or to the error that is asked
+  Spread seconds, iterations;  // of the processor: to the end, or to the error that is asked
 };
 
 // Nothing where no run tells the options.
@@ -98,17 +98,20 @@ Real inference_seconds(const ProblemAxis& problem) {
   return price == nullptr ? kUnknown : price->price * prices->forward_seconds;
 }
 
-// `seconds_of` each run; what failed or is missing never got there.
-template <class Seconds>
-Side side_of(const Comparison& c, std::size_t problem, std::size_t optimizer, Seconds seconds_of) {
+// `spent_by` each run, seconds and iterations; what failed or is missing never got there.
+template <class Spent>
+Side side_of(const Comparison& c, std::size_t problem, std::size_t optimizer, Spent spent_by) {
   const Cell& cell = c.cell(problem, optimizer);
-  const auto seconds = [&](const Run& run) {
-    return is_failure(run.record->status) ? kNever : seconds_of(*run.record);
+  const auto spent = [&](auto part) {
+    const auto of = [=](const Run& run) {
+      return is_failure(run.record->status) ? kNever : Real(spent_by(*run.record).*part);
+    };
+    return c.aggregate(cell.runs, of, cell.missing());
   };
   return {optimizer, &cell,
           setting_text(c, problem, optimizer) +
               marks_text({.has_extra_information = !cell.privileges.empty()}),
-          c.aggregate(cell.runs, seconds, cell.missing())};
+          spent(&std::pair<Real, Real>::first), spent(&std::pair<Real, Real>::second)};
 }
 
 // The nearest to x first.
@@ -116,8 +119,9 @@ std::vector<Side> trained_on(const Comparison& c, std::size_t p) {
   std::vector<Side> all;
   for (std::size_t s = 0; s < c.optimizers.size(); ++s)
     if (c.cell(p, s).is_measured() && c.cell(p, s).x_error.is_solved())
-      all.push_back(
-          side_of(c, p, s, [](const Record& record) { return record.summary.processor_seconds; }));
+      all.push_back(side_of(c, p, s, [](const Record& record) {
+        return std::pair(record.summary.processor_seconds, Real(record.summary.iterations));
+      }));
   std::ranges::stable_sort(all, {}, [](const Side& side) { return side.cell->x_error.median; });
   return all;
 }
@@ -126,17 +130,17 @@ std::vector<Side> trained_on(const Comparison& c, std::size_t p) {
 std::vector<Side> singles_to(const Comparison& c, const std::vector<std::size_t>& instances,
                              Real x_error) {
   // At the kept points of a run; 0 where its start has that error.
-  const auto seconds_to = [=](const Record& record) {
+  const auto spent_to = [=](const Record& record) -> std::pair<Real, Real> {
     const Curve& curve = record.curve;
     const auto at = std::ranges::find_if(curve.x_error, [=](Real x) { return x <= x_error; });
-    if (at == curve.x_error.end()) return kNever;
+    if (at == curve.x_error.end()) return {kNever, kNever};
     const auto i = static_cast<std::size_t>(at - curve.x_error.begin());
-    return i == 0 ? 0 : curve.processor_seconds[i];
+    return {i == 0 ? 0 : curve.processor_seconds[i], Real(curve.iteration[i])};
   };
   std::vector<Side> all;
   for (const std::size_t p : instances)
     for (std::size_t s = 0; s < c.optimizers.size(); ++s)
-      if (c.cell(p, s).is_measured()) all.push_back(side_of(c, p, s, seconds_to));
+      if (c.cell(p, s).is_measured()) all.push_back(side_of(c, p, s, spent_to));
   std::ranges::stable_sort(all, {}, [](const Side& side) {
     return std::pair(side.seconds.median, side.seconds.unsolved);
   });
@@ -174,8 +178,10 @@ std::vector<TableCell> amortized_row(const Side& network, const Side& single, Re
           single.name,
           number_cell("x_error", network.cell->x_error.median),
           time_cell(network, in_seconds),
+          number_cell("training_iterations", network.iterations.median),
           example,
           time_cell(single, milliseconds),
+          number_cell("iterations", single.iterations.median),
           fmt::format("{}/{}", times.n - times.unsolved, times.n),
           fmt::format("{}, {}", network.cell->failed, single.cell->failed),
           pays};

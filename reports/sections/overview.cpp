@@ -72,7 +72,8 @@ std::string least_loss_reading(const Comparison& c, std::size_t problem,
                tau_name(c), name_in_sentence(c.optimizers[best]), loss);
 }
 
-// "; next adam, 1.3× as much", and on how many of the seeds that both ran the first took less.
+// "; next is adam, which needs 1.3× as much", and on how many of the seeds that both ran the first
+// took less.
 std::string runner_up(const Comparison& c, const Cell& first, const Cell& second,
                       const std::string& name) {
   const Real best = first.headline[kTightest].median, next = second.headline[kTightest].median;
@@ -82,7 +83,7 @@ std::string runner_up(const Comparison& c, const Cell& first, const Cell& second
            c.taken(c.runs[pair.second], c.yardstick.by, kTightest);
   });
   return words("curve.next", name, multiple(next / std::max(best, least_unit(c.yardstick.by))),
-               pairs.size() < 2 ? "" : words("curve.seeds", less, pairs.size()));
+               pairs.size() < 2 ? "" : " " + words("curve.seeds", less, pairs.size()));
 }
 
 }  // namespace

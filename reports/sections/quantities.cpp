@@ -173,6 +173,9 @@ Real figure_of(const Record& record, const Place& place) {
   if (name == "loss_peak") return std::ranges::max(curve.loss | std::views::take(index + 1));
   if (name == "loss_drop") return curve.loss[0] - curve.loss[index];
   if (name == "slowdown") return slowdown(curve, index);
+  if (name == "digits")
+    return record.x_scale ? log_relative_error(curve.x_error.at(index) / *record.x_scale)
+                          : kUnknown;
   if (name.starts_with(kUntil)) return spent_until(record, place);
   if (const auto* column = column_of(record, name)) {
     if (column->empty()) return kUnknown;
@@ -289,8 +292,17 @@ Places all_seeds(const Term& term) {
   return seeds;
 }
 
+// The mean of the first term less that of the second.
+Real mean_difference(const std::vector<Term>& terms, const Places& seeds) {
+  Real sum = 0;
+  for (const std::size_t seed : seeds)
+    sum += terms.at(0).figures.at(0).at(seed) - terms.at(1).figures.at(0).at(seed);
+  return sum / static_cast<Real>(seeds.size());
+}
+
 Real quantity_over(const std::string& kind, const std::vector<Term>& terms, const Places& seeds) {
   if (kind == "share") return share(terms.at(0), seeds);
+  if (kind == "mean_difference") return mean_difference(terms, seeds);
   std::vector<Real> medians, at;
   for (const Term& term : terms) {
     medians.push_back(chosen_of(term, seeds).level);
@@ -320,7 +332,8 @@ Real quantity_of(const std::string& kind, const std::vector<Real>& medians,
 
 std::optional<Real> neutral_of(const std::string& kind) {
   if (kind == "ratio") return 1;
-  if (kind == "order" || kind == "trend" || kind.ends_with("slope")) return 0;
+  if (kind == "order" || kind == "trend" || kind == "mean_difference" || kind.ends_with("slope"))
+    return 0;
   return std::nullopt;
 }
 

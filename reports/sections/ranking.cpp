@@ -111,7 +111,7 @@ std::string robustness_text(const Comparison& c, const Decision& decision) {
   for (const Choice& choice : decision.choices) {
     kept += choice.is_kept;
     if (!choice.is_kept && !choice.first.empty())
-      lost.push_back(names_text(c, choice.first, 1) + " " + choice_text(choice));
+      lost.push_back(fmt::format("{} ({})", names_text(c, choice.first, 1), choice_text(choice)));
   }
   return words("ranking.robustness", share_text("ranking.share", first),
                has_other ? " " + share_text("ranking.share-other", *other) : "", kept,
@@ -176,7 +176,7 @@ std::vector<std::string> verdict(const Comparison& c) {
   if (!is_any_solved && !are_all_unknown) return {words("ranking.none-solved", tau_name(c))};
   std::vector<std::string> all;
   std::string left_out = left_out_text(c);
-  if (!left_out.empty()) left_out = "Not ranked: " + left_out;
+  if (!left_out.empty()) left_out = words("fact.not-ranked") + ": " + left_out;
   if (!has_order(c) || !c.decision) {  // with few problems: a sentence on each
     constexpr std::size_t kFew = 4;
     for (std::size_t p = 0; p < c.problems.size() && p < kFew; ++p)
@@ -350,7 +350,7 @@ Table ill_posed_table(const Comparison& c) {
     if (is_ill_posed(c, p)) settings.push_back(p);
   const auto title = [&](std::size_t p) {
     return words("ill-posed.setting", problem_name(c.problems[p]),
-                 percent(c.problems[p].least_goal / x_goal(0, 1, 1)));
+                 figure(c.problems[p].least_goal / x_goal(0, 1, 1)));
   };
   return settings_table(c, "ill-posed", settings, title,
                         [&](TableCell& shown, std::size_t p, std::size_t s) {
@@ -360,7 +360,7 @@ Table ill_posed_table(const Comparison& c) {
                             texts.push_back(error == kNever ? "✗" : fmt::format("{:.3g}", error));
                             shown.numbers.push_back({fmt::format("at_{:g}", share), error});
                           }
-                          shown.text = joined(texts, " · ");
+                          shown.text = joined(texts, "; ");
                         });
 }
 

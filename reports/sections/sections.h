@@ -83,9 +83,13 @@ Table choices_table(const Comparison& comparison);
 Table variation_table(const Comparison& comparison);  // empty where no instances and starts cross
 Table loss_without_x_table(const Comparison& comparison);
 Table data_profile_table(const Comparison& comparison);
+Table simplex_profile_table(const Comparison& comparison);  // of Moré and Wild
 Table restart_table(const Comparison& comparison);
 Table calls_table(const Comparison& comparison);
 Table prices_table(const Comparison& comparison);
+Table certified_table(const Comparison& comparison);  // empty where no run is of NIST's regressions
+// Standard deviations of x, a table per problem, by the best run that keeps them.
+std::vector<Table> uncertainty_tables(const Comparison& comparison);
 Plots profile_plot(const Comparison& comparison);
 Plots data_profile_plot(const Comparison& comparison);
 Plots runtime_plot(const Comparison& comparison);

@@ -1,4 +1,5 @@
-// The singular values of J along runs that kept them, and two options that were swept together.
+// The singular values of J along runs that kept them, with the standard deviations of x, and two
+// options that were swept together.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -108,6 +109,7 @@ Section spectra_section(const Comparison& c) {
     section.plots.push_back(values_plot(plot("plot-spectrum"), seen));
     section.plots.push_back(conditions_plot(plot("plot-conditioning"), seen));
   }
+  section.tables = uncertainty_tables(c);
   return section;
 }
 
@@ -276,7 +278,7 @@ Table heat_map(const Comparison& c, const SweepGrid& grid, std::size_t number) {
       if (!(spread.median < least)) continue;
       const Request& request = c.runs[runs[0]].record->request;
       std::tie(least, best_row, best_column) = std::tuple{spread.median, r, k};
-      best = fmt::format(" The best: {} on {}.", shown_spec(request.optimizer.spec),
+      best = fmt::format(" The least value: {} on {}.", shown_spec(request.optimizer.spec),
                          shown_spec(request.problem.spec));
     }
   }

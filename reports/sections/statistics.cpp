@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdlib>
 #include <numeric>
 
 #include "core/draws.h"
@@ -19,8 +20,9 @@ namespace {
 
 // In the order of a report: what sections.h declares stands in it once it is named here.
 constexpr Table (*kTables[])(const Comparison&) = {
-    profile_table,      leader_table,  choices_table, variation_table, loss_without_x_table,
-    data_profile_table, restart_table, calls_table,   prices_table};
+    profile_table,        leader_table,       choices_table,         variation_table,
+    loss_without_x_table, data_profile_table, simplex_profile_table, restart_table,
+    calls_table,          prices_table,       certified_table};
 constexpr Plots (*kPlots[])(const Comparison&) = {profile_plot, data_profile_plot, runtime_plot};
 
 }  // namespace
@@ -141,6 +143,35 @@ Table data_profile_table(const Comparison& c) {
   return table;
 }
 
+// Moré and Wild (2009), equation 2.8: for each accuracy and each α, the settings that are solved to
+// it within α (n + 1) forward solves. Empty unless the losses and sizes of all settings are known.
+Table simplex_profile_table(const Comparison& c) {
+  constexpr std::array kAccuracies = {1e-1, 1e-3, 1e-5, 1e-7};
+  constexpr std::array kSimplices = {10.0, 100.0, 1000.0};
+  if (c.order.settings.empty() || std::ranges::any_of(c.order.settings, [&](std::size_t p) {
+        const ProblemAxis& problem = c.problems[p];
+        return problem.aim != Aim::loss || problem.is_learned || !problem.has_own_sheet();
+      }))
+    return {};
+  Table table = worded_table("simplex-profile", setting_noun(c), n_column(c));
+  std::vector<Real> steps(kAccuracies.size() * kSimplices.size());
+  std::iota(steps.begin(), steps.end(), 0);
+  add_shares(table, c, steps, [&](std::size_t s, Real step) {
+    const auto [i, j] = std::div(static_cast<int>(step), static_cast<int>(kSimplices.size()));
+    const std::size_t target = rung_of(kAccuracies[static_cast<std::size_t>(i)]);
+    return std::ranges::count_if(c.order.settings, [&](std::size_t p) {
+      const auto n = static_cast<Real>(c.problems[p].sheet->unknowns);
+      return c.cell(p, s).median(Measure::work, target) <=
+             kSimplices[static_cast<std::size_t>(j)] * (n + 1);
+    });
+  });
+  Leading first;
+  constexpr std::size_t kMiddle = 8;  // the column of 1e-5 within 100 (n + 1)
+  for (const auto& row : table.rows) first.offer(row[kMiddle].numbers[0].second, row[0].text);
+  table.reading = words("simplex-profile.reading", first.text(), percent(first.value));
+  return table;
+}
+
 Table profile_table(const Comparison& c) {
   Table table = worded_table("performance-profile", setting_noun(c), tau_name(c), counted_name(c),
                              n_column(c));
@@ -165,10 +196,11 @@ namespace {
 std::string denominators(const Comparison& c) {
   const std::size_t shown = shown_optimizers(c, kMostLines);
   std::size_t runs = 0, failed = 0;
-  for (std::size_t s = 0; s < shown; ++s) {
-    runs += c.optimizers[s].runs;
-    failed += c.optimizers[s].failed;
-  }
+  for (std::size_t s = 0; s < shown; ++s)
+    for (const std::size_t p : c.order.settings) {
+      runs += c.cell(p, s).is_measured() ? c.cell(p, s).runs.size() : 0;
+      failed += c.cell(p, s).failed;
+    }
   return words("plot.denominators", shown, c.order.methods.size(),
                counted_settings(c, c.order.settings.size()), failed, runs);
 }

@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <cstdlib>
+#include <set>
 #include <sstream>
 #include <stdexcept>
 
@@ -338,9 +339,14 @@ bool is_complete(const Cell& cell, std::size_t tolerance) {
 }
 
 std::string rerun_arguments(const Request& request) {
-  return fmt::format("--problem {} --optimizer {} --seeds ={} {} --rates none",
+  std::set<std::string> libraries;
+  for (const Component* part : {&request.problem, &request.optimizer})
+    if (part->foreign && part->foreign->door == "plugin") libraries.insert(part->foreign->command);
+  std::string plugins;
+  for (const std::string& library : libraries) plugins += " --plugin " + shell_word(library);
+  return fmt::format("--problem {} --optimizer {} --seeds ={} {} --rates none{}",
                      shell_word(request.problem.spec), shell_word(request.optimizer.spec),
-                     seed_text(request.seed), budget_options(request));
+                     seed_text(request.seed), budget_options(request), plugins);
 }
 
 std::string rerun_command(const Request& request) {

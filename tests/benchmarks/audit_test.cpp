@@ -102,7 +102,7 @@ TEST(Audit, MeasuresWhatEachMethodIsKnownFor) {
   EXPECT_LE(newton.deviations[2], 1e-9) << "affine changes of x";
   EXPECT_GT(newton.deviations[3], 0.01) << "diagonal changes of y";
   EXPECT_NEAR(newton.regular.order, 2, 0.1) << "quadratic";
-  EXPECT_NEAR(newton.singular.order, 1, 0.1) << "linear where the Hessian is singular";
+  EXPECT_NEAR(newton.singular.order, 1, 0.1) << "linear at a singular Hessian";
   EXPECT_NEAR(gd.regular.order, 1, 0.1);
   EXPECT_TRUE(sip.regular.is_exact && sip.regular.steps == 1);
   EXPECT_LE(newton.linear_angle, 1e-6);

@@ -10,6 +10,7 @@
 #include <map>
 #include <numeric>
 #include <ranges>
+#include <regex>
 #include <set>
 
 #include "benchmarks/plan/claim_cells.h"
@@ -20,6 +21,7 @@
 #include "reports/formats/formats.h"
 #include "reports/report.h"
 #include "reports/sections/sections.h"
+#include "reports/sections/words.h"
 #include "tests/benchmarks/builtin.h"
 #include "tests/benchmarks/matrix.h"
 
@@ -55,14 +57,26 @@ TEST(ClaimsOfTheTree, AreWellFormedAndEachIsThereOnce) {
 }
 
 TEST(ClaimsOfTheTree, ReuseTheCellsOfTheSuites) {
-  const auto quick =
-      cells_of_suites({"quick", "notebook", "sip-quick", "hig-quick", "fluid-quick"});
+  const auto quick = cells_of_suites(
+      {"quick", "notebook", "sip-quick", "hig-quick", "fluid-quick", "bundle", "nist-tolerances"});
   const auto paper = cells_of_suites({"sip-paper", "hig-paper", "fluid-paper"});
   for (const Claim& claim : claims())
     for (const Claim::Cells& cells : claim.cells)
       for (const Request& request : cells.requests)
         EXPECT_TRUE((cells.is_long ? paper : quick).contains(cell_digest(request)))
             << claim.id << ": " << request.problem.spec << " × " << request.optimizer.spec;
+}
+
+TEST(ClaimsOfTheTree, AreDecidedInPartByTheDefaultSuiteAlone) {
+  const std::set<std::string> quick = cells_of_suites({"quick"});
+  std::set<std::string> facts;
+  for (const Claim& claim : claims())
+    for (const Claim::Cells& cells : claim.cells)
+      if (!cells.requests.empty() && std::ranges::all_of(cells.requests, [&](const Request& one) {
+            return quick.contains(cell_digest(one));
+          }))
+        facts.insert(claim.json->value("fact", claim.id));
+  EXPECT_GE(facts.size(), 9U);
 }
 
 TEST(ClaimsOfTheTree, DecideAtLeastTwelveByTheCellsOfTheShortSuites) {
@@ -231,7 +245,8 @@ TEST(VerdictsOnClaims, OfLearnedProblemsAreDecidedAndMostlySupported) {
 // part in as these runs decide it. Learned ones stand as the runs that made the page decide them.
 TEST(PapersPage, HasARowForEachClaimAndTheVerdictsOfTheNotebook) {
   const std::string page = read_text(std::filesystem::path(ISOLINE_SOURCE_DIR) / "docs/papers.md");
-  const std::vector<Judgement> judgements = judge(claims_of({}), notebook());
+  const std::vector<Judgement> judgements =
+      judge(claims_of({}), notebook(), published_records(catalog()));
   std::size_t rows = 0;
   for (const reports::Table& table : reports::papers_section(judgements).tables)
     for (const auto& row : table.rows) {
@@ -248,6 +263,77 @@ TEST(PapersPage, HasARowForEachClaimAndTheVerdictsOfTheNotebook) {
       ++rows;
     }
   EXPECT_EQ(rows, judgements.size());
+}
+
+// A claim, a suite, a command, a component with its options, a test of the tree, or a file.
+bool names_something(const std::string& evidence, const std::string& tests) {
+  static const std::regex kTest(R"(([A-Za-z0-9]+)\.([A-Za-z0-9]+))"),
+      kRun(R"(isoline run ([a-z][a-z0-9-]*).*)"), kVerb(R"(isoline ([a-z]+).*)");
+  std::smatch part;
+  if (std::regex_match(evidence, part, kRun)) return builtin_suites().contains(part[1]);
+  if (std::regex_match(evidence, part, kVerb))
+    return std::filesystem::exists(std::filesystem::path(ISOLINE_SOURCE_DIR) / "benchmarks/verbs" /
+                                   (part[1].str() + ".cpp"));
+  if (std::regex_match(evidence, part, kTest))
+    return std::regex_search(tests, std::regex(fmt::format(R"(TEST(_F|_P)?\({},\s+{}\))",
+                                                           part[1].str(), part[2].str())));
+  if (std::ranges::find(claims(), evidence, &Claim::id) != claims().end()) return true;
+  const Spec spec = parse_spec(evidence);
+  if (catalog().problems.contains(spec.name))
+    return !complete_problem(catalog(), spec).spec.empty();
+  if (catalog().optimizers.contains(spec.name))
+    return !complete_optimizer(catalog(), spec).spec.empty();
+  return std::filesystem::exists(std::filesystem::path(ISOLINE_SOURCE_DIR) / evidence);
+}
+
+TEST(PapersPage, HasAStateForEachItemOfTheTextsAndWhatShowsIt) {
+  std::string tests;
+  for (const auto& file : std::filesystem::recursive_directory_iterator(
+           std::filesystem::path(ISOLINE_SOURCE_DIR) / "tests"))
+    if (file.path().extension() == ".cpp") tests += read_text(file.path());
+  const Json papers = parse_json(std::string(embedded_papers()), "papers");
+  for (const Json& item : papers.at("items")) {
+    SCOPED_TRACE(item.at("item").get<std::string>());
+    const std::string state = item.at("state");
+    EXPECT_TRUE(state == "whole" || state.starts_with("undecidable: ") ||
+                state.starts_with("partly: "))
+        << state;
+    EXPECT_FALSE(item.at("by").empty());
+    for (const Json& evidence : item.at("by"))
+      EXPECT_TRUE(names_something(evidence, tests)) << evidence;
+  }
+  EXPECT_GE(papers.at("items").size(), 67U);
+  EXPECT_GE(papers.at("scripts").size(), 14U);
+  const std::string page = read_text(std::filesystem::path(ISOLINE_SOURCE_DIR) / "docs/papers.md");
+  std::string section =
+      reports::markdown_section(reports::items_section(papers), reports::kAllRows);
+  section.erase(section.find_last_not_of('\n') + 1);
+  EXPECT_NE(page.find(section), std::string::npos) << "make the page again";
+}
+
+// Each decides a claim, has no fields, and is of a build that its name and its record state.
+TEST(PublishedRecords, AreSmallAndReadByClaims) {
+  const std::filesystem::path folder =
+      std::filesystem::path(ISOLINE_SOURCE_DIR) / "benchmarks/published/runs";
+  std::uintmax_t bytes = 0;
+  std::size_t files = 0;
+  for (const auto& file : std::filesystem::directory_iterator(folder)) {
+    EXPECT_EQ(file.path().extension(), ".json");
+    bytes += file.file_size();
+    ++files;
+  }
+  EXPECT_LE(bytes, 5'000'000U);
+  const std::vector<Record> records = published_records(catalog());
+  EXPECT_EQ(records.size(), files);
+  const std::vector<Judgement> judgements = judge(claims_of({}), {}, records);
+  std::string caveats;
+  for (const Judgement& judgement : judgements) caveats += reports::joined(judgement.caveats, " ");
+  for (const Record& record : records) {
+    EXPECT_FALSE(record.fields || record.spectrum) << record.file_name();
+    EXPECT_TRUE(builtin_published().contains(record.cell + "-" + record.build));
+    EXPECT_NE(caveats.find(record.build), std::string::npos) << record.file_name();
+  }
+  EXPECT_GE(std::ranges::count_if(judgements, reports::is_decided, &Judgement::verdict), 2);
 }
 
 // Null experiments on which every claim must fail: optimizers under each other's names, untrained

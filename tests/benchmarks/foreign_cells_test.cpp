@@ -53,9 +53,9 @@ class ForeignCells : public testing::Test {
 
 TEST_F(ForeignCells, FailWithWhatTheOtherDid) {
   expect_failed("closes", "; it is still running");
-  expect_failed("leaves", "code 3, and last printed: I have");
+  expect_failed("leaves", "code 3, and last printed");
   expect_failed("half-a-frame", "it exited with code 0");
-  expect_failed("a-huge-frame", "linearize with 9223372036854775808 bytes instead of 16");
+  expect_failed("a-huge-frame", "9223372036854775808 bytes instead of 16");
   expect_failed("a-huge-complaint", "9223372036854775808 bytes; at most 65536");
   expect_failed("another-verb", "a frame of verb 99");
   expect_failed("two-answers", "sent an unsolicited frame");
@@ -110,11 +110,7 @@ TEST_F(ForeignCells, AreRunOnlyWhereTheProblemIsCertified) {
     return refusal([&] { run_plan(catalog(), "trial", {request}, folder.path(), options, {}); });
   };
   const std::string sign = complaint("has-a-wrong-sign"), random = complaint("is-random");
-  EXPECT_NE(
-      sign.find("fails its checks and does not run: 'the remainder after J v is of second order' "
-                "is violated"),
-      std::string::npos)
-      << sign;
+  EXPECT_NE(sign.find("'the remainder after J"), std::string::npos) << sign;
   EXPECT_NE(random.find("gives the same bits"), std::string::npos) << random;
   EXPECT_NE(complaint("raises").find("cannot be checked"), std::string::npos)
       << "no certificate, no cells";
@@ -143,6 +139,70 @@ TEST_F(ForeignCells, HandOverACopyOfX) {
       request_of(process_of(misbehaving("misbehaving.py changes-its-argument")), "gd");
   EXPECT_EQ(refusal([&] { run_plan(catalog(), "trial", {changes}, folder.path(), options, {}); }),
             "");
+}
+
+// What a program counts: its forwards.
+TEST_F(ForeignCells, AreCertifiedOncePerFolderAndBuild) {
+  const auto script = folder.path() / "counts.py", log = folder.path() / "calls";
+  const std::string text =
+      "import isoline\n"
+      "def forward(x):\n"
+      "    open('" +
+      log.string() +
+      "', 'a').write('.')\n"
+      "    return [x[0], 2 * x[1]]\n"
+      "isoline.problem(forward, start=[1.0, 1.0], jacobian=lambda x: [[1, 0], [0, 2]])\n";
+  const auto calls_of = [&](std::uint64_t seed) {
+    write_text(log, "");
+    Request request = request_of(process_of("python3 " + script.string()), "gd", {.iterations = 1});
+    request.seed = seed;
+    run_plan(catalog(), "trial", {named(request)}, folder.path(), options, {});
+    return read_text(log).size();
+  };
+  constexpr std::size_t kCertificate = 20;  // fewer than its forwards, for all that it checks
+  write_text(script, text);
+  const std::size_t first = calls_of(0), second = calls_of(1);
+  EXPECT_LT(second + kCertificate, first);
+  write_text(script, text + "# edited\n");
+  EXPECT_GT(calls_of(1), second + kCertificate);
+}
+
+// --- options that a program declares
+
+TEST_F(ForeignCells, HaveTheOptionsThatTheirProgramDeclares) {
+  const auto rods = folder.path() / "rods.py", descent = folder.path() / "descent.py";
+  write_text(rods,
+             "import isoline\n"
+             "n = isoline.option('n', 2)\n"
+             "isoline.problem(lambda x: list(x), start=[0.0] * n, jacobian=lambda x: None, "
+             "name='rods')\n");
+  write_text(descent,
+             "import isoline\n"
+             "rate = isoline.option('rate', 0.25, tunable=True)\n"
+             "p = isoline.optimizer(needs=['pullback'], reports=True)\n"
+             "x = list(p.x0)\n"
+             "while True:\n"
+             "    x = [a - rate * b for a, b in zip(x, p.gradient(x))]\n"
+             "    p.report(x)\n");
+  const std::string command = "python3 " + rods.string();
+  const Component usual = complete_problem(catalog(), parse_spec(process_of(command)));
+  const Component larger = complete_problem(catalog(), parse_spec(process_of(command, ",n=5")));
+  EXPECT_EQ(make_problem(catalog(), usual, 0).unknowns(), 2);
+  EXPECT_EQ(make_problem(catalog(), larger, 0).unknowns(), 5);
+  EXPECT_EQ(usual.foreign->label, "rods");
+  EXPECT_EQ(larger.foreign->label, "rods[n=5]");
+  EXPECT_NE(request_of(process_of(command), "gd").cell,
+            request_of(process_of(command, ",n=5"), "gd").cell);
+  EXPECT_NE(refusal([&] { request_of(process_of(command, ",m=5"), "gd"); }), "");
+  EXPECT_NE(refusal([&] { request_of(process_of(command, ",n=2.5"), "gd"); }), "");
+  const std::string method = "python3 " + descent.string();
+  const auto loss_at = [&](const std::string& more) {
+    return record_of(request_of("square", process_of(method, more), {.iterations = 1}))
+        .summary.loss;
+  };
+  EXPECT_NE(loss_at(""), loss_at(",rate=0.125"));
+  const OptionValues of_method = options_of(parse_spec(process_of(method)));
+  EXPECT_EQ(entry_of(catalog(), "process", of_method).tunable.option, "rate");
 }
 
 // --- records and builds
@@ -216,8 +276,7 @@ TEST_F(ForeignCells, OfAnOptimizerKeepWhatItClaimsAndPrintsAndFailWithWhatItDid)
       << "it called no oracle and returned an x that was never evaluated";
   const Record refused = record_of_method("asks-what-it-did-not-declare");
   EXPECT_EQ(refused.status, Status::failed);
-  EXPECT_EQ(refused.message,
-            "the method called the oracle 'jacobian', which it does not declare as needed");
+  EXPECT_NE(refused.message.find("'jacobian'"), std::string::npos) << refused.message;
   EXPECT_NE(record_of_method("raises").message.find("ValueError: the step"), std::string::npos);
   EXPECT_NE(record_of_method("leaves").message.find("it exited with code 4"), std::string::npos);
   EXPECT_NE(record_of_method("forgets").message.find("ended without finish"), std::string::npos);

@@ -159,7 +159,7 @@ TEST(IsolatedText, OfAProcessThatDoesNotEndWellIsNoneButAReason) {
          std::fprintf(stderr, "the grid is too coarse\n");
          std::abort();
        },
-       10, "it last wrote: the grid is too coarse"},
+       10, ": the grid is too coarse"},
       {[]() -> std::string { throw std::runtime_error("no text: \xff"); }, 10, "no text: \uFFFD"},
       {[]() -> std::string {
          for (;;) pause();
@@ -222,6 +222,7 @@ TEST(BadTrace, OfAnyKindIsACrashThatSaysSo) {
       [](Trace& trace) { trace.spectra.values = 1 << 30; },
       [](Trace& trace) { trace.spectra.taken = -1; },
       [](Trace& trace) { std::memset(&trace.spectra.are_wanted, 0x5a, 1); },
+      [](Trace& trace) { trace.uncertainty.unknowns = 1 << 30; },
       [](Trace& trace) { trace.path_inputs = 1 << 30; },
       [](Trace& trace) { trace.path_outputs = -1; },
       [](Trace& trace) { trace.status = static_cast<Status>(77); },

@@ -268,7 +268,7 @@ TEST(SameResult, NotANumberIsItself) {
   EXPECT_EQ(compare_results(a, a).difference, "");
   Record b = a;
   b.curve.x_error[1] = 0;
-  EXPECT_EQ(compare_results(a, b).difference, "x error at iteration 1: \"nan\" against 0.0");
+  EXPECT_TRUE(compare_results(a, b).difference.ends_with(" 1: \"nan\" against 0.0"));
 }
 
 TEST(SameResult, ALongerRunDiffersUnlessAClockEndedOne) {

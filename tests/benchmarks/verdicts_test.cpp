@@ -116,8 +116,9 @@ TEST(Verdicts, LibrariesClaimSuccessAndOurMethodsDoNot) {
   for (const Record& record : matrix().records) {
     if (record.status == Status::inapplicable) continue;
     const Family family = catalog().optimizers.at(record.request.optimizer.name).family;
-    const bool is_library = family == Family::ceres || family == Family::nlopt ||
-                            family == Family::nlopt_derivative_free;
+    constexpr std::array kLibraries = {Family::ceres, Family::nlopt, Family::nlopt_derivative_free,
+                                       Family::minpack, Family::gsl};
+    const bool is_library = std::ranges::find(kLibraries, family) != kLibraries.end();
     const bool is_reason =
         record.claimed.starts_with("steps by ") || record.status == Status::stalled;
     EXPECT_EQ(is_library, !record.claimed.empty() && (is_library || !is_reason))
@@ -482,7 +483,7 @@ TEST_F(Judging, AJudgeThatHangsIsGivenUp) {
   const Verdict verdict =
       verdicts_on({1}, "hang", {.startup_seconds = kPatience, .hard_seconds = kPatience}).at(0);
   EXPECT_FALSE(verdict.judged.has_value());
-  EXPECT_EQ(verdict.failure, "it took more than 0.2 s");
+  EXPECT_TRUE(verdict.failure.ends_with("more than 0.2 s")) << verdict.failure;
 }
 
 TEST_F(Judging, ManyPointsOfOneProblemAreJudgedByOneProcess) {

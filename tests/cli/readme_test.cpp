@@ -94,6 +94,38 @@ TEST_P(Page, EveryCommandRunsInTheOrderOfThePage) {
   }
 }
 
+// The row of a name in what `score` prints: runs of 4 digits, of 6, the mean digits, the calls.
+void expect_scored(const std::string& text, const std::string& name, Real least_digits) {
+  const std::size_t at = text.find("\n" + name + " ");
+  ASSERT_NE(at, std::string::npos) << text;
+  std::istringstream row(text.substr(at + 1 + name.size()));
+  std::string solved, precise;
+  Real digits = 0, calls = 0;
+  row >> solved >> precise >> digits >> calls;
+  EXPECT_EQ(solved, "1/1") << text;
+  EXPECT_EQ(precise, "1/1") << text;
+  EXPECT_GE(digits, least_digits) << text;
+  EXPECT_GT(calls, 5) << text;
+}
+
+// The data set of the page is Misra1a from its first start, with derivatives by differences.
+TEST(Guide, ADataSetOfOnesOwnHasTheDigitsOfTheSameOneOfNist) {
+  const std::string page = "docs/bring-a-simulator.md";
+  const Shell shell;
+  std::filesystem::create_directory_symlink(kTree / "clients", shell.folder() / "clients");
+  for (const auto& [name, text] : scripts(page)) write_text(shell.folder() / name, text);
+  std::string own;
+  for (const std::string& command : commands(page))
+    if (contains(command, "misra1a")) own = shell.expect(command).out;
+  const std::string nist =
+      shell.expect("./isoline score --problem nist --optimizer ceres-lm --peers minpack-lmder").out;
+  for (const char* name : {"ceres-lm", "minpack-lmder"}) {
+    expect_scored(own, name, 6);
+    expect_scored(nist, name, 8);
+  }
+  shell.expect("./isoline score --problem more-wild --peers ceres-lm", {.exit_code = 1});
+}
+
 TEST_P(Page, LinksToFilesOfTheTreeThatExist) {
   const std::string text = read_text(kTree / GetParam());
   const std::filesystem::path folder = (kTree / GetParam()).parent_path();

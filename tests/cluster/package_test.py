@@ -35,12 +35,13 @@ class Package(unittest.TestCase):
 
     def test_it_depends_on_what_the_program_links_and_on_no_compiler(self):
         needed = self.field("Depends")
-        for library in ["libfftw3", "libopenblas", "liblapacke", "libnlopt", "libceres", "libdnnl"]:
+        for library in ["libfftw3", "libopenblas", "liblapacke", "libnlopt", "libceres", "libdnnl",
+                        "libcminpack", "libgsl"]:
             self.assertIn(library, needed)
         for tool in ["g++", "gcc", "cmake", "-dev"]:
             self.assertNotIn(tool, needed.replace("libgcc", ""))
 
-    def test_it_holds_the_program_the_client_of_python_and_the_licenses_and_nothing_else(self):
+    def test_it_holds_the_program_its_client_records_and_licenses_and_nothing_else(self):
         files = sorted(os.path.relpath(os.path.join(folder, name), f"{self.folder}/root")
                        for folder, _, names in os.walk(f"{self.folder}/root") for name in names)
         client = [name for name in files if name.startswith("usr/share/isoline/python/")]
@@ -48,7 +49,9 @@ class Package(unittest.TestCase):
         self.assertTrue(all(name.endswith(".py") for name in client), client)
         guide = [name for name in files if name.startswith("usr/share/doc/isoline/docs/")]
         self.assertIn("usr/share/doc/isoline/docs/running-a-matrix.md", guide)
-        files = [name for name in files if name not in client + guide]
+        published = [name for name in files if name.startswith("usr/share/isoline/published/runs/")]
+        self.assertTrue(published and all(name.endswith(".json") for name in published))
+        files = [name for name in files if name not in client + guide + published]
         self.assertEqual(files, ["usr/bin/isoline"] + [f"usr/share/doc/isoline/{name}" for name in (
             "CHANGELOG.md", "README.md", "copyright")])
         with open(f"{self.folder}/root/{files[-1]}", encoding="utf-8") as text:

@@ -16,18 +16,18 @@ DAMAGES = [
     ("f,nfev\n", "no row"),
     ("f,nfev\n1,2\n3\n", "line 3: expected 2 fields"),
     ("f,nfev\n1,2\n3,4,5\n", "line 3: expected 2 fields"),
-    ("f,nfev\n1,2\n\n\nx,4\n", "line 5: loss is not a number: 'x'"),
+    ("f,nfev\n1,2\n\n\nx,4\n", "line 5: loss is not"),
     ("f,nfev\n1,2\n,4\n", "line 3: loss is missing"),
-    ("f,nfev\n1,2.5\n", "line 2: forward must be an integer"),
+    ("f,nfev\n1,2.5\n", "line 2: forward must be"),
     ("f,nfev\n1,-2\n", "line 2: forward must be"),
     ("f,nfev\n1,\n", "line 2: forward must be"),
     ("f,nfev\n1,1e300\n", "line 2: forward must be"),
-    ("f,nfev\n1,4\n1,3\n", "line 3: forward must not decrease"),
-    ("g,nfev\n1,4\n", "line 1: no column is named 'f'"),
-    ("f,f,nfev\n1,1,4\n", "line 1: two columns are named 'f'"),
-    ("1,4\n1,5\n", "line 1: the file has no header"),
+    ("f,nfev\n1,4\n1,3\n", "line 3: forward must not"),
+    ("g,nfev\n1,4\n", "line 1: no column"),
+    ("f,f,nfev\n1,1,4\n", "line 1: two columns"),
+    ("1,4\n1,5\n", "line 1: the file"),
     ("f,nfev\n\"1,4\n", "line 2: "),
-    ("f,nfev\n1\"2,4\n", "line 2: loss is not a number"),
+    ("f,nfev\n1\"2,4\n", "line 2: loss is not"),
     ("f,nfev\n\"1\"x,4\n", "line 2: "),
     ("f,nfev\n1,\0004\n", "line 2: a zero byte"),
     ("f,nfev\n" + "x" * 1_000_000 + ",4\n", "line 2: "),
@@ -95,7 +95,7 @@ class Import(unittest.TestCase):
         self.assertEqual(record["minimum"], 0)
         self.assertAlmostEqual(record["scale"], 12.1)
         self.assertEqual(record["hits"]["work"][0], 3, "24.2 is more than s")
-        self.assertEqual(record["hits"]["work"][5], 5, "4 is more than a tenth of s")
+        self.assertEqual(record["hits"]["work"][5], 5, "4 exceeds s/10")
         self.assertEqual(record["hits"]["iteration"][50], 3)
         self.assertIn("remove minimum", self.refusal(minimum=-1))
         self.assertIn("rosenbrock with seed 9", self.refusal(seed=9))

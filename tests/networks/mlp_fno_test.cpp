@@ -1,4 +1,5 @@
 // Multilayer perceptrons and Fourier neural operators.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "core/fourier.h"
@@ -108,6 +109,28 @@ TEST(Perceptron, EqualSamplesGetEqualBits) {
         EXPECT_EQ(J.middleRows(b * kRows, kRows), J1) << options << ": " << b << " of " << samples;
       }
     }
+  }
+}
+
+// ReLU's second derivative is 0: of one hidden layer, only the products of weights of two layers
+// remain, so the curvature along a change of the first layer has no entries in that layer.
+TEST(Perceptron, OfReluHasNoSecondDerivativeWithinALayer) {
+  for (const char* activation : {"relu", "tanh"}) {
+    const auto network =
+        make(fmt::format("layers=5,precision=double,activation={}", activation), 3, 2);
+    RandomStream stream(1, "mlp", "test");
+    const Vector theta = network->start(stream);
+    const Matrix in = stream.normal_vector(12).reshaped(3, 4), u = Matrix::Ones(2, 4);
+    constexpr Index kFirst = 5 * 3 + 5;
+    Vector v = stream.normal_vector(theta.size()), bend(theta.size());
+    v.tail(theta.size() - kFirst).setZero();
+    Workspace w;
+    Matrix x(2, 4), change(2, 4);
+    network->forward(theta, in, x, w);
+    network->pushforward(v, change, w);
+    network->curvature(v, u, Matrix::Zero(2, 4), bend, w);
+    EXPECT_EQ(bend.head(kFirst).norm() == 0, std::string(activation) == "relu") << activation;
+    EXPECT_GT(bend.tail(theta.size() - kFirst).norm(), 0) << activation;
   }
 }
 

@@ -206,7 +206,7 @@ std::string refusal_of(const std::string& spec, const NetworkShape& shape) {
 }
 
 TEST(Unet, AShapeThatDoesNotFitIsOneSentence) {
-  EXPECT_EQ(refusal_of("unet", grids(60)), "unet: with levels=4 N must be a multiple of 8, got 60");
+  EXPECT_TRUE(refusal_of("unet", grids(60)).ends_with("multiple of 8, got 60"));
   EXPECT_TRUE(
       refusal_of("unet", {.inputs = 3, .outputs = 2}).ends_with("got columns of 3 numbers"));
 }

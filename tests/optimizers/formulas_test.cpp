@@ -295,7 +295,7 @@ TEST(LevenbergMarquardt, ScalesAsItIsAsked) {
 TEST(LevenbergMarquardt, OfManyResidualsTakesTheGramMatrixOfTheLayers) {
   const Problem problem = make("poisson-hig[mode=learn,batch=16]");  // 1,024 residuals
   const Outcome fixed = run(problem, "levenberg-marquardt[damping=fixed]", iterations(1));
-  EXPECT_STREQ(fixed.trace->claimed, "steps by Cholesky of the Gram matrix");
+  EXPECT_NE(std::string(fixed.trace->claimed).find("Gram matrix"), std::string::npos);
   for (const char* spec : {"levenberg-marquardt", "levenberg-marquardt[damping=fixed]"}) {
     const OracleCounts counts = run(problem, spec, iterations(2)).trace->last.counts;
     EXPECT_EQ(counts[static_cast<std::size_t>(Oracle::jacobian)], 0) << spec;
@@ -456,7 +456,7 @@ TEST(Libraries, TakeTheOptionThatIsTuned) {
     if (option.empty() || (!name.starts_with("ceres-") && !name.starts_with("nlopt-"))) continue;
     const Real standard = options_of_spec(entry, name).number(option, 0);
     const auto end = [&](const std::string& spec) {
-      return run(make("rosenbrock"), spec, {.iterations = 30, .work = 200, .target = 0}).theta;
+      return run(make("rosenbrock"), spec, {.iterations = 10, .work = 200, .target = 0}).theta;
     };
     const std::string given = name + '[' + option + '=';
     EXPECT_EQ(end(given + std::to_string(standard) + ']'), end(name)) << name;

@@ -367,18 +367,17 @@ TEST(Kfac, IsForDenseLayersAndConvolutionsOfUpToSomeThousandInputs) {
   for (const char* spec : {"poisson[mode=learn]", "heat[mode=learn]", "navier-stokes[mode=learn]",
                            "burgers[mode=learn]"})
     EXPECT_EQ(why("kfac", make(spec)), "") << spec;
-  const std::string lack = "the problem has no network of dense layers or convolutions";
-  EXPECT_EQ(why("kfac", make("sine")), lack);
-  EXPECT_EQ(why("kfac", make("poisson[mode=learn,network=fno]")), lack);
+  EXPECT_TRUE(why("kfac", make("sine")).ends_with("dense layers or convolutions"));
+  EXPECT_TRUE(why("kfac", make("poisson[mode=learn,network=fno]")).ends_with(" or convolutions"));
   EXPECT_TRUE(why("kfac", make("sine[mode=learn,network=mlp[layers=5000]]"))
                   .ends_with(" kfac is limited to 4096"));
 }
 
 // JJᵀ layer by layer is of dense layers, whose rows are outer products.
 TEST(Kfac, AloneTakesConvolutionsByTheirMoments) {
-  EXPECT_EQ(
-      why("hig[factorization=layers]", make("poisson-hig[mode=learn,network=unet[levels=3]]")),
-      "the problem has no network of dense layers");
+  EXPECT_TRUE(
+      why("hig[factorization=layers]", make("poisson-hig[mode=learn,network=unet[levels=3]]"))
+          .ends_with("network of dense layers"));
 }
 
 // They end at a thirtieth and at a thirteenth of their start.

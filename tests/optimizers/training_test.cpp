@@ -1,5 +1,6 @@
 // Identities between training methods, also on the multilayer perceptron, where short trainings end
 // as the paper says; and variants of scale-invariant physics training.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -49,12 +50,11 @@ TEST(Sip, NetworkStepsGoTowardTheSameTarget) {
 
 TEST(Sip, SaysWhichInverseAProblemLacks) {
   EXPECT_EQ(why("sip[inverse=damped]", make("heat[N=4]")), "");
-  EXPECT_EQ(why("sip[inverse=damped]", make("sine")),
-            "inverse=damped, and the physics has an inverse, but not a damped one");
+  EXPECT_TRUE(why("sip[inverse=damped]", make("sine")).ends_with("not a damped one"));
   EXPECT_NE(why("sip[inverse=damped]", make("box3d")).find("local inverse"), std::string::npos);
   EXPECT_NE(why("sip[inverse=newton]", far_root()).find("second derivatives"), std::string::npos);
-  EXPECT_EQ(why("sip[inverse=newton]", make("exponential[n=9]")),
-            "inverse=newton is for up to 8 inputs of the physics, which has 9");
+  EXPECT_NE(why("sip[inverse=newton]", make("exponential[n=9]")).find("8 inputs"),
+            std::string::npos);
 }
 
 TEST(Sip, RefusesABadNetworkOptimizer) {
@@ -124,6 +124,18 @@ TEST(HessianFree, SolvesALinearLeastSquaresProblemAtOnceWithoutDamping) {
   Point at;
   problem.forward(run(problem, "hessian-free[damping=1e-14]", iterations(1)).theta, at);
   EXPECT_LE(at.loss, 1e-20);
+}
+
+// Of a linear map and a square, ∇²L is JᵀJ: the same step by one product instead of two.
+TEST(HessianFree, OfTheTrueHessianSolvesAQuadraticAtOnce) {
+  const Outcome one = run(easy(), "hessian-free[damping=1e-14]", iterations(1)),
+                other = run(easy(), "hessian-free[damping=1e-14,curvature=hessian]", iterations(1));
+  expect_near(one.theta, other.theta, 1e-12, "θ");
+  EXPECT_GT(other.trace->last.counts[static_cast<std::size_t>(Oracle::hessian_product)], 1);
+  EXPECT_EQ(other.trace->last.counts[static_cast<std::size_t>(Oracle::pushforward)], 0);
+  // Where L is concave along the gradient, JᵀJ still has a descent step.
+  EXPECT_TRUE(
+      run(make("sine"), "hessian-free[curvature=hessian]", iterations(3)).theta.allFinite());
 }
 
 TEST(HessianFree, LowersItsDampingWhileTheModelHolds) {
@@ -229,10 +241,11 @@ std::vector<std::string> series_names(const Trace& trace) {
   return names;
 }
 
-// The last value of a series.
+// The last value of the series whose name begins so.
 Real shown(const Outcome& outcome, const std::string& name) {
   const std::vector<std::string> names = series_names(*outcome.trace);
-  const auto found = std::ranges::find(names, name);
+  const auto found =
+      std::ranges::find_if(names, [&](const std::string& each) { return each.starts_with(name); });
   EXPECT_NE(found, names.end()) << name;
   return outcome.trace->last.series[found - names.begin()];
 }
@@ -326,6 +339,51 @@ TEST(Sip, ByTheGradientIsBackpropagation) {
                  other = run(problem, alone, iterations(20)).theta;
     expect_near(one, other, 1e-12, inside);
   }
+}
+
+// GD_accumulate of the published script: eight steps along the gradient, as long as the first.
+TEST(Sip, EightGradientStepsAreAsLongAsTheFirst) {
+  const auto step = [](const char* inverse, const Problem& problem) {
+    return first_step(problem, fmt::format("sip[inverse={},step=0.05]", inverse));
+  };
+  const Vector first = step("gradient", easy()), eight = step("gradients", easy());
+  EXPECT_NEAR(eight.norm(), first.norm(), 1e-14);
+  Vector x = easy().start();  // by hand
+  for (int i = 0; i < 8; ++i) x -= 0.05 * gradient_at(easy(), x);
+  const Vector sum = x - easy().start();
+  expect_near(eight, sum * (first.norm() / sum.norm()), 1e-14, "U");
+  EXPECT_GT((eight - first).norm(), 0.01 * first.norm()) << "another direction";
+}
+
+// One residual: √diag(JᵀJ) is |J|, and Adam without memory steps by J/|J| and the residual's sign.
+TEST(Adam, DividesTheJacobianOfOneResidualByItsDiagonal) {
+  const Eigen::RowVector3d J(2, -0.5, 1e-3);
+  for (const Real target : {-1.0, 5.0}) {
+    const Problem problem = linear(J, Eigen::Vector3d(1, 1, 1), Vector::Constant(1, target));
+    const Real r = J.sum() - target;
+    const Vector divided = (J.transpose() * J)
+                               .diagonal()
+                               .cwiseSqrt()
+                               .cwiseInverse()
+                               .cwiseProduct(J.transpose() * (r > 0 ? 1 : -1));
+    expect_near(first_step(problem, "adam[rate=0.1,beta1=0,beta2=0,epsilon=0]"), -0.1 * divided,
+                1e-14, "step");
+  }
+}
+
+TEST(Then, GoesOnFromWhereTheFirstStopped) {
+  const Problem problem = easy();
+  const Outcome whole = run(problem, "then[first=adam[rate=0.01],second=gd[rate=0.1],steps=3]",
+                            iterations(5)),
+                start = run(problem, "adam[rate=0.01]", iterations(3)),
+                end = run_from(start.theta, problem, "gd[rate=0.1]", iterations(2));
+  ASSERT_EQ(whole.path.size(), 5U);
+  EXPECT_EQ(whole.path[2], start.theta);
+  EXPECT_EQ(whole.theta, end.theta);
+  EXPECT_NE(why_inapplicable(optimizers().at("then"),
+                             options_of_spec(optimizers().at("then"), "then[second=ceres-lbfgs]"),
+                             problem),
+            "");
 }
 
 // L = 1000 + weight Σ ¼(y − y*)⁴, whose Newton step in y is a third of the way to y*, or away from
@@ -431,11 +489,10 @@ TEST(Sip, FallsBackToTheGradientWhereTheInverseFails) {
   const std::string rest = "network-optimizer=gd[rate=0.1]]";
   const Outcome moved = run(problem, "sip[fallback=gradient," + rest, iterations(1)),
                 stayed = run(problem, "sip[" + rest, iterations(1));
-  EXPECT_EQ(shown(moved, "samples moved along the gradient"), 1);
+  EXPECT_EQ(shown(moved, "samples moved"), 1);
   const Real pull = 0.1 * 2 * 1 * (1 + 1) / 4;  // at x = 1, of the mean over four, at that rate
   EXPECT_LE((moved.theta - stayed.theta + pull * Eigen::Vector2d(1, 1)).norm(), 1e-14);
-  EXPECT_EQ(shown(run(problem, "sip[fallback=gradient," + rest, iterations(3)),
-                  "samples moved along the gradient"),
+  EXPECT_EQ(shown(run(problem, "sip[fallback=gradient," + rest, iterations(3)), "samples moved"),
             3);
 }
 

@@ -3,6 +3,7 @@
 import math
 import pathlib
 import sys
+import time
 import unittest
 
 import browser
@@ -113,6 +114,26 @@ class Fields(InBrowser):
                                    self.fields + " .reading")
         self.assertIn(f"nearest to x* for {nearest}", reading)
 
+    def moving(self, motion):
+        """The button of the first tab's fields and their first picture, with this wish for motion."""
+        self.browser.call("POST", "/goog/cdp/execute", {
+            "cmd": "Emulation.setEmulatedMedia",
+            "params": {"features": [{"name": "prefers-reduced-motion", "value": motion}]}})
+        self.open("")
+        return self.browser.wait("return document.querySelector('#motion button')?.innerText")
+
+    def test_the_first_tab_moves_three_fields_unless_motion_is_unwanted(self):
+        picture = "#motion figure[data-s] .picture canvas"
+        self.assertEqual(self.moving("no-preference"), "Pause")
+        pictures = {tuple(self.browser.wait(CELLS, picture)) for _ in range(40)
+                    if time.sleep(0.1) is None}
+        self.assertGreater(len(pictures), 2)
+        self.assertEqual(self.moving("reduce"), "Play")
+        self.assertEqual(self.browser.run("return document.querySelectorAll("
+                                          "'#motion figure[data-s]').length"), 3)
+        self.browser.call("POST", "/goog/cdp/execute", {"cmd": "Emulation.setEmulatedMedia",
+                                                        "params": {"features": []}})
+
     def test_a_method_left_out_takes_its_pictures_along(self):
         s = self.found[0]["s"]
         self.browser.run("show('s', DATA.optimizers.map((_, s) => s).filter((s) => s !== arguments[0]))",
@@ -148,7 +169,7 @@ class Fields(InBrowser):
             self.assertEqual(len(set(first)), 1, "from x = 0 follows 0")
             alt = self.browser.run("return document.querySelector(arguments[0]).ariaLabel",
                                    f"{self.fields} figure[data-s='{one['s']}'] canvas")
-            self.assertRegex(alt, r"^x → y of .* at iteration 0")
+            self.assertRegex(alt, r"^x to y .* iteration 0")
 
     def test_they_fit_a_phone(self):
         resized(self.browser, 400, 800)

@@ -260,7 +260,7 @@ TEST(Flow, RefusesWhatCannotBeSimulated) {
   EXPECT_EQ(law_of({}), "");
   EXPECT_TRUE(law_of({.N = 63}).ends_with("at least 4, got 63"));
   EXPECT_TRUE(law_of({.dt = -1}).ends_with("must be above 0, got -1"));
-  EXPECT_TRUE(law_of({.viscosity = -2}).ends_with("must be at least 0, got -2"));
+  EXPECT_TRUE(law_of({.viscosity = -2}).ends_with("at least 0, got -2"));
   EXPECT_TRUE(law_of({.viscosity = 5}).ends_with("Δx²/(4Δt) = 4"));
 }
 

@@ -143,7 +143,7 @@ TEST(WavePacket, IsACosineUnderAGaussianAtItsTimes) {
 }
 
 TEST(WavePacket, CountsNoSignOfWidthAndFrequency) {
-  const Problem problem = make("wave-packet[noise=0]", 4);
+  const Problem problem = make("wave-packet[sigma=0]", 4);
   const Vector truth = *problem.truth();
   for (const Index i : {2, 3}) {
     Vector mirrored = truth;
@@ -160,7 +160,7 @@ TEST(WavePacket, LeavesTheNoiseAsItsLeastLoss) {
   constexpr Real kNoise = 0.1, kCount = 100;
   Real sum = 0, floors = 0;
   for (std::uint64_t seed = 0; seed < 100; ++seed) {
-    const Problem problem = make("wave-packet[noise=0.1]", seed);
+    const Problem problem = make("wave-packet[sigma=0.1]", seed);
     sum += problem.minimum().value();
     floors += problem.x_floor(problem.batch());
     EXPECT_FALSE(problem.truth().has_value());
@@ -169,14 +169,14 @@ TEST(WavePacket, LeavesTheNoiseAsItsLeastLoss) {
   EXPECT_NEAR(sum / kCount, 60 * unit, 4 * unit * std::sqrt(120 / kCount));
   EXPECT_GT(floors / kCount, 0.01);
   EXPECT_LT(floors / kCount, 0.3);
-  EXPECT_EQ(make("wave-packet[noise=0]").minimum(), 0);
-  EXPECT_EQ(make("wave-packet[noise=0]").x_floor(make("wave-packet[noise=0]").batch()), 0);
+  EXPECT_EQ(make("wave-packet[sigma=0]").minimum(), 0);
+  EXPECT_EQ(make("wave-packet[sigma=0]").x_floor(make("wave-packet[sigma=0]").batch()), 0);
 }
 
 // From within a tenth of every unknown, without noise.
 TEST(WavePacket, LocalInverseFindsAPacketNearby) {
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
-    const Problem problem = make("wave-packet[noise=0]", seed);
+    const Problem problem = make("wave-packet[sigma=0]", seed);
     const Vector truth = *problem.truth();
     RandomStream stream(seed, "wave-packet", "nearby");
     const Vector factors = stream.uniform_vector(4, 0.9, 1.1);
@@ -198,7 +198,7 @@ TEST(WavePacket, LocalInverseOfWhatIsReachedStays) {
 }
 
 TEST(WavePacket, IsLearnedFromItsNoisySignal) {
-  const Problem problem = make("wave-packet[mode=learn,noise=0.1]", 1);
+  const Problem problem = make("wave-packet[mode=learn,sigma=0.1]", 1);
   Batch batch;
   problem.draw_validation(batch);
   EXPECT_EQ(batch.input, batch.target);

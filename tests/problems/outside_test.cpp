@@ -1,12 +1,9 @@
 // Problems with answers from outside: NIST's certified regressions, and the cases of Moré and Wild.
 #include <gtest/gtest.h>
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
-#include "core/json.h"
 #include "make.h"
 #include "problems/problem.h"
 #include "tests/problems/make.h"
@@ -30,28 +27,6 @@ TEST(Nist, SumsOfSquaresAtTheCertifiedParametersAreTheCertifiedOnes) {
       EXPECT_LT(loss, 1e-20);
     else
       EXPECT_NEAR(loss / *problem.minimum(), 1, 1e-9) << name;
-  }
-}
-
-// By QR of J at the certified parameters; eleven digits are certified, of parameters too.
-TEST(Nist, StandardDeviationsAreTheCertifiedOnes) {
-  const Json sets = read_json(ISOLINE_SOURCE_DIR "/problems/nist.json").at("datasets");
-  for (const std::string& name : datasets()) {
-    if (name == "Lanczos1") continue;  // its residuals are rounding
-    const Problem problem = make("nist[dataset=" + name + "]");
-    const Vector truth = problem.truth()->reshaped();
-    Point at;
-    problem.forward(truth, at);
-    Matrix J;
-    problem.jacobian(J, at);
-    const Index n = J.cols();
-    const Matrix R = Eigen::HouseholderQR<Matrix>(J).matrixQR().topRows(n);
-    const Matrix inverse =
-        R.triangularView<Eigen::Upper>().solve(Matrix::Identity(n, n));  // (JᵀJ)⁻¹ = R⁻¹ R⁻ᵀ
-    const Vector deviation =
-        inverse.rowwise().norm() * std::sqrt(2 * at.loss / static_cast<Real>(J.rows() - n));
-    const std::vector<Real> certified = reals_of(sets.at(name).at("standard_deviation"));
-    for (Index i = 0; i < n; ++i) EXPECT_NEAR(deviation[i] / certified[i], 1, 1e-6) << name << i;
   }
 }
 

@@ -146,7 +146,7 @@ TEST(Chaos, CellsThatMoveWithTheLastBitAreJudgedByTheirStatusAndCoarseTargets) {
                {"a better status", ends_as(Status::target), moves, moves_more, kBetterOnly, 9, 1},
                {"changed, and no worse", ends_as(Status::stalled), moves, moves_more, kGood, 9, 1},
                {"moved by less than a tenth", by(3), by(0.03), by(0), kWorse, 9, 0},
-               {"moved by more than a tenth", by(3), by(0.3), by(0), kGood, 9, 1},
+               {"moved by over a tenth", by(3), by(0.3), by(0), kGood, 9, 1},
                {"one of them got there", reaches(31), reaches(31), moves_more, kGood, 9, 1},
                {"one of them did not", reaches(12), reaches(12), moves_more, kGood, 9, 1},
                {"all of them reached 1e-1", reaches(4), reaches(12), moves_more, kWorse, 9, 1},

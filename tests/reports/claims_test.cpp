@@ -10,6 +10,7 @@
 #include "reports/page/page.h"
 #include "reports/report.h"
 #include "reports/sections/sections.h"
+#include "reports/sections/words.h"
 #include "tests/reports/asked_claim.h"
 #include "tests/reports/fixture.h"
 
@@ -44,6 +45,14 @@ Judgement judgement_of(const Asked& asked, const std::vector<Record>& runs) {
 }
 
 // A claim asks for cells without a limit of time.
+TEST(Claims, AreOpenWhereARunIsInapplicable) {
+  std::vector<Record> runs = adam_and_sip();
+  runs[0].curve = {};
+  const Judgement open = judge(Json::array({claim_of({})}), runs).at(0);
+  EXPECT_FALSE(is_decided(open.verdict));
+  EXPECT_FALSE(open.measured);
+}
+
 TEST(Claims, TakeRunsThatNoLimitOfTimeHasEnded) {
   Json claim = claim_of({});
   std::vector<Record> runs = adam_and_sip();
@@ -57,6 +66,44 @@ TEST(Claims, TakeRunsThatNoLimitOfTimeHasEnded) {
   EXPECT_EQ(judge(Json::array({claim}), runs).at(0).verdict, Verdict::consistent);
   for (Record& run : runs) run.is_nondeterministic = true;
   EXPECT_EQ(judge(Json::array({claim}), runs).at(0).verdict, Verdict::not_comparable);
+}
+
+// Adam and SIP over 3 seeds and 100 iterations are asked for; published are seeds 0 and 1 of SIP
+// and 0 of Adam, of 40 and 60 iterations.
+TEST(Claims, TakeTheBeginningsThatPublishedRecordsHave) {
+  Json claim = claim_of({.more = {{"iteration", 5}}});
+  std::vector<Record> published;
+  for (const auto& [optimizer, seed, error, length] :
+       {std::tuple{"adam", 0, 20.0, 40}, {"sip", 0, 2.0, 60}, {"sip", 1, 3.0, 60}}) {
+    Record record = run_of(optimizer, static_cast<std::uint64_t>(seed), error);
+    record.request.budget.iterations = 100;
+    for (Json& term : claim["cells"][0]["terms"])
+      for (Json& cell : term[0]["cells"])
+        if (cell == record.cell) cell = cell_digest(record.request);
+    record.request.budget.iterations = length;
+    record.cell = cell_digest(record.request);
+    record.status = Status::budget;
+    published.push_back(record);
+  }
+  const auto judged = [&](const Json& asked, const std::vector<Record>& runs = {}) {
+    return judge(Json::array({asked}), runs, published).at(0);
+  };
+  const Judgement one = judged(claim);
+  EXPECT_EQ(one.verdict, Verdict::consistent);
+  EXPECT_EQ(one.measured->value, 10);
+  EXPECT_EQ(one.measured->n, 1U);
+  EXPECT_EQ(one.reached, words("claim.published-part", "40", "100", 1, 3));
+  EXPECT_NE(joined(one.caveats, " ").find(published[0].build), std::string::npos);
+  claim["quantity"]["iteration"] = 50;
+  EXPECT_EQ(judged(claim).verdict, Verdict::too_short);
+  // A whole set of other cells decides where the beginning is too short, or has fewer seeds.
+  claim["cells"].push_back(claim_of({.iterations = 50}).at("cells")[0]);
+  EXPECT_TRUE(judged(claim, adam_and_sip()).reached.empty());
+  claim["quantity"]["iteration"] = 5;
+  EXPECT_TRUE(judged(claim, adam_and_sip()).reached.empty());
+  claim["cells"].erase(1);
+  published[0].status = Status::crashed;
+  EXPECT_EQ(judged(claim).verdict, Verdict::not_comparable);
 }
 
 const Json kText{{"from", "text"}, {"relative", 0.05}};
@@ -560,8 +607,25 @@ TEST(Quantities, AShareCountsSeedsOfTheAlternativeThatSpeaksForTheMethod) {
   EXPECT_EQ(measure("share", {worst}, "test").value, 0.75);
 }
 
+// Of the pairs of a run's digits and another's, 1e-2 … 1e-13 of x_scale 10 and not finite.
+TEST(Quantities, DigitsAreThoseOfTheErrorInXAndTheirMeansAreCompared) {
+  Record record = record_of({});
+  record.x_scale = 10;
+  const auto digits = [&](Real error) {
+    record.curve.x_error.assign(record.curve.iteration.size(), error);
+    return figure_of(record, {.column = "digits"});
+  };
+  EXPECT_NEAR(digits(1e-3), 4, 1e-12);  // rounding
+  EXPECT_EQ(digits(1e-13), 11);
+  EXPECT_EQ(digits(0), 11);
+  EXPECT_EQ(digits(1e3), 0);
+  EXPECT_EQ(digits(std::nan("")), 0);
+  EXPECT_EQ(
+      measure("mean_difference", {{.figures = {{9, 4}}}, {.figures = {{5, 2}}}}, "test").value, 3);
+}
+
 TEST(Quantities, SignedOnesAreTiedAtZeroAndRatiosAtOne) {
-  for (const char* kind : {"slope", "ratio_slope", "order", "trend"})
+  for (const char* kind : {"slope", "ratio_slope", "order", "trend", "mean_difference"})
     EXPECT_EQ(neutral_of(kind), 0) << kind;
   EXPECT_EQ(neutral_of("ratio"), 1);
   for (const char* kind : {"value", "greatest", "share"})

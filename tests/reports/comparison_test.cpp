@@ -185,9 +185,9 @@ TEST(Curves, TheGapIsWhatIsLeftOfTheDescent) {
 }
 
 TEST(Comparison, TwoGridsOfOneEquationAreOneProblem) {
-  EXPECT_EQ(headline(Compared(
-                {record_of({.problem = "heat[N=8]"}), record_of({.problem = "heat[N=16]"})})),
-            "1 optimizer on 1 problem (2 settings), 1 seed, 2 cells");
+  EXPECT_TRUE(has(headline(Compared(
+                      {record_of({.problem = "heat[N=8]"}), record_of({.problem = "heat[N=16]"})})),
+                  "1 problem (2 settings), 1 seed"));
   EXPECT_TRUE(has(headline(Compared({record_of({}), record_of({.problem = "heat"}),
                                      record_of({.problem = "heat", .seed = 1})})),
                   "at most 2 seeds"));
@@ -433,7 +433,7 @@ TEST(OtherYardsticks, EveryFormatTellsItsMeasureAndItsTolerance) {
   for (const auto text : {html_report, markdown_report, latex_report, terminal_table}) {
     EXPECT_TRUE(has(text(work), "1e-4"));
     EXPECT_TRUE(has(text(work), "160"));
-    EXPECT_FALSE(has(text(work), "wall time to"));
+    EXPECT_FALSE(has(text(work), "Median wall time"));
     EXPECT_TRUE(has(text(time), "wall time"));
     EXPECT_TRUE(has(text(time), "1.6"));
   }

@@ -144,7 +144,7 @@ std::vector<Fault> figure_faults() {
        true},
       {"error in x × 100", in_one([](Record& r) { r.summary.x_error *= 100; }), kCaught, kCaught,
        true},
-      {"error in x × 100, to the end of the curve",
+      {"error in x × 100",
        in_one(honest([](Record& r) { end_in_x_at(r, 100 * r.summary.x_error); })), kBad, kBad},
       {"better loss with worse x", in_one(honest([](Record& r) {
          end_at(r, 0.9 * r.summary.loss);
@@ -219,10 +219,10 @@ std::vector<Fault> criterion_faults() {
       {"cost of a Jacobian 4 → 1, work following", in_all(honest(jacobian_for_one)), kApart,
        kApart},
       {"cost alone", in_one([](Record& r) { r.prices[kJacobian] = 1; }), kApart, kApart, true},
-      {"cost, by a change of the problem's source",
-       in_all(rebuilt("problem", honest(jacobian_for_one))), kApart, kApart},
-      {"aim x → loss, by a change of the problem's source",
-       in_one_of_x(rebuilt("problem", loss_sought)), kApart, kApart},
+      {"cost, from another source", in_all(rebuilt("problem", honest(jacobian_for_one))), kApart,
+       kApart},
+      {"aim x → loss, from another source", in_one_of_x(rebuilt("problem", loss_sought)), kApart,
+       kApart},
   };
 }
 
@@ -261,9 +261,9 @@ std::vector<Fault> cell_faults() {
       {"cut by a clock with the same status",
        in_one([](Record& r) { r.is_nondeterministic = true; }), kApart, kApart},
       {"two records of one cell", add_double, kApart, kApart},
-      {"seed field edited", in_one([](Record& r) { r.request.seed = 7; }), kCaught, kCaught},
+      {"seed field edited", in_one([](Record& r) { r.request.seed = 7; }), kCaught, kCaught, true},
       {"budget field edited", in_one([](Record& r) { r.request.budget.iterations = 7; }), kCaught,
-       kCaught},
+       kCaught, true},
       {"declared budget truncated",
        in_one(asked_otherwise([](Record& r) { r.request.budget.iterations = 7; })), kBad, kBad},
       {"changed default with worse work", in_one(asked_otherwise([](Record& r) {
@@ -393,6 +393,9 @@ TEST_F(Faults, InTimesCountsAndTargetsBreakAnInvariantEach) {
       {"order of times", [](Record& r) { std::ranges::reverse(r.curve.wall_seconds); }},
       {"times of hits", [](Record& r) { r.hits->wall_seconds[0] = -1; }},
       {"forwards of hits", [](Record& r) { ++r.hits->forwards[2]; }},
+      {"cell", [](Record& r) { r.cell = std::string(16, '0'); }},
+      {"seed", [](Record& r) { ++r.request.seed; }},
+      {"budget", [](Record& r) { r.request.budget.stall = 0; }},
       {"targets of hits", [](Record& r) { r.hits->target[2] /= 2; }}};
   for (const auto& [name, edit] : edits) {
     Record record = sound_records()[2];

@@ -105,6 +105,7 @@ TEST(Figures, PicturesAreReadFromTheFileBesideTheRecord) {
   fields.numbers = {1, 3, 2, 4, 9, 11, 10, 12, 0, 0, 0, 0, 5, 7, 6, 8};  // y*, x*, x at 0 and at 9
   fields.digest = digest(field_file(fields));
   record.fields = fields;
+  record.cell = cell_digest(record.request);
   const ResultFolder folder;
   folder.add(record);
   folder.add(sine_sheet({{.title = "6", .kind = "pictures"}}));
@@ -182,7 +183,7 @@ TEST(Sweeps, DrawTheMediansOverSeedsOfAllThatDiffersInTwoOptions) {
   EXPECT_TRUE(map.rows[0][2].is_best);
   EXPECT_EQ(map.rows[1][0].text, "1");
   EXPECT_EQ(map.rows[1][1].text, "3");
-  EXPECT_EQ(map.rows[1][1].shade, 1) << "within a factor of two";
+  EXPECT_EQ(map.rows[1][1].shade, 1) << "within a factor 2";
   for (const char* part : {" 1.5", "kappa = 0.5", "rate = 1;", "6 of 6 settings"})
     EXPECT_TRUE(has(map.reading, part)) << part;
   EXPECT_TRUE(has(map.caption, "3 seeds, 100 iterations"));

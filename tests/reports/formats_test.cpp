@@ -253,6 +253,28 @@ TEST(Rerun, TheCommandAsksForTheCell) {
             "--rates none");
   request.budget.work = 500;
   EXPECT_TRUE(has(rerun_command(request), " --work 500"));
+  request.budget.stall = 0;
+  EXPECT_TRUE(has(rerun_command(request), " --stall never"));
+  request.problem.foreign = Foreign{.door = "plugin", .command = "my lib.so"};
+  EXPECT_TRUE(has(rerun_command(request), " --plugin 'my lib.so'"));
+}
+
+// The new report.tex cannot be written.
+TEST(Report, ReplacesAnEarlierOneWholeOrNotAtAll) {
+  const TemporaryFolder owned;
+  const std::filesystem::path out = owned.path() / "report";
+  write_report(document_of(Compared(study_of({{"p", "a", 1}}))), out);
+  const std::string page = read_text(out / "index.html"), csv = read_text(out / "report.csv");
+  std::filesystem::path blocked = out / "report.tex";
+  for (int i = 0; i < 2; ++i) {
+    blocked = temporary_of(blocked);
+    std::filesystem::create_directories(blocked / "full");
+  }
+  EXPECT_ANY_THROW(write_report(document_of(Compared(study_of({{"p", "b", 1}}))), out));
+  EXPECT_EQ(read_text(out / "index.html"), page);
+  EXPECT_EQ(read_text(out / "report.csv"), csv);
+  for (const std::string& name : names_in(out))
+    EXPECT_FALSE(name.ends_with(".tmp") && is_abandoned(out / name)) << name;
 }
 
 // CSV that reads back, and COCO. tests/exchange/coco_test.py reads the data folders of COCO.

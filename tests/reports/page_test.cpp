@@ -246,7 +246,8 @@ Study study_of_means() {
     record.counts = {};
     record.counts[static_cast<std::size_t>(Oracle::forward)] = 1;
     record.counts[static_cast<std::size_t>(asked)] = 1;
-    if (asked == Oracle::inverse) record.privileges = {"exact inverse of the physics"};
+    if (asked == Oracle::inverse)
+      record.privileges = {std::string(name_of(Privilege::exact_inverse))};
   };
   for (const char* problem : {"a", "b", "c", "d", "e", "f"}) {
     study.sheets.push_back({.kind = "problem", .name = problem, .spec = problem, .unknowns = 20});
@@ -491,7 +492,7 @@ TEST_F(ShownFields, StandInTheArticleWithTheirUnitsScaleAndWhatIsMissing) {
   const std::string html = fields_html(c, *all);
   for (const char* words : {"<h4>Fields</h4>", "source, 1/m²", "±4", "potential", "x − x*",
                             "<output class=at>50</output>", "<output class=apart>= 0.1</output>",
-                            "aria-label=\"x of fast: source, 1/m², from 0.9 to 1.8\""})
+                            "source, 1/m², from 0.9 to 1.8\""})
     EXPECT_NE(html.find(words), std::string::npos) << words << " in " << html;
   std::size_t pictures = 0;
   for (std::size_t at = 0; (at = html.find("<canvas ", at)) != std::string::npos; ++at) ++pictures;
@@ -539,12 +540,13 @@ TEST_F(ShownHistory, IsDrawnFromTheBottomAndSaysSo) {
   const std::string html = fields_html(c, *all);
   const std::string truth = radix64("\xC0\x90");  // y* = 4, above x* = 1
   for (const std::string& words :
-       {truth, std::string("x* → y*"), std::string("x − x* → y − y*"), std::string("y at time 0.5"),
-        std::string("speed before → speed after"), std::string("in the top row")})
+       {truth, std::string("x* to y*"), std::string("x − x* to y − y*"),
+        std::string("y at time 0.5"), std::string("speed before to speed after"),
+        std::string("top row")})
     EXPECT_NE(html.find(words), std::string::npos) << words << " in " << html;
   const Json json = parse_json(fields_json(*all), "fields");
   EXPECT_EQ(json.at("truth"), truth);
-  EXPECT_EQ(json.at("labels"), Json({"x → y", "x − x* → y − y*"}));
+  EXPECT_EQ(json.at("labels"), Json({"x to y", "x − x* to y − y*"}));
 }
 
 TEST_F(ShownHistory, OfOlderRunsThatKeptXAloneIsNone) {

@@ -1,11 +1,15 @@
 // Tables of statistics, costs, amortized training and the audit: cases computed by hand.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <nlohmann/json.hpp>
 
+#include "core/errors.h"
+#include "core/files.h"
 #include "core/json.h"
 #include "core/results/study.h"
 #include "core/seeds.h"
@@ -26,6 +30,54 @@ TEST(Tables, DataProfileCountsForwardSolvesAndKeepsFailures) {
   EXPECT_EQ(at(table, "a", "≤ 100"), "33 %");
   EXPECT_EQ(at(table, "a", "≤ 1000"), "67 %");
   EXPECT_EQ(at(table, "a", "n problems"), "3");
+}
+
+Record regression_of(const char* optimizer, const char* dataset, Index start, Real x_error) {
+  Record record = record_of({.problem = "nist", .optimizer = optimizer});
+  record.request.problem.options = {{"dataset", std::string(dataset)}, {"start", start}};
+  record.request.problem.spec = fmt::format("nist[dataset={},start={}]", dataset, start);
+  record.cell = digest(record.request.problem.spec + optimizer);
+  record.summary.x_error = x_error;
+  return record;
+}
+
+// Digits 8, 5 and 3 by one method, 9 and of an error above 1 by the other; eleven are certified.
+TEST(Tables, CertifiedDigitsAreThoseOfTheWorstParameter) {
+  const Compared c({regression_of("lm", "Rat42", 1, 1e-8), regression_of("lm", "Rat42", 2, 1e-5),
+                    regression_of("lm", "BoxBOD", 1, 1e-3), regression_of("gd", "Rat42", 1, 7),
+                    regression_of("gd", "BoxBOD", 2, 1e-13)});
+  const Table table = certified_table(c);
+  EXPECT_EQ(at(table, "lm", "mean LRE"), "5.33");
+  EXPECT_EQ(at(table, "lm", "solved"), "2");
+  EXPECT_EQ(at(table, "lm", "accurate"), "1");
+  EXPECT_EQ(at(table, "lm", "Rat42"), "8.0 / 5.0");
+  EXPECT_EQ(at(table, "gd", "mean LRE"), "5.50");
+  EXPECT_EQ(at(table, "gd", "BoxBOD"), "11.0");
+  EXPECT_EQ(table.rows[0][0].text, "gd");
+  EXPECT_EQ(table.rows.size(), 2U + 6);
+  EXPECT_EQ(certified_table(Compared(study_of({{"p", "a", 1}}))).id, "");
+}
+
+TEST(Tables, StandardDeviationsAreOfTheBestRunOfAProblem) {
+  Record best = record_of({.problem = "square", .optimizer = "gd"});
+  best.uncertainty = {.x = {1, 2},
+                      .standard_deviation = {0.1, 0.2},
+                      .correlation = {{1, -0.5}, {-0.5, 1}},
+                      .variance = 4,
+                      .degrees_of_freedom = 7,
+                      .condition = 3};
+  Record other = record_of({.problem = "square", .optimizer = "adam", .work_per_hit = 9});
+  other.uncertainty = best.uncertainty;
+  other.uncertainty->x = {5, 6};
+  const std::vector<Table> tables = uncertainty_tables(Compared({best, other}));
+  ASSERT_EQ(tables.size(), 1U);
+  EXPECT_EQ(at(tables[0], "x1", "x"), "1");
+  EXPECT_EQ(at(tables[0], "x2", "standard deviation"), "0.2");
+  EXPECT_EQ(at(tables[0], "x2", "strongest correlation"), "-0.5 with x1");
+  EXPECT_EQ(record_from_text(file_text(best), "").uncertainty->correlation,
+            best.uncertainty->correlation);
+  best.uncertainty->x.pop_back();
+  EXPECT_THROW(record_from_text(file_text(best), ""), UsageError);
 }
 
 // A loss from −1 to −5 with f_L = −5, read off the curve, as of records without hits.
@@ -123,6 +175,23 @@ Sheet sheet_of(const char* problem, Real condition) {
   return sheet;
 }
 
+// With n = 2, 10 (n + 1) are 30 forward solves; work to 1e-5 and 1e-7 is 25 and 35 on p and ten
+// times that on q; r reaches neither.
+TEST(Tables, TheProfileOfMoreAndWildCountsMultiplesOfTheUnknowns) {
+  Study study = study_of({{"p", "a", 1}, {"q", "a", 10}, {"r", "a", 0}});
+  for (const char* problem : {"p", "q", "r"}) study.sheets.push_back(sheet_of(problem, 1));
+  const Table table = simplex_profile_table(Compared(study));
+  for (const auto& [column, share] : std::map<std::string, std::string>{{"1e-5, 10", "33 %"},
+                                                                        {"1e-5, 100", "67 %"},
+                                                                        {"1e-7, 10", "0 %"},
+                                                                        {"1e-7, 100", "33 %"},
+                                                                        {"1e-7, 1000", "67 %"},
+                                                                        {"n problems", "3"}})
+    EXPECT_EQ(at(table, "a", column), share) << column;
+  study.sheets.pop_back();
+  EXPECT_TRUE(simplex_profile_table(Compared(study)).id.empty()) << "the size of r is unknown";
+}
+
 // On p all but x are found: its error falls as the loss to the power 1/20. On q both are.
 Study both_kinds() {
   return {.runs = {run_of("p", "gd", 0.05), run_of("q", "gd", 1), run_of("p", "newton", 0.05, 11),
@@ -143,7 +212,7 @@ TEST(LossWithoutX, IsCountedByMethodWithTheConditionNumberBeside) {
   EXPECT_EQ(at(table, "newton", "loss, not x"), "1");
   EXPECT_EQ(at(table, "newton", "x not near"), "0");
   EXPECT_EQ(at(table, "newton", "worst conditioned"), "q (singular)");
-  EXPECT_TRUE(has(table.reading, " 3 reach a loss of 1e-6, and 1")) << table.reading;
+  EXPECT_TRUE(has(table.reading, " 3 reach a loss of 1e-6")) << table.reading;
 }
 
 TEST(LossWithoutX, SaysWhereNeitherCanBeTold) {
@@ -233,7 +302,8 @@ TEST(Costs, StandBesideTheRawCounts) {
   const Compared c(Study{.runs = {counted()}, .sheets = {priced("square", 2.5)}});
   const Table table = calls_table(c);
   EXPECT_EQ(at(table, "gd", "pullback"), "30");
-  EXPECT_TRUE(has(table.reading, " 60 forward solves at nominal cost, and 105 ")) << table.reading;
+  for (const char* part : {" 60 forward solves", " 105 "})
+    EXPECT_TRUE(has(table.reading, part)) << table.reading;
   EXPECT_TRUE(has(prices_table(c).rows[0].back().text, "1 : 2.5 [2.5–2.5]"));
   const Json cell = parse_json(json_report(document_of(c)), "report.json").at("cells")[0];
   EXPECT_EQ(cell.at("costs").at("1e-6").at("median"), 105);
@@ -320,8 +390,9 @@ struct Shown {
   }
   const TableCell& cell(std::size_t row, const std::string& column) const {
     const Table& table = section.tables.at(0);
-    const auto at = std::ranges::find(table.columns, column) - table.columns.begin();
-    return table.rows.at(row).at(static_cast<std::size_t>(at));
+    const auto at = std::ranges::find_if(
+        table.columns, [&](const std::string& name) { return name.starts_with(column); });
+    return table.rows.at(row).at(static_cast<std::size_t>(at - table.columns.begin()));
   }
   std::string text(std::size_t row, const std::string& column) const {
     return cell(row, column).text;
@@ -332,7 +403,7 @@ struct Shown {
   }
 };
 
-constexpr const char* kSolved = "solver to that error, ms";
+constexpr const char* kSolved = "solver to that error";
 
 // 300·2⁻⁶ s of training and 2⁻¹⁰ s each, against 2⁻⁶ s more than that.
 TEST(Amortized, TrainingPaysFromSoManyInstancesAsItsTimeHoldsSavings) {
@@ -477,7 +548,7 @@ TEST(AuditTable, TellsThePageWhichMethodARowIsAbout) {
 TEST(AuditTable, IsReadForANewcomer) {
   const std::vector<Reading> readings = property_readings(samples());
   ASSERT_EQ(readings.size(), 6U);
-  EXPECT_TRUE(has(readings[0].text, " large ones are needed: gd"));
+  EXPECT_TRUE(has(readings[0].text, " needed: gd"));
   EXPECT_TRUE(has(readings[0].text, "L is zero."));
   EXPECT_TRUE(has(readings[2].text, "(order 2): gd"));
   EXPECT_TRUE(has(readings.back().text, "gd declares"));

@@ -1,10 +1,11 @@
 // Texts for readers use the words that CONTRIBUTING.md lists ("English"): none of the phrases below
-// occurs in the pages or in the folders that are named here.
+// occurs in the pages or in the folders that are named here. Tests do not quote those texts.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cctype>
 #include <regex>
+#include <set>
 #include <string_view>
 
 #include "tests/structure/sources.h"
@@ -181,6 +182,58 @@ TEST(Vocabulary, OfSourcesIsPlain) {
             << entry.path() << ": begin with a noun: " << line;
       }
     }
+}
+
+// --- tests, which quote at most four successive words of a text of the product
+
+// Separated by bars; a literal at the end of a line goes on in the next.
+std::string literals_of(const std::filesystem::path& file) {
+  static const std::regex literal(R"re("((?:[^"\\]|\\.)*)"|'((?:[^'\\]|\\.)*)'|//.*)re");
+  std::string text;
+  if (file.extension() == ".txt") return read_text(file);  // reports/words
+  for (const std::string& line : lines_of(read_text(file)))
+    for (std::sregex_iterator it(line.begin(), line.end(), literal), end; it != end; ++it)
+      text += (*it)[1].str() + (*it)[2].str() + (it->suffix().length() == 0 ? " " : " | ");
+  return text;
+}
+
+// All five successive words. Numbers and placeholders do not separate them; options and code do.
+std::set<std::string> phrases_of(const std::string& text) {
+  static const std::regex word(R"re([.,:;()'`]*([a-z]+(?:['-][a-z]+)*)[.,:;()'`?!]*)re"),
+      number(R"re([\d.,:×%]+|\{\S*)re");
+  std::vector<std::string> last;
+  std::set<std::string> phrases;
+  std::istringstream tokens(lower(text));
+  std::smatch match;
+  for (std::string token; tokens >> token;) {
+    if (std::regex_match(token, number)) continue;
+    const bool is_word = std::regex_match(token, match, word);
+    last.push_back(is_word ? match[1].str() : "");
+    if (!is_word) last.clear();
+    if (last.size() < 5) continue;
+    std::string phrase;
+    for (const std::string& each : last) phrase += each + ' ';
+    phrases.insert(phrase);
+    last.erase(last.begin());
+  }
+  return phrases;
+}
+
+std::set<std::string> phrases_below(const char* folder) {
+  std::set<std::string> all;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(root() / folder))
+    if (std::set<std::string>{".cpp", ".h", ".py", ".txt"}.contains(entry.path().extension()))
+      all.merge(phrases_of(literals_of(entry.path())));
+  return all;
+}
+
+TEST(Quotations, OfTextsInTestsHaveAtMostFourWords) {
+  EXPECT_EQ(phrases_of("{}: one of 3 is at `least`.").count("one of is at least "), 1U);
+  const std::set<std::string> tests = phrases_below("tests");
+  for (const char* folder :
+       {"core", "networks", "problems", "optimizers", "benchmarks", "reports", "clients"})
+    for (const std::string& phrase : phrases_below(folder))
+      EXPECT_FALSE(tests.contains(phrase)) << folder << " has the words: " << phrase;
 }
 
 }  // namespace

@@ -1,0 +1,106 @@
+// isoline choose DIR... --have forward,gradient: the methods that suit a user's simulator, by the
+// runs of a study.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <ranges>
+
+#include "benchmarks/cli/terminal.h"
+#include "benchmarks/cli/verb.h"
+#include "core/errors.h"
+#include "core/results/advice.h"
+#include "core/results/study.h"
+#include "core/text.h"
+#include "reports/report.h"
+#include "reports/sections/sections.h"
+#include "reports/sections/words.h"
+
+namespace isoline::benchmarks {
+namespace {
+
+using results::Derivatives;
+using results::Means;
+
+struct ChooseArguments {
+  std::vector<std::string> folders, have = {"forward"};
+  int unknowns = 0;
+  double noise = 0, tolerance = 1e-6;
+  std::int64_t budget = kMostAmount;
+};
+
+void declare(VerbArguments& verb, ChooseArguments& given) {
+  std::vector<std::string> offers(results::kDerivativeNames.begin(),
+                                  results::kDerivativeNames.end());
+  offers.emplace_back("inverse");
+  verb.texts("DIR", given.folders, kFolders).required();
+  verb.texts("--have", given.have,
+             "What the simulator computes; each kind includes the kinds before it")
+      .one_of(offers)
+      .between_commas()
+      .shown("forward");
+  verb.whole(
+      "--unknowns", given.unknowns,
+      "Number of unknowns; problems of its class are used: up to 10, 11 to 100, more than 100 "
+      "(default: all)",
+      {.low = 0, .high = 1'000'000'000});
+  verb.real("--noise", given.noise, between(0, 10),
+            "Noise in the data, relative to the root mean square of the data");
+  verb.whole("--budget", given.budget, "Forward solves that a run may cost (default: any)");
+  verb.real("--tolerance", given.tolerance, between(1e-10, 1),
+            "Relative tolerance, as in `isoline report`")
+      .shown("1e-6");
+}
+
+Means means_of(const ChooseArguments& given) {
+  Means means{.noise = given.noise};
+  for (const std::string& one : given.have) {
+    const auto at = std::ranges::find(results::kDerivativeNames, one);
+    if (at == results::kDerivativeNames.end()) means.has_inverse = true;
+    if (at != results::kDerivativeNames.end())
+      means.derivatives = std::max(
+          means.derivatives, static_cast<Derivatives>(at - results::kDerivativeNames.begin()));
+  }
+  if (given.budget < kMostAmount) means.budget = static_cast<Real>(given.budget);
+  for (const auto& [least, most] : results::kSizeClasses)
+    if (given.unknowns > 0 && given.unknowns >= least && given.unknowns <= most) {
+      means.least_unknowns = least;
+      means.most_unknowns = most;
+    }
+  return means;
+}
+
+int run(const ChooseArguments& given, Session&) {
+  const results::Study study =
+      reports::read_study(given.folders, progress_on_terminal("reading records"));
+  require(!study.runs.empty(), "no records: `isoline run --out FOLDER` writes them");
+  const results::Comparison comparison = results::compare_optimizers(
+      study, reports::yardstick_at(reports::Measure::work, given.tolerance));
+  const Means means = means_of(given);
+  const results::Advice advice = results::advise(comparison, means);
+  require(!advice.settings.empty(),
+          [&] { return reports::means_text(means) + ": these results have no such problem"; });
+  say(stdout, reports::advice_text(comparison, means, advice) + "\n");
+  constexpr std::size_t kShown = 10;
+  for (const results::Advised& one : advice.ranked | std::views::take(kShown))
+    say(stdout,
+        fmt::format("  {} {:28} solves {:2}/{}  work {:>8}  score {:.2f}\n",
+                    one.is_in_group ? '*' : ' ', comparison.optimizers[one.optimizer].name_of_all(),
+                    one.solved, advice.settings.size(), reports::figure(one.work), one.score));
+  return kGood;
+}
+
+}  // namespace
+
+void register_choose(VerbRegistry& registry) {
+  registry.add(verb_of(
+      {.name = "choose",
+       .help_position = 45,
+       .summary = "Name the methods that suit a simulator, by the runs of a study",
+       .examples = "  isoline choose results/quick --have forward,gradient --unknowns 50\n"
+                   "  isoline choose results/quick --have forward --budget 1000",
+       .notes = "The first sentence is also in the report, in the tab 'What do you have?'. Methods "
+                "marked * are not significantly worse than the first."},
+      declare, run));
+}
+
+}  // namespace isoline::benchmarks

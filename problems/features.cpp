@@ -1,0 +1,335 @@
+// Any direct problem with noise, another model, scaled and rotated unknowns, few digits, or a
+// penalty.
+#include "problems/features.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "core/decompose.h"
+#include "core/errors.h"
+
+namespace isoline::problems {
+namespace {
+
+// x = S Q z.
+struct Map {
+  Vector scales;    // of S, (k); empty: all 1
+  Matrix rotation;  // Q, (k, k); empty: identity
+
+  bool is_identity() const { return scales.size() == 0 && rotation.size() == 0; }
+  Matrix to_x(BatchRef z) const {
+    Matrix x = rotation.size() > 0 ? Matrix(rotation * z) : Matrix(z);
+    if (scales.size() > 0) x.array().colwise() *= scales.array();
+    return x;
+  }
+  Matrix transposed(BatchRef x) const {
+    Matrix z = x;
+    if (scales.size() > 0) z.array().colwise() *= scales.array();
+    return rotation.size() > 0 ? Matrix(rotation.transpose() * z) : z;
+  }
+  Matrix to_z(BatchRef x) const {
+    Matrix z = x;
+    if (scales.size() > 0) z.array().colwise() /= scales.array();
+    return rotation.size() > 0 ? Matrix(rotation.transpose() * z) : z;
+  }
+};
+
+Map map_of(const Features& features, Index k, const Draw& draw) {
+  Map map;
+  if (features.scale != 1) {
+    map.scales.resize(k);
+    for (Index i = 0; i < k; ++i) {
+      const Real share = k > 1 ? static_cast<Real>(i) / static_cast<Real>(k - 1) : 1;
+      map.scales[i] = std::pow(features.scale, share - 0.5);
+    }
+  }
+  if (features.rotate) {
+    constexpr Index kMost = 2048;
+    require(k <= kMost, [&] {
+      return fmt::format("rotate=true requires at most {} unknowns, got {}", kMost, k);
+    });
+    RandomStream stream = draw.stream("rotate");
+    const Matrix normal = stream.normal_vector(k * k).reshaped(k, k);
+    SymmetricEigen random;  // its eigenvectors have no preferred direction
+    require(symmetric_eigen(normal + normal.transpose(), random), "no rotation was found");
+    map.rotation = std::move(random.V);
+  }
+  return map;
+}
+
+// To so many significant digits, toward 0.
+void round_values(BatchOut y, Index digits) {
+  for (Real& value : y.reshaped()) {
+    if (value == 0 || !std::isfinite(value)) continue;
+    const Real places = static_cast<Real>(digits - 1) - std::floor(std::log10(std::abs(value)));
+    const Real unit = std::pow(10.0, places);
+    value = std::trunc(value * unit) / unit;
+  }
+}
+
+// The workspace of the physics inside, at x.
+struct Inside final : Scratch, Pieces {
+  Workspace w;
+  void add_choices(PieceDigest& digest) override {
+    if (auto* pieces = dynamic_cast<Pieces*>(w.own.get())) pieces->add_choices(digest);
+  }
+};
+
+class Featured final : public Physics {
+ public:
+  Featured(std::unique_ptr<Physics> inside, Map map, const Features& features)
+      : inside_(std::move(inside)),
+        map_(std::move(map)),
+        digits_(features.digits),
+        order_(features.order),
+        weight_(std::sqrt(features.tikhonov)) {}
+
+  Index inputs() const override { return inside_->inputs(); }
+  Index outputs() const override { return m() + penalties(); }
+  Index penalties() const { return weight_ > 0 ? inputs() - order_ : 0; }
+  const Map& map() const { return map_; }
+
+  void forward(BatchRef z, BatchRef c, BatchOut y, Workspace& w) const override {
+    Workspace& in = w.as<Inside>().w;
+    in.x = map_.to_x(z);
+    in.context = c;
+    in.saved_is_current = false;
+    inside_->forward(in.x, c, y.topRows(m()), in);
+    if (digits_ > 0) round_values(y.topRows(m()), digits_);
+    penalize(in.x, y);
+  }
+  void pushforward(BatchRef v, BatchOut Jv, Workspace& w) const override {
+    const Matrix dx = map_.to_x(v);
+    inside_->pushforward(dx, Jv.topRows(m()), w.as<Inside>().w);
+    penalize(dx, Jv);
+  }
+  void pullback(BatchRef u, BatchOut JTu, Workspace& w) const override {
+    Matrix dx(inputs(), u.cols());
+    inside_->pullback(u.topRows(m()), dx, w.as<Inside>().w);
+    const auto rows = u.bottomRows(penalties());
+    if (penalties() > 0) {
+      dx.bottomRows(penalties()) += weight_ * rows;
+      if (order_ == 1) dx.topRows(penalties()) -= weight_ * rows;
+    }
+    JTu = map_.transposed(dx);
+  }
+  void jacobian(BatchOut J, Workspace& w) const override {
+    const Index k = inputs();
+    inside_->jacobian(J.topRows(m()), w.as<Inside>().w);
+    for (Index b = 0; b < J.cols() / k; ++b) {
+      auto block = J.middleCols(b * k, k);
+      penalize(Matrix::Identity(k, k), block);
+      if (!map_.is_identity()) block = map_.transposed(block.transpose()).transpose().eval();
+    }
+  }
+  Products products() const override { return inside_->products(); }
+  bool is_elsewhere() const override { return inside_->is_elsewhere(); }
+
+  bool has_curvature() const override { return inside_->has_curvature(); }
+  void curvature(BatchRef u, BatchOut out, Workspace& w) const override {
+    const Index k = inputs();
+    inside_->curvature(u.topRows(m()), out, w.as<Inside>().w);
+    if (map_.is_identity()) return;
+    for (Index b = 0; b < u.cols(); ++b) {
+      auto block = out.middleCols(b * k, k);
+      block = map_.transposed(map_.transposed(block).transpose()).eval();
+    }
+  }
+  void curvature_product(BatchRef u, BatchRef v, BatchOut out, Workspace& w) const override {
+    inside_->curvature_product(u.topRows(m()), map_.to_x(v), out, w.as<Inside>().w);
+    if (!map_.is_identity()) out = map_.transposed(out);
+  }
+
+  Inverse inverse_kind() const override {
+    if (weight_ > 0) return Inverse::none;
+    const Inverse kind = inside_->inverse_kind();
+    return digits_ > 0 && kind == Inverse::exact ? Inverse::approximate : kind;
+  }
+  Index inverse_price() const override { return inside_->inverse_price(); }
+  Success local_inverse(BatchRef y, BatchRef z0, BatchRef c, BatchOut z) const override {
+    const Success success = inside_->local_inverse(y, map_.to_x(z0), c, z);
+    z = map_.to_z(z);
+    return success;
+  }
+
+ private:
+  Index m() const { return inside_->outputs(); }
+  // The rows √α D x below those of P.
+  void penalize(BatchRef x, BatchOut y) const {
+    if (penalties() == 0) return;
+    auto rows = y.bottomRows(penalties());
+    rows = weight_ * x.bottomRows(penalties());
+    if (order_ == 1) rows -= weight_ * x.topRows(penalties());
+  }
+
+  std::unique_ptr<Physics> inside_;
+  Map map_;
+  Index digits_, order_;
+  Real weight_;  // √α
+};
+
+// The parts of the problem in z, with the penalty. Pictures and series of x do not fit it.
+void wrap(ProblemParts& parts, Map map, const Features& features) {
+  auto physics = std::make_unique<Featured>(std::move(parts.physics), std::move(map), features);
+  const Map& to = physics->map();
+  parts.start = {to.to_z(parts.start.drawn).reshaped(), to.to_z(parts.start.standard).reshaped()};
+  if (parts.truth) parts.truth = to.to_z(*parts.truth);
+  if (!to.is_identity() && parts.x_error)
+    parts.x_error = [inner = parts.x_error, to](BatchRef z, const Batch& batch) {
+      Batch in_x = batch;
+      if (in_x.truth.size() > 0) in_x.truth = to.to_x(batch.truth);
+      return inner(to.to_x(z), in_x);
+    };
+  const Index rows = physics->penalties();
+  if (rows > 0) {
+    parts.target.conservativeResize(parts.target.rows() + rows, Eigen::NoChange);
+    parts.target.bottomRows(rows).setZero();
+  }
+  if (!to.is_identity() || rows > 0) {
+    parts.field.reset();
+    parts.history = {};
+    parts.series = {};
+    parts.window.reset();
+    parts.y_window.reset();
+  }
+  parts.physics = std::move(physics);
+}
+
+// (m)
+Vector noise_of(const Features& features, const Vector& target, RandomStream stream) {
+  const auto m = static_cast<Real>(target.size());
+  const Real rms = target.norm() / std::sqrt(m), sigma = features.noise * rms;
+  require(rms > 0, "noise is relative to the root mean square of y*, which is 0");
+  if (features.noise_kind == "uniform") {
+    const Real half = sigma * std::sqrt(3.0);
+    return stream.uniform_vector(target.size(), -half, half);
+  }
+  Vector noise = sigma * stream.normal_vector(target.size());
+  if (features.noise_kind == "outliers") {
+    constexpr Real kShare = 0.1, kFactor = 10;
+    for (Real& value : noise)
+      if (stream.uniform() < kShare) value *= kFactor;
+  }
+  return noise;
+}
+
+constexpr Index kMostFitted = 512;  // unknowns
+
+// The loss of the least-squares fit from x, by Levenberg and Marquardt's method.
+Real fitted_loss(const Problem& problem, Vector x) {
+  constexpr int kMost = 200;
+  Point at;
+  Matrix J;
+  Vector r(problem.residuals());
+  problem.forward(x, at);
+  Real loss = at.loss, damping = 1e-3;
+  for (int i = 0; i < kMost && damping < 1e12; ++i) {
+    problem.forward(x, at);
+    problem.jacobian(J, at);
+    problem.residual(at, r);
+    Vector sizes = J.colwise().norm();
+    sizes = sizes.array().max(1e-12 * sizes.maxCoeff());
+    Matrix stacked(J.rows() + J.cols(), J.cols());
+    stacked << J, (std::sqrt(damping) * sizes).asDiagonal().toDenseMatrix();
+    Vector right = Vector::Zero(stacked.rows());
+    right.head(r.size()) = -r;
+    Vector step;
+    if (!least_squares(stacked, right, 0, step)) return loss;
+    const Vector next = x + step;
+    problem.forward(next, at);
+    if (!(at.loss < loss)) {
+      damping *= 8;
+      continue;
+    }
+    x = next;
+    loss = at.loss;
+    damping /= 8;
+  }
+  return loss;
+}
+
+// The least distance from x* of a truncated-SVD solution with the Jacobian at x*, from x₀:
+//   e_c = Σ_{i ≤ c} (uᵢᵀ e / σᵢ) vᵢ − Σ_{i > c} (vᵢᵀ (x* − x₀)) vᵢ,   e = y* − P(x*)
+Real truncated_floor(const Problem& problem, const Vector& truth) {
+  const Vector& start = problem.standard_start();
+  Point at;
+  Matrix J;
+  problem.forward(truth, at);
+  problem.jacobian(J, at);
+  const Vector e = (problem.target() - at.y).reshaped();
+  Svd svd;
+  require(thin_svd(J, svd), "the Jacobian at x* has no singular value decomposition");
+  const Vector data = svd.U.transpose() * e;
+  const Vector missing = svd.Vt * (truth - start);
+  Real squared = (truth - start).squaredNorm(), least = squared;
+  for (Index i = 0; i < data.size() && svd.sigma[i] > 0; ++i) {
+    squared += std::pow(data[i] / svd.sigma[i], 2) - std::pow(missing[i], 2);
+    least = std::min(least, squared);
+  }
+  return std::sqrt(std::max<Real>(least, 0));
+}
+
+}  // namespace
+
+OptionTable feature_table(const OptionTable& own) {
+  OptionTable table = option_table<Features>();
+  std::erase_if(table, [&](const OptionField& field) {
+    return std::ranges::find(own, field.name, &OptionField::name) != own.end();
+  });
+  return table;
+}
+
+Problem with_features(Problem plain, const OptionValues& options, const Draw& draw,
+                      const std::optional<Matrix>& target) {
+  if (options.empty()) return plain;
+  const Features features =
+      read_options<Features>(complete_options(option_table<Features>(), "features", options));
+  require(!plain.is_learned(), "noise, model, scale and the other features require mode=direct");
+  require(features.tikhonov == 0 || plain.is_least_squares(),
+          "tikhonov requires a least-squares loss");
+  require(features.tikhonov > 0 || features.order == 0, "order=1 requires tikhonov above 0");
+  require(features.noise > 0 || features.noise_kind == "gaussian",
+          "noise-kind requires noise above 0");
+
+  const Index k = plain.inputs(), m = plain.outputs();
+  const bool is_inexact = features.noise > 0 || features.digits > 0 || target.has_value();
+  const bool is_fitted = plain.truth() && plain.is_least_squares() && k <= kMostFitted &&
+                         plain.offers().contains(Oracle::jacobian);
+  const Vector truth = plain.truth() ? Vector(plain.truth()->reshaped()) : Vector();
+  const std::optional<Real> least = plain.minimum();
+  const Real x_scale = plain.x_scale(plain.batch());
+
+  ProblemParts parts = std::move(plain).parts();
+  parts.network.reset();
+  parts.x_scale = x_scale;
+  if (target) {
+    require(target->rows() == m, "the options in model must not change the number of observations");
+    parts.target = *target;
+  }
+  if (features.noise > 0)
+    parts.target += noise_of(features, parts.target.reshaped(), draw.stream("noise"));
+  if (features.digits > 0) round_values(parts.target, features.digits);
+  if (is_inexact) parts.x_floor = {};
+  if (is_inexact && is_fitted) {
+    Problem inexact(std::move(parts));
+    const Real floor = truncated_floor(inexact, truth);
+    parts = std::move(inexact).parts();
+    parts.network.reset();
+    parts.x_floor = [floor](const Batch&) { return floor; };
+  }
+  Map map = map_of(features, k, draw);
+  const bool is_mapped = !map.is_identity();
+  if (is_mapped || features.digits > 0 || features.tikhonov > 0)
+    wrap(parts, std::move(map), features);
+  if (features.noise == 0 && !target && features.tikhonov == 0) return Problem(std::move(parts));
+  parts.minimum.reset();
+  parts.minimum_error = 0;
+  Problem featured(std::move(parts));
+  if (is_fitted && least) featured.set_minimum(fitted_loss(featured, featured.truth()->reshaped()));
+  return featured;
+}
+
+}  // namespace isoline::problems

@@ -1,0 +1,51 @@
+// Features that any direct problem can have, as options: noise in the data, data of another model,
+// badly scaled or rotated unknowns, few digits, regularization. At their defaults they stand in no
+// spec, no record and no cell.
+#pragma once
+
+#include <optional>
+
+#include "core/options.h"
+#include "problems/problem.h"
+
+namespace isoline::problems {
+
+struct Features {
+  Real noise = 0;
+  std::string noise_kind = "gaussian", model;
+  Real scale = 1;
+  bool rotate = false;
+  Index digits = 0;
+  Real tikhonov = 0;
+  Index order = 0;
+};
+inline void fields(Features& o, auto& field) {
+  field("noise", o.noise, between(0, 10),
+        "standard deviation of the noise, divided by the rms of y*");
+  field("noise-kind", o.noise_kind, {"gaussian", "uniform", "outliers"},
+        "distribution of the noise; outliers: one value in ten has ten times the deviation");
+  field("model", o.model, {}, "options of the variant of P that makes y*, as \"steps=32\"");
+  field("scale", o.scale, between(1, 1e12), "ratio of the largest to the smallest scale of x");
+  field("rotate", o.rotate, "random rotation of x, before it is scaled");
+  field("digits", o.digits, between(0, 16), "significant digits of y; 0: all");
+  field("tikhonov", o.tikhonov, between(0, 1e12), "α of the penalty ½α‖Dx‖²");
+  field("order", o.order, between(0, 1),
+        "D of the penalty; 0: identity, 1: differences of neighbours");
+}
+
+// Without names that the problem itself declares.
+OptionTable feature_table(const OptionTable& own);
+
+// `target`: y* of another model, (m, 1), in place of the problem's own.
+//
+// x = S Q z for the unknowns z that an optimizer sees, with Q orthogonal and S diagonal from
+// scale^-½ to scale^½; errors in x are those of x. With noise, or data of another model, no x makes
+// y*: f_L is then the loss of the least-squares fit from x*, and the floor of the error in x that
+// of the best truncated-SVD solution with the Jacobian at x*, from x₀ (Hansen 1998, section 3.2).
+// Both are missing where x* is unknown and above 512 unknowns.
+// UsageError if the problem is learned, if y* = 0 has noise, or for a penalty on another loss than
+// that of least squares.
+Problem with_features(Problem plain, const OptionValues& features, const Draw& draw,
+                      const std::optional<Matrix>& target = {});
+
+}  // namespace isoline::problems

@@ -1,0 +1,129 @@
+// The features of any direct problem: noise, another model, scaled and rotated unknowns, few
+// digits, a penalty.
+#include "problems/features.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+
+#include "tests/problems/make.h"
+
+namespace isoline::problems {
+namespace {
+
+Problem featured(const std::string& spec, const OptionValues& features, std::uint64_t seed = 0) {
+  return with_features(make(spec, seed), features, Draw(seed, spec));
+}
+
+TEST(Features, NoneIsThePlainProblem) {
+  const Problem plain = make("burgers[N=32]", 3), same = featured("burgers[N=32]", {}, 3);
+  EXPECT_EQ(plain.target(), same.target());
+  EXPECT_EQ(plain.start(), same.start());
+}
+
+TEST(Features, NoiseHasItsDeviationAndItsLossAtTheTruth) {
+  const Problem plain = make("poisson[N=32]");
+  const Real sigma = 0.02 * plain.target().norm() / 32, m = 1024;
+  for (const char* kind : {"gaussian", "uniform"}) {
+    const Problem noisy =
+        featured("poisson[N=32]", {{"noise", 0.02}, {"noise-kind", std::string(kind)}});
+    const Real expected = 0.5 * sigma * sigma * m;
+    EXPECT_NEAR(loss_at(noisy, noisy.truth()->reshaped()), expected, 0.2 * expected) << kind;
+    EXPECT_NE(noisy.target(), featured("poisson[N=32]", {{"noise", 0.02}}, 1).target());
+  }
+  const Problem outliers =
+      featured("poisson[N=32]", {{"noise", 0.02}, {"noise-kind", std::string("outliers")}});
+  EXPECT_GT((outliers.target() - plain.target()).cwiseAbs().maxCoeff(), 8 * sigma);
+}
+
+// With noise the least loss is that of a fit, and what the data allow in x is no longer 0.
+TEST(Features, ANoisyProblemHasALeastLossAndAFloor) {
+  const Problem noisy = featured("burgers[N=16]", {{"noise", 0.01}});
+  ASSERT_TRUE(noisy.minimum());
+  const Vector truth = noisy.truth()->reshaped();
+  EXPECT_GT(*noisy.minimum(), 0);
+  EXPECT_LE(*noisy.minimum(), loss_at(noisy, truth));
+  EXPECT_GT(noisy.x_floor(noisy.batch()), 0);
+  EXPECT_LT(noisy.x_floor(noisy.batch()), noisy.x_scale(noisy.batch()));
+  EXPECT_THROW(featured("rosenbrock", {{"noise", 0.01}}), UsageError) << "y* is 0";
+}
+
+// Jᵀ and J agree with differences of the loss; errors in x are those of the plain problem.
+TEST(Features, ScaledAndRotatedUnknownsAreTheSameProblem) {
+  const OptionValues mapped{{"scale", 1e3}, {"rotate", true}};
+  const Problem plain = make("burgers[N=16]"), other = featured("burgers[N=16]", mapped);
+  EXPECT_NEAR(loss_at_start(other), loss_at_start(plain), 1e-12 * loss_at_start(plain));
+  EXPECT_NEAR(other.x_error(*other.truth()), 0, 1e-12);
+  EXPECT_NEAR(other.x_error(other.start()), plain.x_error(plain.start()), 1e-12);
+  Vector z = other.start();
+  z.array() += 0.01;
+  const Vector g = gradient_at(other, z);
+  Vector step = Vector::Zero(z.size());
+  Point at;
+  other.forward(z, at);
+  Matrix J, Jv(other.outputs(), 1);
+  other.jacobian(J, at);
+  for (Index i = 0; i < z.size(); i += 7) {
+    step.setZero();
+    const Real h = step[i] = 1e-5 / std::max<Real>(1, J.col(i).norm());
+    const Real slope = (loss_at(other, z + step) - loss_at(other, z - step)) / (2 * h);
+    EXPECT_NEAR(g[i], slope, 1e-6 * g.norm());
+    step /= h;
+    other.pushforward(step, Jv, at);
+    EXPECT_NEAR((Jv - J.col(i)).norm(), 0, 1e-12 * J.col(i).norm());
+  }
+}
+
+TEST(Features, AnInverseFindsTheTruthThroughTheMap) {
+  const Problem other = featured("poisson[N=8]", {{"scale", 100.0}, {"rotate", true}});
+  Point at;
+  other.forward(other.start(), at);
+  Matrix z(other.inputs(), 1);
+  ASSERT_TRUE(other.local_inverse(other.target(), z, at).all());
+  EXPECT_NEAR(other.x_error(z), 0, 1e-10 * other.x_scale(other.batch()));
+}
+
+TEST(Features, FewDigitsAreAttainedAtTheTruthAlone) {
+  const Problem other = featured("burgers[N=16]", {{"digits", Index{4}}});
+  EXPECT_EQ(loss_at(other, other.truth()->reshaped()), 0);
+  EXPECT_GT(other.x_floor(other.batch()), 0);
+  for (const Real y : other.target().reshaped())
+    if (y != 0) {
+      const Real unit = std::pow(10, 3 - std::floor(std::log10(std::abs(y))));
+      EXPECT_NEAR(y * unit, std::round(y * unit), 1e-6);
+    }
+}
+
+// The minimum of a linear problem with a penalty: (AᵀA + αDᵀD) x = Aᵀy*.
+TEST(Features, APenaltyHasTheClosedFormOfALinearProblem) {
+  for (const Index order : {0, 1}) {
+    const Real alpha = 0.3;
+    const Problem other = featured("poisson[N=4]", {{"tikhonov", alpha}, {"order", order}});
+    const Index k = other.inputs();
+    Point at;
+    Matrix J;
+    other.forward(Vector::Zero(k), at);
+    other.jacobian(J, at);
+    ASSERT_EQ(J.rows(), 2 * k - order);
+    const Matrix A = J.topRows(k);
+    Matrix D = Matrix::Identity(k, k);
+    if (order == 1) {
+      D = Matrix::Zero(k - 1, k);
+      for (Index i = 0; i < k - 1; ++i) D(i, i) = -1, D(i, i + 1) = 1;
+    }
+    const Vector x = (A.transpose() * A + alpha * D.transpose() * D)
+                         .lu()
+                         .solve(A.transpose() * other.target().topRows(k).reshaped());
+    EXPECT_LE(gradient_at(other, x).norm(), 1e-10 * gradient_at(other, other.start()).norm());
+    ASSERT_TRUE(other.minimum());
+    EXPECT_NEAR(*other.minimum(), loss_at(other, x), 1e-10 * loss_at(other, x));
+  }
+}
+
+TEST(Features, AreForDirectProblemsOfLeastSquares) {
+  EXPECT_THROW(featured("sine[mode=learn]", {{"noise", 0.1}}), UsageError);
+  EXPECT_THROW(featured("poisson[N=4]", {{"order", Index{1}}}), UsageError);
+}
+
+}  // namespace
+}  // namespace isoline::problems
