@@ -56,19 +56,16 @@ struct Score {
 };
 
 Score score_of(const results::Table& table, std::size_t optimizer) {
-  constexpr Real kSolved = 4, kPrecise = 6;  // the first is the rule of Ceres' nist.cc
   const results::OptimizerAxis& axis = table.optimizers[optimizer];
   Score score{.name = axis.label + results::marks_text(axis.marks())};
   for (const results::Run& run : table.runs) {
     const Record& record = *run.record;
     if (run.optimizer != optimizer || !record.x_scale || record.status == Status::inapplicable)
       continue;
-    const Real lre = is_failure(record.status)
-                         ? 0
-                         : results::log_relative_error(record.summary.x_error / *record.x_scale);
+    const Real lre = results::returned_digits(record);
     ++score.runs;
-    score.solved += lre >= kSolved;
-    score.precise += lre >= kPrecise;
+    score.solved += lre >= results::kSolvedDigits;
+    score.precise += lre >= results::kAccurateDigits;
     score.digits += lre;
     score.calls += static_cast<Real>(record.counts[static_cast<std::size_t>(Oracle::forward)]);
   }

@@ -2,12 +2,10 @@
 #include "core/results/advice.h"
 
 #include <algorithm>
-#include <cstdlib>
 #include <map>
 #include <optional>
 #include <set>
 #include <string>
-#include <string_view>
 
 #include "core/oracle.h"
 
@@ -61,15 +59,8 @@ bool can_run(const Comparison& c, const Cell& cell, const Means& means) {
 // Whether its data are as noisy as the reader's.
 bool has_noise(const ProblemAxis& problem, Real noise) {
   constexpr Real kNear = 3;
-  constexpr std::string_view kOption = "noise=";
-  std::size_t at = problem.spec.find(kOption);
-  if (at != problem.spec.npos &&
-      (at == 0 || (problem.spec[at - 1] != '[' && problem.spec[at - 1] != ',')))
-    at = problem.spec.npos;
-  const Real of = at == problem.spec.npos
-                      ? 0
-                      : std::strtod(problem.spec.c_str() + at + kOption.size(), nullptr);
-  return noise == 0 ? of == 0 : of >= noise / kNear && of <= noise * kNear;
+  return noise == 0 ? problem.noise == 0
+                    : problem.noise >= noise / kNear && problem.noise <= noise * kNear;
 }
 
 // Classical and toy problems count where there is little physics of that size.

@@ -267,6 +267,7 @@ std::vector<ProblemAxis> problem_axis(const Study& study) {
     if (has_loss && !record.minimum && !record.imported) at->is_minimum_known = false;
     if (record.aim == Aim::x && record.x_scale) at->aim = Aim::x;
     at->is_learned = record.request.problem.is_learned;
+    at->noise = record.request.problem.options.number("noise", 0);
     if (at->aim == Aim::x && record.x_scale && could_declare)
       goals[at->spec].emplace(record.request.seed, x_goal(0, 1, record.x_floor / *record.x_scale));
     if (!record.foreign.problem) continue;
@@ -549,6 +550,11 @@ std::vector<Real> losses_left(const Run& run) {
   for (const Real loss : run.record->curve.loss)
     left.push_back(run.scale > 0 ? std::max(loss - run.minimum, 0.0) / run.scale : kNever);
   return left;
+}
+
+Real returned_digits(const Record& record) {
+  if (is_failure(record.status)) return 0;
+  return log_relative_error(record.summary.x_error / record.x_scale.value_or(1));
 }
 
 Table table_of(const Study& study) {

@@ -26,6 +26,8 @@ std::string marks_text(const Marks& marks);  // " ‡ † §" of those that appl
 
 // "--iterations 1000 --work 50": what of a budget is not as usual, and the iterations.
 std::string budget_options(const Request& request);
+// The log relative error of the point that a run returned; 0 of one that failed.
+Real returned_digits(const Record& record);
 
 // A row. One that is missing has no record: its problem, optimizer and seed alone are known.
 struct Run {
@@ -60,6 +62,7 @@ struct ProblemAxis {
   bool is_minimum_known = true;  // otherwise its runs have distances from the best of them alone
   Aim aim = Aim::loss;           // what its user wants, as its records say
   bool is_learned = false;
+  Real noise = 0;  // in its data, over their rms
   // For an aim in x: the least error that counts as solved, 1.1 of the floor, over ‖x*‖; the median
   // over seeds.
   Real least_goal = 0;

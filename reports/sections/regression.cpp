@@ -14,16 +14,6 @@
 namespace isoline::reports {
 namespace {
 
-constexpr Real kMostDigits = 11;  // are certified
-constexpr Real kSolved = 4, kAccurate = 6;
-
-// The log relative error of the worst parameter, 0 of a run that failed.
-Real digits_of(const Run& run) {
-  const Real error = run.record->summary.x_error;
-  if (is_failure(run.record->status) || !(error < 1)) return 0;
-  return std::min(-std::log10(error), kMostDigits);
-}
-
 std::string digits_text(Real digits) { return fmt::format("{:.1f}", digits); }
 
 // The medians over seeds, by data set and then by start.
@@ -35,7 +25,7 @@ Digits digits_of(const Comparison& c, std::size_t s) {
     if (c.problems[p].name != "nist" || !cell.is_measured()) continue;
     const OptionValues& options = c.runs[cell.runs[0]].record->request.problem.options;
     const auto start = static_cast<Index>(options.number("start", 1));
-    const auto digits = [](const Run& run) { return digits_of(run); };
+    const auto digits = [](const Run& run) { return returned_digits(*run.record); };
     all[options.text("dataset")][start] = c.aggregate(cell.runs, digits).median;
   }
   return all;
@@ -54,8 +44,8 @@ Sum sum_of(const Digits& all) {
     for (const auto& [start, digits] : starts) {
       ++sum.cells;
       sum.digits += digits;
-      sum.solved += digits >= kSolved;
-      sum.accurate += digits >= kAccurate;
+      sum.solved += digits >= kSolvedDigits;
+      sum.accurate += digits >= kAccurateDigits;
     }
   return sum;
 }
@@ -91,7 +81,7 @@ Table certified_table(const Comparison& c) {
     if (!all.empty()) methods[s] = std::move(all);
   }
   if (methods.empty()) return {};
-  Table table = worded_table("certified", kMostDigits, kSolved, kAccurate);
+  Table table = worded_table("certified", kCertifiedDigits, kSolvedDigits, kAccurateDigits);
   table.most_columns = kSideBySide;
   for (const std::string& name : names) {
     table.columns.push_back(name);
