@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <utility>
 
 #include "core/decompose.h"
 #include "core/errors.h"
@@ -221,34 +222,33 @@ constexpr Index kMostFitted = 512;  // unknowns
 // The loss of the least-squares fit from x, by Levenberg and Marquardt's method.
 Real fitted_loss(const Problem& problem, Vector x) {
   constexpr int kMost = 200;
-  Point at;
+  Point at, trial;
   Matrix J;
-  Vector r(problem.residuals());
+  Vector r(problem.residuals()), sizes, step;
   problem.forward(x, at);
-  Real loss = at.loss, damping = 1e-3;
+  Real damping = 1e-3;
+  bool has_moved = true;
   for (int i = 0; i < kMost && damping < 1e12; ++i) {
-    problem.forward(x, at);
-    problem.jacobian(J, at);
-    problem.residual(at, r);
-    Vector sizes = J.colwise().norm();
-    sizes = sizes.array().max(1e-12 * sizes.maxCoeff());
+    if (std::exchange(has_moved, false)) {
+      problem.jacobian(J, at);
+      problem.residual(at, r);
+      sizes = J.colwise().norm();
+      sizes = sizes.array().max(1e-12 * sizes.maxCoeff());
+    }
     Matrix stacked(J.rows() + J.cols(), J.cols());
     stacked << J, (std::sqrt(damping) * sizes).asDiagonal().toDenseMatrix();
     Vector right = Vector::Zero(stacked.rows());
     right.head(r.size()) = -r;
-    Vector step;
-    if (!least_squares(stacked, right, 0, step)) return loss;
+    if (!least_squares(stacked, right, 0, step)) break;
     const Vector next = x + step;
-    problem.forward(next, at);
-    if (!(at.loss < loss)) {
-      damping *= 8;
-      continue;
-    }
+    problem.forward(next, trial);
+    has_moved = trial.loss < at.loss;
+    damping = has_moved ? damping / 8 : damping * 8;
+    if (!has_moved) continue;
     x = next;
-    loss = at.loss;
-    damping /= 8;
+    std::swap(at, trial);
   }
-  return loss;
+  return at.loss;
 }
 
 // The least distance from x* of a truncated-SVD solution with the Jacobian at x*, from x₀:
@@ -303,7 +303,6 @@ Problem with_features(Problem plain, const OptionValues& options, const Draw& dr
   const Real x_scale = plain.x_scale(plain.batch());
 
   ProblemParts parts = std::move(plain).parts();
-  parts.network.reset();
   parts.x_scale = x_scale;
   if (target) {
     require(target->rows() == m, "the options in model must not change the number of observations");
@@ -317,7 +316,6 @@ Problem with_features(Problem plain, const OptionValues& options, const Draw& dr
     Problem inexact(std::move(parts));
     const Real floor = truncated_floor(inexact, truth);
     parts = std::move(inexact).parts();
-    parts.network.reset();
     parts.x_floor = [floor](const Batch&) { return floor; };
   }
   Map map = map_of(features, k, draw);

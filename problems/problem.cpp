@@ -39,6 +39,7 @@ Problem::Problem(ProblemParts parts) : parts_(std::move(parts)) {
 }
 
 ProblemParts Problem::parts() && {
+  if (has_identity_network()) parts_.network.reset();  // it knows the start
   if (!is_learned()) {
     parts_.input = std::move(batch_.input);
     parts_.context = std::move(batch_.context);
