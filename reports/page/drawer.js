@@ -23,9 +23,17 @@ function sparkline(p, s) {
 
 const withCopy = (command) => [element('code', {}, command), ' ', Object.assign(pressable('copy', undefined, (event) => copyText(command, event.currentTarget)), {className: 'copy'})];
 
+function showDrawer(...content) {
+  const drawer = document.getElementById('drawer'), close = pressable('close', undefined, () => drawer.close());
+  drawer.replaceChildren(close, ...content);
+  document.getElementById('tip').hidden = true;
+  if (!drawer.open) drawer.show();
+  close.focus();
+}
+
 // What stands behind a row of the ranking: the method's median on each setting that counts.
 function openMethod(s) {
-  const drawer = document.getElementById('drawer'), close = pressable('close', undefined, () => drawer.close()), {counted, unit} = measureNow();
+  const {counted, unit} = measureNow(), card = element('a', {href: `#optimizer-${s}`}, worded('method-card'));
   const settings = DATA.common.filter((p) => cellOf(DATA.problems[p], s) !== undefined), least = (p) => Math.min(...DATA.ranked.map((other) => cellOf(DATA.problems[p], other)).filter((cell) => cell !== undefined).map((cell) => takenBy(cell)));
   const table = element('table', {className: 'settings-of'});
   filledTable(table, worded('heat', {measure: counted, tau: tauName(view.target), unit: unit === counted ? '' : worded('unit', {unit})}), [element('tr', {}, ...worded('method-columns').split(' | ').map((head) => element('th', {scope: 'col'}, head)))], settings.map((p) => {
@@ -33,29 +41,23 @@ function openMethod(s) {
     Object.assign(row.dataset, {p, s});
     return row;
   }));
-  drawer.replaceChildren(close, element('h3', {}, DATA.optimizers[s]), element('p', {}, element('a', {href: `#optimizer-${s}`}, worded('method-card'))), table);
-  drawer.querySelector('p a').addEventListener('click', () => drawer.close());
-  document.getElementById('tip').hidden = true;
-  if (!drawer.open) drawer.show();
-  close.focus();
+  card.addEventListener('click', () => document.getElementById('drawer').close());
+  showDrawer(element('h3', {}, DATA.optimizers[s]), element('p', {}, card), table);
 }
 
 function openDrawer(p, s) {
-  const drawer = document.getElementById('drawer'), [title, ...lines] = explanationOf(p, s), {records = [], reached = []} = cellOf(DATA.problems[p], s) ?? {}, command = commandOf(p, s);
-  const close = pressable('close', undefined, () => drawer.close()), curves = element('a', {href: `#problem-${p}`}, 'all curves of this problem');
+  const [title, ...lines] = explanationOf(p, s), {records = [], reached = []} = cellOf(DATA.problems[p], s) ?? {}, command = commandOf(p, s);
+  const curves = element('a', {href: `#problem-${p}`}, 'all curves of this problem');
   curves.addEventListener('click', () => {
-    drawer.close();
+    document.getElementById('drawer').close();
     showLines(p, [...linesShown(p), s]);
   });
-  drawer.replaceChildren(close, element('h3', {}, title), ...lines.map((line) => element('p', {}, line)), ...sparkline(p, s), element('p', {}, curves),
+  showDrawer(element('h3', {}, title), ...lines.map((line) => element('p', {}, line)), ...sparkline(p, s), element('p', {}, curves),
       ...command === undefined ? [] : [element('p', {}, 'All runs of this cell: ', ...withCopy(command))],
       ...records.length === 0 ? [] : [element('p', {}, records.length < reached.length ? `The first ${records.length} of ${reached.length} records:` : 'Records, each with the command that repeats its run:'), element('ul', {}, ...records.map((name) => {
         const file = `${DATA.runs}${name}.json`;
         return element('li', {}, DATA.runs === '' ? `${name}.json` : element('a', {href: file}, `${name}.json`), element('br'), ...withCopy(`./isoline replay RESULTS/runs/${name}.json`));
       }))]);
-  document.getElementById('tip').hidden = true;
-  if (!drawer.open) drawer.show();
-  close.focus();
 }
 
 document.addEventListener('keydown', ({key}) => { if (key === 'Escape') document.getElementById('drawer').close(); });
