@@ -294,6 +294,11 @@ TEST_F(Report, AToleranceBetweenTwoIsTheNextStricterOneAndSaysSo) {
   EXPECT_FALSE(contains(exact.err, "stricter")) << exact.err;
 }
 
+TEST(ValidateVerb, AcceptsEveryFileOfTheTreeThatResultsAreReadFrom) {
+  const Shell shell;
+  shell.expect("./isoline validate " ISOLINE_SOURCE_DIR "/benchmarks");
+}
+
 // --- the table of best losses, renewed from runs
 
 TEST(BestVerb, KeepsTheLeastLossOfRunsThatDeclareNoneAndNoOther) {
