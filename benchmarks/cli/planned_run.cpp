@@ -181,7 +181,7 @@ std::string preview_text(const PreviewCounts& counts, int jobs) {
       "{}: {} cached, {} inapplicable, {} to run{}", reports::counted(counts.cells, "cell"),
       counts.cached, counts.inapplicable, counts.missing,
       seconds ? fmt::format(", about {} with {} at a time", duration_text(*seconds / jobs), jobs)
-              : ", and no earlier run predicts the time");
+              : "; no time estimate (no earlier runs)");
 }
 
 void print_counts(const Preview& shown, int jobs) {
