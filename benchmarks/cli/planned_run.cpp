@@ -58,31 +58,34 @@ void declare_cells(VerbArguments& verb, RunArguments& given) {
   const Argument seeds =
       verb.text("--seeds", given.seeds,
                 "Seeds: 5 (seeds 0 to 4), 0..9, =5 (seed 5), or 2:1 (instance 2, start 1)");
-  verb.text("--instances", given.instances,
-            "Instances, each with every start of --starts: 10, 0..9 or =5 (default: =0)")
+  verb.text(
+          "--instances", given.instances,
+          "Instances (data) of each problem, each run from every start of --starts: 10, 0..9 or =5 (default: =0)")
       .excludes(seeds);
   verb.text("--starts", given.starts,
-            "Starts, each with every instance of --instances: 3, 0..2 or =1 (default: =0)")
+            "Starts, each used with every instance of --instances: 3, 0..2 or =1 (default: =0)")
       .excludes(seeds);
-  verb.whole("--iterations", given.iterations, "Limit of the iterations of a cell");
-  verb.whole("--work", given.work, "Limit of the work of a cell, in forward solves");
+  verb.whole("--iterations", given.iterations, "Maximum number of iterations of a cell");
+  verb.whole("--work", given.work, "Maximum work of a cell, in forward solves");
   verb.time("--time", given.seconds,
             "Time limit of a cell: 10s, 2m; a cell that uses twice this processor time is killed");
-  verb.real("--target", given.target, between(0, 1),
-            "Tolerance at which a run stops, relative to the scale of the loss or, if the success "
-            "criterion is x, to the norm of x* (default: 1e-10)");
-  verb.whole_or_never("--stall", given.stall,
-                      "Iterations without progress after which a cell ends (default: 100)");
-  verb.text("--start", given.start, "Start of every problem: a .npy or .csv file of n numbers");
+  verb.real(
+      "--target", given.target, between(0, 1),
+      "Tolerance at which a cell ends as solved, relative to the scale of the loss or, if the success criterion is x, to the norm of x* (default: 1e-10)");
+  verb.whole_or_never(
+      "--stall", given.stall,
+      "Number of iterations without progress after which a cell ends (default: 100)");
+  verb.text("--start", given.start,
+            "Starting point of every problem: a .npy or .csv file of n numbers");
   verb.text("--target-data", given.target_data,
-            "Target y* of every problem: a .npy or .csv file of m numbers");
-  verb.whole("--threads", given.threads, "Threads of the libraries within a cell", kThreads);
+            "Observed data y* of every problem: a .npy or .csv file of m numbers");
+  verb.whole("--threads", given.threads,
+             "Number of threads that libraries use within a cell (default: 1)", kThreads);
   verb.text("--rates", given.rates, "Table of tuned rates: builtin, none or a file").shown();
   verb.text(
       "--best", given.best,
-      "Table that `isoline best` wrote, of the lowest known losses of problems that do not declare "
-      "f_L");
-  verb.flag("--allow-large", given.allow_large, "Plan more than a million cells");
+      "Table written by `isoline best`: the lowest known losses of problems that do not declare their least attainable loss f_L");
+  verb.flag("--allow-large", given.allow_large, "Allow more than a million cells");
   verb.plugins();
 }
 
@@ -92,44 +95,46 @@ void declare_what_is_done(VerbArguments& verb, RunArguments& given) {
       "Result folder (default: results/SUITE; for your own study or a part of a suite, a name "
       "derived from the plan)");
   verb.flag("--force", given.force, "Run finished cells again");
-  verb.flag("--reuse", given.reuse,
-            "Keep the finished records of another build, and do not run their cells again");
+  verb.flag(
+      "--reuse", given.reuse,
+      "Keep finished records that another build computed, instead of running their cells again");
   verb.texts("--retry", given.retry,
-             "Run cells with these statuses again: failed,crashed,timeout,memory")
+             "Run cells with these statuses again, such as failed,crashed,timeout,memory")
       .between_commas();
 }
 
 void declare_run(VerbArguments& verb, RunArguments& given) {
   declare_cells(verb, given);
   verb.whole("--jobs", given.jobs, "Number of cells at a time (default: one per core)", kJobs);
-  verb.flag("--exclusive", given.exclusive, "One cell at a time, for reliable times");
-  verb.whole("--repeat", given.repeat, "Timings per cell", {1, 1000});
+  verb.flag("--exclusive", given.exclusive, "Run one cell at a time, for reliable times");
+  verb.whole("--repeat", given.repeat, "Number of times that each cell is timed", {1, 1000});
   verb.memory("--memory", given.memory_bytes,
               "Memory limit of a cell, 256MB or more (default: 4GB)", 256);
   declare_what_is_done(verb, given);
   verb.flag("--no-report", given.no_report, "Do not write a report");
-  verb.flag("--uncertified", given.uncertified,
-            "Also run external problems that fail their checks; each table marks these problems");
+  verb.flag(
+      "--uncertified", given.uncertified,
+      "Also run problems from other programs that fail their checks; each table marks these problems");
   verb.flag("--keep-output", given.keeps_output,
             "Keep the output of each cell in its record, up to 64 KiB");
   verb.flag(
       "--fields", given.keeps_fields,
-      "For problems on a grid, keep x at six iterations for every seed (default: seed 0 only)");
+      "For problems on a grid, keep x at six iterations for every seed (default: only for seed 0)");
   verb.flag("--spectrum", given.keeps_spectra,
             "Keep the singular values of J = ∂y/∂θ at iterations 0, 1, 2, 4, 8, … and the last; "
             "finished cells without them run again");
-  verb.text("--shard", given.shard,
-            "Run one shard, such as 3/16, into shards/3-of-16 of the result folder; auto: "
-            "the shard of this task of a SLURM array, or of ISOLINE_SHARD");
+  verb.text(
+      "--shard", given.shard,
+      "Run only one shard, such as 3/16; its records are written to shards/3-of-16 in the result folder. auto: take the shard from ISOLINE_SHARD or from the task of the SLURM array");
   const Argument dry =
       verb.flag("--dry-run", given.is_dry,
-                "Print the plan only: its cells, their states and the predicted time");
+                "Only print the plan: its cells, their states and the predicted time");
   verb.flag("--all", given.lists_all, "With --dry-run: list every cell, not the first 20")
       .needs(dry);
   verb.flag("--in-process", given.in_process,
             "Run the cells in this process, for a debugger: no isolation, no limits, no records")
       .excludes(dry);
-  verb.flag("--quiet", given.quiet, "Print failures only");
+  verb.flag("--quiet", given.quiet, "Print only failures");
 }
 
 PlannedRun planned_run(const RunArguments& given, const Catalog& catalog) {

@@ -54,7 +54,8 @@ void register_audit(VerbRegistry& registry) {
   registry.add(verb_of(
       {.name = "audit",
        .help_position = 170,
-       .summary = "Measure optimizers' scaling, invariance, order, consistency and oracles",
+       .summary =
+           "Measure properties of optimizers: scaling, invariance, order, consistency and oracle calls",
        .examples = "  isoline audit gd adam sip\n  isoline audit --out results/quick --all"},
       declare, run));
 }

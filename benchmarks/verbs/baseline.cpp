@@ -26,8 +26,10 @@ struct BaselineArguments {
 void declare(VerbArguments& verb, BaselineArguments& given) {
   verb.texts("RESULTS", given.folders, "Result folders of `isoline run`").required();
   verb.text("--out", given.out, "The baseline file (default: standard output)");
-  verb.whole("--perturbations", given.perturbations,
-             "Number of runs of each cell from starts that differ in the last bit", {0, 100});
+  verb.whole(
+      "--perturbations", given.perturbations,
+      "Number of further runs of each cell, from starting points that differ in the last bit",
+      {0, 100});
   verb.whole("--jobs", given.jobs, "Number of cells at a time (default: one per core)", kJobs);
   verb.flag("--trust", given.trust, kTrust);
   verb.plugins();
@@ -83,12 +85,8 @@ void register_baseline(VerbRegistry& registry) {
        .examples = "  isoline baseline results/quick --out baseline.json\n"
                    "  isoline compare baseline.json results/quick",
        .notes =
-           "The file has one line per cell: status, digest of the trace, final values, work to "
-           "1e-1, 1e-3 and 1e-6.\n"
-           "Each cell runs again from starts that differ in the last bit. A cell is chaotic if its "
-           "values then change by more than a tenth of a comparison's tolerance. `compare` "
-           "compares such cells by status and by the targets 1e-1, 1e-3 and 1e-6 that they reach, "
-           "so rounding alone is not a regression.\n"
+           "The file has one line per cell (one problem, one optimizer, one seed): its status, a digest of its curve, its final values, and the work needed to reach 1e-1, 1e-3 and 1e-6.\n"
+           "Each cell runs again from starting points that differ in the last bit. A cell is chaotic if its values then change by more than a tenth of the tolerance of `compare`. `compare` judges such cells by their status and by the tolerances 1e-1, 1e-3 and 1e-6 that they reach, so rounding alone is not a regression.\n"
            "Runs of the portable preset (ISOLINE_PRESET=portable) give the same baseline on "
            "every x86-64-v3 machine."},
       declare, run));

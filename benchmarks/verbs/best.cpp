@@ -73,12 +73,11 @@ void register_best(VerbRegistry& registry) {
   registry.add(verb_of(
       {.name = "best",
        .help_position = 100,
-       .summary = "Write the lowest losses of runs, for problems that do not declare a least loss",
+       .summary =
+           "Write the lowest losses found, for problems that do not declare a least attainable loss",
        .examples = "  isoline best results/quick --out benchmarks/best.json",
        .notes =
-           "If a problem does not declare its least loss, targets are relative to the lowest known "
-           "loss. This table is compiled into the program, and belongs to the build that a record "
-           "states."},
+           "If a problem does not declare its least attainable loss, tolerances refer to the lowest known loss. The table benchmarks/best.json is compiled into the program; `isoline run --best FILE` reads another one."},
       declare, run));
 }
 

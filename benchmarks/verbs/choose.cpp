@@ -34,18 +34,18 @@ void declare(VerbArguments& verb, ChooseArguments& given) {
   offers.emplace_back("inverse");
   verb.texts("DIR", given.folders, kFolders).required();
   verb.texts("--have", given.have,
-             "What the simulator computes; each kind includes the kinds before it")
+             "What your simulator computes; each kind includes the kinds before it")
       .one_of(offers)
       .between_commas()
       .shown("forward");
   verb.whole(
       "--unknowns", given.unknowns,
-      "Number of unknowns; problems of its class are used: up to 10, 11 to 100, more than 100 "
-      "(default: all)",
+      "Number of unknowns of your problem. Only problems of the same class are used: up to 10, 11 to 100, more than 100 (default: all problems)",
       {.low = 0, .high = 1'000'000'000});
   verb.real("--noise", given.noise, between(0, 10),
             "Noise in the data, relative to the root mean square of the data");
-  verb.whole("--budget", given.budget, "Forward solves that a run may cost (default: any)");
+  verb.whole("--budget", given.budget,
+             "Number of forward solves that a run may cost (default: any)");
   verb.real("--tolerance", given.tolerance, between(1e-10, 1),
             "Relative tolerance, as in `isoline report`")
       .shown("1e-6");
@@ -95,11 +95,11 @@ void register_choose(VerbRegistry& registry) {
   registry.add(verb_of(
       {.name = "choose",
        .help_position = 45,
-       .summary = "Name the methods that suit a simulator, by the runs of a study",
+       .summary = "Name the methods that suit your simulator, based on the runs of a study",
        .examples = "  isoline choose results/quick --have forward,gradient --unknowns 50\n"
                    "  isoline choose results/quick --have forward --budget 1000",
-       .notes = "The first sentence is also in the report, in the tab 'What do you have?'. Methods "
-                "marked * are not significantly worse than the first."},
+       .notes =
+           "The first sentence is also in the report, in the tab 'What do you have?'. Methods marked * are not significantly worse than the first one."},
       declare, run));
 }
 

@@ -28,7 +28,7 @@ struct ClaimArguments {
 };
 
 void declare(VerbArguments& verb, ClaimArguments& given) {
-  verb.texts("ID", given.names, "Claims, or groups of them (default: all)");
+  verb.texts("ID", given.names, "Claims or groups of claims (default: all)");
   verb.text("--out", given.out, "Result folder of the runs").shown();
   verb.whole("--jobs", given.jobs, "Number of cells at a time (default: one per core)", kJobs);
   verb.flag("--list", given.is_list, "List the claims, and run nothing");
@@ -36,9 +36,9 @@ void declare(VerbArguments& verb, ClaimArguments& given) {
   verb.flag("--json", given.as_json, "Print JSON");
   verb.flag("--papers", given.as_papers,
             "Print one Markdown table per paper, as in docs/papers.md");
-  verb.flag("--no-run", given.no_run, "Judge by existing runs only");
+  verb.flag("--no-run", given.no_run, "Judge only by existing runs");
   verb.flag("--without-published", given.without_published,
-            "Leave out the records of benchmarks/published");
+            "Do not use the records in benchmarks/published");
   verb.flag("--long", given.with_long, "Also run the cells that take hours");
 }
 
@@ -144,7 +144,7 @@ void register_claims(VerbRegistry& registry) {
   registry.add(verb_of(
       {.name = "claims",
        .help_position = 110,
-       .summary = "Run the missing cells of claims of papers, and judge the claims",
+       .summary = "Judge the claims of papers by runs; runs that are missing are made first",
        .examples = R"(  isoline claims --list                        the claims and their sources
   isoline claims exponential                   one group of claims
   isoline claims sip-better-in-x-worse-in-loss     one claim, with its evidence
@@ -153,8 +153,7 @@ void register_claims(VerbRegistry& registry) {
            "A claim is reproduced if the measured values agree with the published one within its "
            "uncertainty, and partly reproduced if only the direction holds. With fewer than six seeds, "
            "a claim is consistent or at odds.\n"
-           "Records of runs that take hours come with the program (benchmarks/published). They count "
-           "where the result folder lacks a run, and state how many iterations and seeds they have.\n"
+           "The program contains records of runs that take hours (benchmarks/published). They are used if the result folder lacks a run, and the evidence states their numbers of iterations and seeds.\n"
            "Exit codes: 0 success, 2 a claim is not reproduced or a run failed, 4 not comparable."},
       declare, run));
 }

@@ -71,9 +71,7 @@ void register_compare(VerbRegistry& registry) {
   isoline compare baseline.json results/quick --tolerance 1e-6 --all
   isoline compare results/old results/new --markdown     for the summary of a job)",
        .notes =
-           "Exit codes: 0 neither worse nor better; 2 worse, or NEW lacks a cell of BASE; 3 better "
-           "only; 4 not comparable. A cell is not comparable if a time limit ended it, if its "
-           "record contradicts itself, if its success criterion, f_L, scale, floor or nominal "
+           "A cell is one problem, one optimizer and one seed. Exit codes: 0 no differences; 2 regressions, or NEW lacks a cell of BASE; 3 improvements and no regressions; 4 not comparable. A cell is not comparable if a time limit ended it, if its record contradicts itself, if the success criterion, f_L, scale, floor or nominal "
            "costs differ, or if another build computed it and --tolerance is missing.\n"
            "Cells are paired by problem, optimizer, seed and budget as requested. If the default "
            "of an option has changed, the cells are still compared, and the change is printed.\n"

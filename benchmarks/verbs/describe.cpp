@@ -163,7 +163,8 @@ void register_describe(VerbRegistry& registry) {
   registry.add(verb_of(
       {.name = "describe",
        .help_position = 150,
-       .summary = "Show the formula, options, required derivatives and source of a component",
+       .summary =
+           "Show the formula, options, required derivatives and source of a problem or method",
        .examples = "  isoline describe sip\n  isoline describe 'sine[xi=32]' --json"},
       declare, run));
 }

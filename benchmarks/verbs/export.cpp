@@ -73,9 +73,10 @@ void register_export(VerbRegistry& registry) {
        .help_position = 120,
        .summary = "Write curves as CSV or as COCO data",
        .examples =
-           R"(  isoline export results/quick --out curves.csv             one row per stored point
+           R"(  isoline export results/quick --out curves.csv             one row per stored iteration
   isoline export results/quick --format coco --out exdata   for COCO's post-processing)",
-       .notes = "Numbers survive the round trip exactly, including inf, -inf and nan."},
+       .notes =
+           "Reading the numbers back gives the same bits. Non-finite values are written as inf, -inf and nan."},
       declare, run));
 }
 

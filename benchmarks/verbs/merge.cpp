@@ -53,9 +53,7 @@ void register_merge(VerbRegistry& registry) {
        .summary = "Merge result folders into a new one",
        .examples = "  isoline merge results/a results/b --out results/both",
        .notes =
-           "Records of the same cell and build become one record that contains the times of all "
-           "of them. If they differ in anything except times and provenance, merge does not "
-           "write anything, lists the cells on standard error, and exits with 2. Remove the "
+           "Records of the same cell (one problem, one optimizer, one seed) and build become one record with the times of all of them. If they differ in anything except times and provenance, `merge` does not write anything, lists the cells on standard error, and exits with code 2. Remove the "
            "wrong records, or run their cells again with --force, and merge again."},
       declare, run));
 }

@@ -28,11 +28,11 @@ void declare(VerbArguments& verb, PlanArguments& given) {
   declare_cells(verb, given.run);
   verb.whole("--jobs", given.run.jobs, "Number of cells at a time (default: one per core)", kJobs);
   declare_what_is_done(verb, given.run);
-  verb.whole("--shards", given.shards,
-             "Divide the plan into this many shards of about equal time, and write the predictions "
-             "to predicted.json in the result folder",
-             kShards);
-  verb.texts("--from", given.earlier, "Earlier result folders, for the prediction of times")
+  verb.whole(
+      "--shards", given.shards,
+      "Divide the plan into this many shards of about equal time, and write the predictions to predicted.json in the result folder, unless that file exists",
+      kShards);
+  verb.texts("--from", given.earlier, "Earlier result folders, from which times are predicted")
       .between_commas();
   verb.flag("--all", given.run.lists_all, "List every shard, not the first 20");
   verb.flag("--json", given.as_json, "Print JSON");
@@ -81,7 +81,7 @@ std::string weights_text(Weights weights, const PlannedRun& all, std::size_t tim
     case Weights::declared:
       break;
   }
-  return "predictions: none, because earlier shards ran without them; nominal costs divide the shards";
+  return "predictions: none, because earlier shards ran without them; the cells are divided by nominal cost";
 }
 
 void print_shards(const PlannedRun& all, const Preview& shown, const ShardPlan& plan,
@@ -135,9 +135,7 @@ void register_plan(VerbRegistry& registry) {
            "The predicted time of a cell is its time in records of the result folder and of --from "
            "or, without such a record, the time of the same cell with other seeds. Other cells "
            "have no prediction.\n"
-           "--shards writes the predictions to predicted.json once. `isoline run --shard` "
-           "divides the plan by this file only, so all tasks use the same shards, whenever they "
-           "start."},
+           "`isoline run --shard` divides the plan by predicted.json alone, so all tasks use the same shards, whenever they start."},
       declare, run));
 }
 

@@ -36,7 +36,8 @@ struct ScoreArguments {
 
 void declare(VerbArguments& verb, ScoreArguments& given) {
   verb.text("SUITE", given.suite, "Suite whose problems, seeds and budgets are used").shown();
-  verb.text("--problem", given.problem, "Problems to use instead of those of the suite").joined();
+  verb.text("--problem", given.problem, "Problems to use instead of the problems of the suite")
+      .joined();
   verb.text("--optimizer", given.optimizer, "Optimizers to score: 'process[command=\"…\"]'")
       .joined();
   verb.text(
@@ -126,7 +127,8 @@ void register_score(VerbRegistry& registry) {
   registry.add(verb_of(
       {.name = "score",
        .help_position = 15,
-       .summary = "Count the correct digits of an optimizer beside its peers (NIST by default)",
+       .summary =
+           "Count how many digits an optimizer gets right, next to other optimizers (on NIST's regressions by default)",
        .examples = R"(  isoline score --optimizer 'process[command="python3 mine.py"]'
   isoline score --optimizer 'minpack-lmder[ftol=1e-8,xtol=1e-8]' --peers none)",
        .notes = "Finished cells do not run again."},

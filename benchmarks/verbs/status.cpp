@@ -180,14 +180,14 @@ int run(const StatusArguments& given, Session&) {
 }  // namespace
 
 void register_status(VerbRegistry& registry) {
-  registry.add(
-      verb_of({.name = "status",
-               .help_position = 90,
-               .summary = "Show the progress of a run",
-               .examples = "  isoline status results/quick\n  isoline status results/quick --json",
-               .notes = "`status` only reads the records, the plan and the predictions.\n"
-                        "Exit codes: 0 no failed cells, 2 failed cells."},
-              declare, run));
+  registry.add(verb_of(
+      {.name = "status",
+       .help_position = 90,
+       .summary = "Show the progress of a run",
+       .examples = "  isoline status results/quick\n  isoline status results/quick --json",
+       .notes = "`status` reads the records, the plan and the predictions, and changes nothing.\n"
+                "Exit codes: 0 no failed cells, 2 failed cells."},
+      declare, run));
 }
 
 }  // namespace isoline::benchmarks

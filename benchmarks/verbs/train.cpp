@@ -36,15 +36,15 @@ void declare(VerbArguments& verb, TrainArguments& given) {
   verb.text("PROBLEM", given.problem, "Problem: 'sine[xi=32]'; mode=learn is implied").required();
   verb.text("--out", given.out, "Output file, JSON").required();
   verb.text("--optimizer", given.optimizer, "Training method").shown();
-  verb.text("--from", given.from,
-            "Continue from a network of `train`: its parameters are the start");
-  verb.whole("--iterations", given.iterations, "Steps of training");
+  verb.text("--from", given.from, "Network written by `train`, whose parameters are the start");
+  verb.whole("--iterations", given.iterations, "Number of training steps");
   verb.seed("--seed", given.seed, "Seed of the start and of the samples");
-  verb.whole("--threads", given.threads, "Threads of the libraries", kThreads);
-  verb.time("--time", given.seconds,
-            "Time limit of training: 10s, 2m; after twice this time, the process is killed");
+  verb.whole("--threads", given.threads, "Number of threads that libraries use", kThreads);
+  verb.time(
+      "--time", given.seconds,
+      "Time limit of training: 10s, 2m. At this limit, the network is saved as it is; after twice this processor time, the process is killed");
   verb.memory("--memory", given.memory_bytes, "Memory limit (default: 4GB)");
-  verb.flag("--quiet", given.quiet, "Show no progress");
+  verb.flag("--quiet", given.quiet, "Do not show progress");
   verb.plugins();
 }
 
@@ -171,7 +171,7 @@ void register_train(VerbRegistry& registry) {
   registry.add(verb_of(
       {.name = "train",
        .help_position = 210,
-       .summary = "Train a network on a learning problem and write it to a file",
+       .summary = "Train a network to invert a problem, and write it to a file",
        .examples =
            "  isoline train 'sine[xi=32]' --optimizer sip --iterations 1000 --out net.json\n"
            "  isoline train 'sine[xi=32]' --from net.json --optimizer adam --out longer.json"},

@@ -36,32 +36,33 @@ struct TuneArguments {
 void declare(VerbArguments& verb, TuneArguments& given) {
   verb.text("SPEC,--problem", given.problem,
             "Problems, as in `isoline run`; with --suite, a filter");
-  verb.text("--suite", given.suite, "The pairs of this suite, with its budgets");
+  verb.text("--suite", given.suite,
+            "Tune the pairs of problem and optimizer of this suite, with its budgets");
   verb.text("--optimizer", given.optimizer,
             "Names of optimizers (default: all with a tunable option)")
       .joined();
   verb.text("--grid", given.grid,
             "Option and its values, low..high x count (default: the method's tunable option "
             "at seven values around its default, and more if the best value is at an edge)");
-  verb.text("--unit", given.unit,
-            "Unit of the grid: one, cauchy (the problem's Cauchy step) or published (the published "
-            "rate)")
+  verb.text(
+          "--unit", given.unit,
+          "Unit of the values in --grid: one, cauchy (the problem's Cauchy step) or published (the published rate)")
       .one_of({"one", "cauchy", "published"})
       .shown();
   verb.flag("--leave-one-out", given.leaves_out,
             "For each family of problems, choose the value that is best on the other families; all "
             "problems share one grid per method");
-  verb.text("--tuning-seeds", given.seeds, "Seeds, different from those of results").shown();
-  verb.whole("--work", given.work, "Largest work per run");
-  verb.whole("--iterations", given.iterations, "Largest number of iterations per run");
+  verb.text("--tuning-seeds", given.seeds, "Seeds, which should not be used for results").shown();
+  verb.whole("--work", given.work, "Maximum work of a run, in forward solves");
+  verb.whole("--iterations", given.iterations, "Maximum number of iterations of a run");
   verb.whole("--jobs", given.jobs, "Number of runs at a time (default: one per core)", kJobs);
   verb.text("--out", given.folder, "Folder of the records").shown();
   verb.text(
       "--table", given.table,
       "Table of rates to write or to extend; with --leave-one-out, also NAME-tuned.json, with "
       "the best value on each problem");
-  verb.flag("--all", given.lists_all, "List every pair, not the first 20");
-  verb.flag("--json", given.as_json, "Print the rows of the table as JSON");
+  verb.flag("--all", given.lists_all, "List every pair of problem and optimizer, not the first 20");
+  verb.flag("--json", given.as_json, "Print JSON: the rows of the table");
   verb.plugins();
 }
 
@@ -190,7 +191,7 @@ std::vector<reports::TableCell> tuning_row(const TunedOption& tuned) {
     remark = fmt::format("at the edge: the {} value tried", tuned.best == 0 ? "lowest" : "highest");
   if (const auto ties = tied_values(tuned); !ties.empty())
     remark += (remark.empty() ? "ties with " : "; ties with ") + reports::joined(ties);
-  if (is_failed(best)) remark = "every value failed; the value nearest to the default is used";
+  if (is_failed(best)) remark = "every value failed; the value nearest the default is used";
   return {tuned.problem,
           tuned.optimizer,
           tuned.option,
@@ -253,9 +254,7 @@ std::string tuning_text(const TuningResult& result, bool lists_all) {
       .names = 2};
   table.caption =
       "Grid: one bar per value, from the lowest value to the highest; the tallest bar marks the "
-      "best value, and · a value whose runs failed. Work: the median work to the target with the "
-      "best value; ✗: at most half of the runs reached the target. Left: the median loss, or "
-      "error in x, that is left at the end of these runs.";
+      "best value, and · marks a value whose runs failed. Work: the median work needed to reach 1e-6 with the best value; ✗: at most half of the runs reached 1e-6. Left: the median final loss, or the median final error in x if success is judged by x.";
   for (const TunedOption& tuned : result.tuned) table.rows.push_back(tuning_row(tuned));
   if (!result.left_out_rows->empty()) table = left_out_table(*result.left_out_rows);
   if (!table.rows.empty()) section.tables.push_back(std::move(table));
@@ -293,9 +292,7 @@ void register_tune(VerbRegistry& registry) {
                    "  isoline tune --suite quick --optimizer adam --json\n"
                    "  isoline tune --leave-one-out sine,heat,burgers --table physics.json",
        .notes =
-           "The best value has the least median work to the target. Ties are decided by the "
-           "least remaining loss or error in x, and then by the distance from the default. The "
-           "output lists ties and best values at an edge of the grid."},
+           "The best value needs the least median work to reach 1e-6. If several values do not reach 1e-6, the least remaining loss or error in x decides. Ties go to the value nearest the default. The output lists ties and best values at an edge of the grid."},
       declare, run));
 }
 

@@ -216,7 +216,7 @@ void register_validate(VerbRegistry& registry) {
   registry.add(verb_of(
       {.name = "validate",
        .help_position = 190,
-       .summary = "Check records, suites and all other JSON files of Isoline against their schemas",
+       .summary = "Check records, suites and Isoline's other JSON files against their schemas",
        .examples = "  isoline validate results/quick my-suite.json"},
       declare, run));
 }
