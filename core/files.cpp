@@ -62,11 +62,14 @@ void write_all(int file, std::string_view text, const fs::path& path) {
   }
 }
 
-void write_new(const fs::path& path, std::string_view text, bool is_flushed) {
-  OpenFile file(path, O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW, "create");
-  write_all(file.descriptor(), text, path);
-  if (is_flushed && ::fsync(file.descriptor()) != 0) fail("flush", path);
-  if (!file.close()) fail("close", path);
+// Errors name `shown`, the file that the user knows.
+void write_new(const fs::path& path, std::string_view text, bool is_flushed,
+               const fs::path& shown) {
+  OpenFile file(path, O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW);
+  if (file.descriptor() < 0) fail("create", shown);
+  write_all(file.descriptor(), text, shown);
+  if (is_flushed && ::fsync(file.descriptor()) != 0) fail("flush", shown);
+  if (!file.close()) fail("close", shown);
 }
 
 [[noreturn]] void refuse(const fs::path& path, std::string_view reason) {
@@ -220,7 +223,7 @@ fs::path move_into(const fs::path& folder, const fs::path& path) {
 void write_text(const fs::path& path, std::string_view text) {
   const fs::path temporary = temporary_of(path);
   try {
-    write_new(temporary, text, true);
+    write_new(temporary, text, true, path);
     if (::rename(temporary.c_str(), path.c_str()) != 0) fail("rename to", path);
   } catch (...) {
     ::unlink(temporary.c_str());
@@ -256,7 +259,9 @@ void write_output(const fs::path& path, std::string_view text, std::string_view 
   write_text(place, text);
 }
 
-void write_unflushed(const fs::path& path, std::string_view text) { write_new(path, text, false); }
+void write_unflushed(const fs::path& path, std::string_view text) {
+  write_new(path, text, false, path);
+}
 
 void flush_all(const fs::path& folder) {
   const OpenFile file(folder, O_RDONLY | O_DIRECTORY, "open");

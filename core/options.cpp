@@ -101,7 +101,7 @@ OptionValue option_from(const std::string& name, const Json& json) {
   if (json.is_number_integer()) return json.get<Index>();
   if (json.is_number()) return json.get<Real>();
   require(json.is_string(), [&] {
-    return fmt::format("the option {} must be a number, a truth value or a text, got {}", name,
+    return fmt::format("the option {} must be a number, true or false, or a string, got {}", name,
                        json_text(json));
   });
   return json.get<std::string>();

@@ -77,8 +77,9 @@ Sweep sweep_of(const std::string& text) {
   if (trim(inner).empty()) return sweep;
   for (const std::string& option : split(inner, ',')) {
     const auto equals = option.find('=');
-    require(equals != std::string::npos,
-            [&] { return fmt::format("'{}' in '{}' must be key=value", option, text); });
+    require(equals != std::string::npos, [&] {
+      return fmt::format("'{}' in '{}' must have the form option=value", option, text);
+    });
     std::vector<std::string> values = split(option.substr(equals + 1), '|');
     for (std::string& value : values) value = unquoted(trim(value));
     sweep.options.emplace_back(trim(option.substr(0, equals)), std::move(values));
@@ -147,7 +148,8 @@ T parse_number(std::string_view text, std::string_view whole, const char* expect
 using SeedSpan = std::pair<std::uint64_t, std::uint64_t>;  // the first and the last
 
 std::uint64_t pair_of(std::uint64_t instance, std::uint64_t start) {
-  require(instance < kPairLimit && start < kPairLimit, "instances and starts must be below 1,000");
+  require(instance < kPairLimit && start < kPairLimit,
+          "the numbers of instances and starts must be below 1,000");
   return seed_of(instance, start);
 }
 
@@ -171,7 +173,7 @@ SeedSpan span_of(std::string_view part, std::string_view whole) {
   const auto dots = part.find("..");
   if (dots == std::string_view::npos) {
     const std::uint64_t count = number(part);
-    require(count > 0, "a count of seeds, instances or starts must be at least 1, got 0");
+    require(count > 0, "the number of seeds, instances or starts must be at least 1, got 0");
     return {0, count - 1};
   }
   const SeedSpan span{number(part.substr(0, dots)), number(part.substr(dots + 2))};
@@ -199,7 +201,8 @@ std::vector<Spec> parse_specs(std::string_view text, std::uint64_t most) {
 
 Spec parse_spec(std::string_view text) {
   const std::vector<Spec> specs = parse_specs(text);
-  require(specs.size() == 1, [&] { return fmt::format("expected one component, got '{}'", text); });
+  require(specs.size() == 1,
+          [&] { return fmt::format("expected one problem or optimizer, got '{}'", text); });
   return specs[0];
 }
 

@@ -439,10 +439,10 @@ std::unique_ptr<Network> make_fno(const OptionValues& options, const NetworkShap
   const auto o = read_options<Options>(options);
   const Index N = shape.grid, padded = N + FourierOperator::kPadding;
   require(N >= 2 && shape.input_channels == 1 && shape.output_channels == 1,
-          "fno: it maps one field to another, both on a grid of at least 2×2 cells");
+          "fno requires that both x and y are fields on a grid of at least 2×2 cells");
   require(2 * o.modes <= padded, [&] {
     return fmt::format(
-        "fno: 2 modes must be at most {}, the cells along an edge with padding, got modes={}",
+        "fno: twice modes must be at most {}, the number of cells along an edge with padding, got modes={}",
         padded, o.modes);
   });
   return std::make_unique<FourierOperator>(N, o.modes, o.width);

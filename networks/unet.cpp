@@ -50,7 +50,7 @@ UnetPlan::UnetPlan(const UnetOptions& options, const NetworkShape& shape)
   });
   const Index step = Index{1} << (options.levels - 1);
   require(shape.grid % step == 0, [&] {
-    return fmt::format("unet: with levels={} N must be a multiple of {}, got {}", options.levels,
+    return fmt::format("unet: with levels={}, N must be a multiple of {}, got {}", options.levels,
                        step, shape.grid);
   });
   units = units_of(levels, filters, input_channels);

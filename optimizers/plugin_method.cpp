@@ -31,7 +31,7 @@ struct Questions : isoline_oracles {
   Real root() const { return std::sqrt(static_cast<Real>(f.samples())); }
   // Products refer to the current point.
   Linearization& point() {
-    require(is_linearized, "all oracles except loss() and report() need linearize() first");
+    require(is_linearized, "call linearize() before any oracle except loss() and report()");
     return at;
   }
   bool is_over() const {
@@ -117,7 +117,8 @@ Questions::Questions(Meter& meter, bool solves)
   };
   report = [](isoline_oracles* asked, const double* to) {
     const int told = answer(asked, [&](Questions& all) {
-      require(all.is_whole_solve, "report() is for ISOLINE_SOLVE: each step() is an iteration");
+      require(all.is_whole_solve,
+              "report() is only for ISOLINE_SOLVE: otherwise, each step() is an iteration");
       all.f.iterate(all.moved_to(to));
     });
     return static_cast<int>(told != 0 || static_cast<Questions&>(*asked).is_over());
@@ -171,7 +172,7 @@ class PluginMethod final : public Optimizer {
         throw std::runtime_error(component_.words() + ": step() failed");
       default:
         throw std::runtime_error(fmt::format(
-            "{}: step() must return from ISOLINE_RUNNING, 0, to ISOLINE_FAILED, {}, got {}",
+            "{}: step() must return a value from ISOLINE_RUNNING (0) to ISOLINE_FAILED ({}), got {}",
             component_.words(), static_cast<int>(ISOLINE_FAILED), told));
     }
   }

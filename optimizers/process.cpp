@@ -64,10 +64,9 @@ class Service {
 
   void expect(const FrameHead& head, Index numbers) {
     if (head.bytes == static_cast<std::uint64_t>(numbers) * sizeof(Real)) return;
-    line_.fail("asks " + std::string(name_of(static_cast<Verb>(head.verb))) + " with " +
-               std::to_string(head.bytes) + " bytes, where " +
-               std::to_string(static_cast<std::size_t>(numbers) * sizeof(Real)) +
-               " are the question");
+    line_.fail("sent a request " + std::string(name_of(static_cast<Verb>(head.verb))) + " of " +
+               std::to_string(head.bytes) + " bytes, which must have " +
+               std::to_string(static_cast<std::size_t>(numbers) * sizeof(Real)) + " bytes");
   }
   auto given_theta() const { return room_.head(f_.unknowns()); }
   auto behind_theta(Index count) const { return room_.segment(f_.unknowns(), count); }

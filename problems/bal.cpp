@@ -172,7 +172,7 @@ std::filesystem::path path_of(const std::string& file) {
     for (const char* ending : {"", ".bz2"})
       if (const std::filesystem::path path = in / (file + ending); is_there(path)) return path;
   throw NotApplicable(fmt::format(
-      "the file {} is absent: the environment variable ISOLINE_BAL names the folder of such files",
+      "the file {} is missing: set the environment variable ISOLINE_BAL to the folder that contains it",
       file));
 }
 

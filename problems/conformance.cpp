@@ -96,7 +96,7 @@ class Examination {
     const Matrix Jv = push(v, at_);
     const Real floor = 1e4 * kEpsilon * (at_.y.norm() + Jv.norm());
     const Real slope = order_of([&](Real step) { return remainder(v, Jv, step); }, h, floor);
-    add("the remainder after J v is of second order", std::abs(slope - 2), 0.1,
+    add("the remainder of the linearization is of second order (J v)", std::abs(slope - 2), 0.1,
         "a third-order term bends the slope by O(h); a wrong J v gives slope 1");
   }
 
@@ -112,7 +112,7 @@ class Examination {
       return std::abs(u.cwiseProduct(at.y - at_.y).sum() - step * change);
     };
     const Real slope = order_of(remainder_at, h, floor);
-    add("the remainder after Jᵀu is of second order", std::abs(slope - 2), 0.1,
+    add("the remainder of the linearization is of second order (Jᵀu)", std::abs(slope - 2), 0.1,
         "a third-order term bends the slope by O(h); a wrong Jᵀu gives slope 1");
   }
 
@@ -121,7 +121,7 @@ class Examination {
     const Vector g = loss_gradient(at_);
     const Real difference = (loss(theta_ + h_ * v) - loss(theta_ - h_ * v)) / (2 * h_);
     const Real scale = sized(g).norm() + std::abs(at_.loss);
-    add("⟨∇L, v⟩ is the change of L along v", relative(std::abs(difference - g.dot(v)), scale),
+    add("⟨∇L, v⟩ equals the change of L along v", relative(std::abs(difference - g.dot(v)), scale),
         1e-6, kDifferences);
   }
 
@@ -135,10 +135,10 @@ class Examination {
     const Vector Jv = offers(Oracle::pushforward) ? Vector(push(v, at_).reshaped()) : Vector();
     const Vector JTu = offers(Oracle::pullback) ? pull(u, at_) : Vector();
     if (offers(Oracle::pushforward))
-      add("J v by the matrix is J v by the product", relative((J * v - Jv).norm(), Jv.norm()),
-          product_limit(), product_reason());
+      add("J v from the matrix equals J v from the product",
+          relative((J * v - Jv).norm(), Jv.norm()), product_limit(), product_reason());
     if (offers(Oracle::pullback))
-      add("Jᵀu by the matrix is Jᵀu by the product",
+      add("Jᵀu from the matrix equals Jᵀu from the product",
           relative(sized(J.transpose() * u.reshaped() - JTu).norm(), sized(JTu).norm()),
           product_limit(), product_reason());
   }
@@ -154,12 +154,12 @@ class Examination {
     pattern.multiply_transposed(values.data(), u.reshaped(), JTu);
     if (offers(Oracle::pushforward)) {
       const Vector pushed = push(v, at_).reshaped();
-      add("J v by the sparse values is J v by the product",
+      add("J v from the sparse values equals J v from the product",
           relative((Jv - pushed).norm(), pushed.norm()), product_limit(), product_reason());
     }
     if (offers(Oracle::pullback)) {
       const Vector pulled = pull(u, at_);
-      add("Jᵀu by the sparse values is Jᵀu by the product",
+      add("Jᵀu from the sparse values equals Jᵀu from the product",
           relative(sized(JTu - pulled).norm(), sized(pulled).norm()), product_limit(),
           product_reason());
     }
@@ -179,7 +179,7 @@ class Examination {
     const Vector JTw = pull(w, at_);
     const Vector difference = change_along(v, [&](Point& at) { return pull(w, at); });
     const Vector Hv = H * v;
-    add("Σ wᵢ ∇²Pᵢ v is the change of Jᵀw along v",
+    add("Σ wᵢ ∇²Pᵢ v equals the change of Jᵀw along v",
         relative(sized(difference - Hv).norm(), sized(Hv).norm() + sized(JTw).norm()), 1e-6,
         kDifferences);
   }
@@ -190,7 +190,7 @@ class Examination {
     const Vector v = smooth_direction();
     Matrix H;
     problem_.hessian(H, at_);
-    add_change_of_gradient("∇²L v is the change of ∇L along v", v, H * v);
+    add_change_of_gradient("∇²L v equals the change of ∇L along v", v, H * v);
   }
 
   void hessian_product() {
@@ -198,7 +198,7 @@ class Examination {
     const Vector v = smooth_direction();
     Vector Hv(problem_.unknowns());
     problem_.hessian_product(v, Hv, at_);
-    add_change_of_gradient("the product with ∇²L is the change of ∇L along v", v, Hv);
+    add_change_of_gradient("the product with ∇²L equals the change of ∇L along v", v, Hv);
   }
 
   // For a y that some x reaches. Uses the physics alone, without the network.
@@ -222,22 +222,21 @@ class Examination {
     if (problem_.inverse_kind() != Inverse::damped) return;
     Matrix x(problem_.inputs(), problem_.samples());
     problem_.local_inverse(at_.y, x, at_);
-    add("the damped inverse stays where y is reached",
+    add("the damped inverse keeps an x that already gives y",
         relative((x - at_.x()).norm(), at_.x().norm()), 1e-12, kRounding);
     problem_.local_inverse(problem_.target(), x, at_);
     Point moved;
     problem_.physics_forward(x, problem_.batch(), moved);
     const Real before = (at_.y - problem_.target()).norm();
-    add("the damped inverse brings y no farther from y*",
+    add("the damped inverse does not move y away from y*",
         (moved.y - problem_.target()).norm() / before - 1, 1e-12, kRounding);
     const Matrix wanted = smoothed();
     Point reached, nowhere;
     problem_.physics_forward(wanted, problem_.batch(), reached);
     problem_.physics_forward(Matrix::Zero(wanted.rows(), wanted.cols()), problem_.batch(), nowhere);
     problem_.local_inverse(reached.y, x, nowhere);
-    add("the damped inverse undoes P on what P has smoothed",
-        relative((x - wanted).norm(), wanted.norm()), 1e-3,
-        "the inverse suppresses modes below its assumed noise, a small part");
+    add("the damped inverse undoes P on a smoothed x", relative((x - wanted).norm(), wanted.norm()),
+        1e-3, "the inverse suppresses modes below its assumed noise, a small part");
   }
 
   void solution() {
@@ -257,7 +256,7 @@ class Examination {
       add("the scale of x is known", problem_.x_scale(problem_.batch()) > 0 ? 0 : 1, 0,
           "errors in x are relative to it");
     if (problem_.truth() && !std::isnan(problem_.x_error(*problem_.truth())))
-      add("the error in x of the truth is zero, or the floor where data of another solver have one",
+      add("the error in x of the truth is 0, or at most its floor",
           (problem_.x_error(*problem_.truth()) -
            (problem_.minimum() ? 0 : problem_.x_floor(problem_.batch()))) /
               std::max(1.0, problem_.truth()->norm()),

@@ -203,7 +203,7 @@ void wrap(ProblemParts& parts, Map map, const Features& features) {
 Vector noise_of(const Features& features, const Vector& target, RandomStream stream) {
   const auto m = static_cast<Real>(target.size());
   const Real rms = target.norm() / std::sqrt(m), sigma = features.noise * rms;
-  require(rms > 0, "noise is relative to the root mean square of y*, which is 0");
+  require(rms > 0, "noise is relative to the root mean square of y*, which is 0 for this problem");
   if (features.noise_kind == "uniform") {
     const Real half = sigma * std::sqrt(3.0);
     return stream.uniform_vector(target.size(), -half, half);
@@ -287,9 +287,10 @@ Problem with_features(Problem plain, const OptionValues& options, const Draw& dr
   if (options.empty()) return plain;
   const Features features =
       read_options<Features>(complete_options(option_table<Features>(), "features", options));
-  require(!plain.is_learned(), "noise, model, scale and the other features require mode=direct");
+  require(!plain.is_learned(),
+          "noise, model, scale, rotate, digits, tikhonov and order require mode=direct");
   require(features.tikhonov == 0 || plain.is_least_squares(),
-          "tikhonov requires a least-squares loss");
+          "tikhonov requires a least-squares loss, which this problem does not have");
   require(features.tikhonov > 0 || features.order == 0, "order=1 requires tikhonov above 0");
   require(features.noise > 0 || features.noise_kind == "gaussian",
           "noise-kind requires noise above 0");

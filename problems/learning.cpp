@@ -276,7 +276,7 @@ ProblemParts learn(const Learning& options, const NetworkShape& shape, const Dra
   parts.samples.batch = options.batch;
   parts.samples.data = options.data;
   const Index epoch = options.data > 0 ? 0 : parts.samples.epoch;
-  require(epoch % options.batch == 0, "the samples of an epoch must be a multiple of the batch");
+  require(epoch % options.batch == 0, "epoch must be a multiple of batch");
   const bool is_fresh = options.data == 0 && epoch == 0;
   parts.samples.stream = [draw, is_fresh](std::string_view purpose) {
     return is_fresh && purpose == "training" ? draw.start_stream(purpose) : draw.stream(purpose);
@@ -284,7 +284,7 @@ ProblemParts learn(const Learning& options, const NetworkShape& shape, const Dra
   if (shape.grid > 0) parts.series = joined(std::move(parts.series), half_squared_error());
   if (options.watch == "noise") parts.series = joined(std::move(parts.series), batch_noise());
   if (options.watch == "spectrum") {
-    require(shape.grid > 0, "watch=spectrum is for samples that are grids");
+    require(shape.grid > 0, "watch=spectrum requires samples that are fields on a grid");
     parts.series = joined(std::move(parts.series), spectrum(shape.grid));
   }
   return parts;

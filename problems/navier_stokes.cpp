@@ -53,8 +53,7 @@ void fields(Options& o, auto& field) {
         "squares");
   field(
       "inverse", o.inverse, {"generator", "coarse"},
-      "the local inverse: translation and vortex, estimated from how the data were made; or a few "
-      "steps of Gauss-Newton over ten coarse modes, without extra information");
+      "the local inverse: an estimate of translation and vortex that uses knowledge of how the data were generated; or a few steps of Gauss-Newton over ten coarse modes, without extra information");
   field("track", o.track, {"consistent", "published"},
         "for inverse=generator: the marker's path, or the published one, which lacks a factor Δt");
   fields(o.learning, field);
@@ -68,8 +67,7 @@ void check_speed(const Options& o) {
   const Real passed = fastest * o.dt;
   require(passed <= kFlowLength / 2, [&] {
     return fmt::format(
-        "navier-stokes: with dt={} and steps={} the fastest flow, {:.3g}, passes {:.3g} within a "
-        "step, which is more than half the domain, {}",
+        "navier-stokes: with dt={} and steps={}, the fastest flow (speed {:.3g}) moves by {:.3g} in one time step, which is more than half of the domain, {}; reduce dt",
         o.dt, o.steps, fastest, passed, kFlowLength / 2);
   });
 }

@@ -28,11 +28,11 @@ isoline_sizes sizes_of(const PluginInstance& instance) {
   sizes.minimum = kNan;
   const std::string words = instance.of().words();
   if (instance.table().dimension(instance.self(), &sizes) != 0)
-    throw std::runtime_error(words + ": dimension() has no answer");
+    throw std::runtime_error(words + ": dimension() failed");
   const auto hold = [&](const char* name, std::uint64_t least, std::uint64_t size) {
     require(size >= least && size <= kMostSize, [&] {
-      return fmt::format("{}: dimension() must give {} from {} to {}, got {}", words, name, least,
-                         kMostSize, size);
+      return fmt::format("{}: dimension() must set {} to a number from {} to {}, got {}", words,
+                         name, least, kMostSize, size);
     });
   };
   hold("inputs", 1, sizes.inputs);
@@ -42,8 +42,7 @@ isoline_sizes sizes_of(const PluginInstance& instance) {
   const bool is_known = sizes.inverse >= ISOLINE_EXACT && sizes.inverse <= ISOLINE_APPROXIMATE;
   require(!has_inverse || is_known, [&] {
     return fmt::format(
-        "{}: dimension() must say what its inverse is, from ISOLINE_EXACT to "
-        "ISOLINE_APPROXIMATE, got {}",
+        "{}: dimension() must set inverse to a kind from ISOLINE_EXACT to ISOLINE_APPROXIMATE, got {}",
         words, sizes.inverse);
   });
   return sizes;
@@ -131,7 +130,7 @@ ProblemParts plugin_parts(const PluginComponent& component, const OptionValues& 
   const PluginInstance& instance = physics->instance();
   if (instance.table().instance(instance.self(), start.data(), target.data(),
                                 has_truth ? truth.data() : nullptr) != 0)
-    throw std::runtime_error(component.words() + ": instance() has no answer");
+    throw std::runtime_error(component.words() + ": instance() failed");
   const Real minimum = physics->sizes().minimum;
   ProblemParts parts{
       .physics = std::move(physics), .start = draw.start(start), .target = std::move(target)};

@@ -124,8 +124,7 @@ Index nearest_to_the_shown(const Batch& batch) {
 }
 
 ProblemParts make_hig_toy(const HigOptions& o, const Draw& draw) {
-  require(o.learning.is_on(),
-          "hig-toy: mode=direct does not apply, since the problem can only be learned");
+  require(o.learning.is_on(), "hig-toy has only mode=learn; remove mode=direct");
   const auto sample = [lambda = o.lambda](RandomStream& stream, Index b, Batch& batch) {
     const Real t = batch.input(0, b) = stream.uniform(-1, 1);
     batch.target.col(b) << std::sin(6 * t), std::cos(9 * t);

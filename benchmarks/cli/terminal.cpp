@@ -76,12 +76,12 @@ void print_outcome(const Outcome& outcome, const std::filesystem::path& folder, 
     say(stderr, fmt::format("{}: the results of its repetitions differ\n", name));
   for (const std::string& remark : outcome.remarks) say(stderr, remark + "\n");
   if (!outcome.missing.empty())
-    say(stderr, fmt::format("{} of {} disappeared during the run; the first one is that of {}; "
-                            "the same command runs the missing cells\n",
+    say(stderr, fmt::format("{} of {} disappeared during the run, the first one is that of {}; "
+                            "repeat the command to run the missing cells again\n",
                             reports::counted(outcome.missing.size(), "record"), outcome.planned,
                             outcome.missing.front()));
   if (outcome.reused_from_other_builds > 0)
-    say(stderr, fmt::format("{} of {} reused: another build computed them\n",
+    say(stderr, fmt::format("{} of {} reused, although another build computed them\n",
                             outcome.reused_from_other_builds,
                             reports::counted(std::size_t(outcome.reused), "cell")));
   if (quiet) return;
@@ -95,14 +95,15 @@ void print_outcome(const Outcome& outcome, const std::filesystem::path& folder, 
 
 int exit_code_of(const Outcome& outcome) {
   if (outcome.is_interrupted) {
-    say(stderr, "interrupted; the same command continues the run\n");
+    say(stderr, "interrupted; repeat the command to continue the run\n");
     return kInterrupted;
   }
   if (outcome.interrupted > 0) {
     say(stderr,
-        fmt::format("{} killed by another program, or edited while running; the same command runs "
-                    "the missing cells\n",
-                    reports::counted(std::size_t(outcome.interrupted), "cell")));
+        fmt::format(
+            "{} interrupted: killed by another program, or the script was edited during the run; "
+            "repeat the command to run the missing cells\n",
+            reports::counted(std::size_t(outcome.interrupted), "cell")));
     return kInterrupted;
   }
   const bool is_whole = outcome.missing.empty();

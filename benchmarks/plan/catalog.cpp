@@ -192,7 +192,8 @@ NamedFile named_file(const std::string& given) {
 // The problem's entry with the options for files, each with the digest of its content.
 ProblemEntry with_files(ProblemEntry entry, OptionValues& given) {
   require(!asks_to_learn(given), [&] {
-    return fmt::format("{}: a learned problem has no start and no target of its own", entry.name);
+    return fmt::format("{}: learned problems do not accept a start or a target from a file",
+                       entry.name);
   });
   for (const char* option : {kStartOption, kTargetOption}) {
     entry.options.push_back({option, std::string(), {}, {}, ""});
@@ -200,9 +201,8 @@ ProblemEntry with_files(ProblemEntry entry, OptionValues& given) {
     const NamedFile file = named_file(given.text(option));
     const std::string now = digest(read_text(file.path));
     require(file.digest.empty() || file.digest == now, [&] {
-      return fmt::format(
-          "{}: {}: the content of this file has changed: its digest is {}, and was {}", entry.name,
-          file.path, now, file.digest);
+      return fmt::format("{}: the content of {} has changed: its digest is {}, and was {}",
+                         entry.name, file.path, now, file.digest);
     });
     given.set(option, file.path + "@" + now);
   }
@@ -254,18 +254,19 @@ void require_learnable(const Catalog& catalog, const ProblemEntry& entry) {
   std::string learnable;
   for (const auto& [name, other] : catalog.problems)
     if (can_learn(other)) learnable += (learnable.empty() ? "" : ", ") + name;
-  throw UsageError(fmt::format("{} cannot be learned; these can: {}", entry.name, learnable));
+  throw UsageError(fmt::format("{} does not have mode=learn; these problems have it: {}",
+                               entry.name, learnable));
 }
 
 // The direct problem ignores these options: its settings would be equal under several names.
 void require_no_learning(const ProblemEntry& entry, const OptionValues& options) {
   const auto mode = std::ranges::find(entry.options, kModeOption, &OptionField::name);
   require(mode->standard == OptionValue(std::string(kDirectMode)),
-          [&] { return entry.name + " can only be learned: mode=direct does not apply"; });
+          [&] { return entry.name + " has only mode=learn; remove mode=direct"; });
   for (const OptionField& field : entry.options)
     if (std::ranges::find(kLearningOptions, field.name) != kLearningOptions.end() &&
         options.at(field.name) != field.standard)
-      throw UsageError(fmt::format("{}: {}={} needs mode=learn", entry.name, field.name,
+      throw UsageError(fmt::format("{}: {}={} requires mode=learn", entry.name, field.name,
                                    option_text(options.at(field.name))));
 }
 

@@ -50,7 +50,7 @@ Budget budget_from(const Json& json) {
 std::vector<std::uint64_t> seeds_from(const Json& json) {
   if (!json.contains("instances") && !json.contains("starts"))
     return parse_seeds(json.value("seeds", "=0"));
-  require(!json.contains("seeds"), "a block must have either seeds, or instances and starts");
+  require(!json.contains("seeds"), "it must have either seeds, or instances and starts");
   return crossed_seeds(json.value("instances", ""), json.value("starts", ""));
 }
 
@@ -171,8 +171,13 @@ Suite suite_from_json(const Json& json, const std::string& origin) {
   require_valid(json, "suite", origin);
   Suite suite{.name = json.at("name"), .title = json.value("title", ""), .blocks = {}};
   if (json.contains("cells_of")) suite.blocks = builtin_suite(json["cells_of"]).blocks;
-  for (const Json& block : json.value("matrix", Json::array()))
-    suite.blocks.push_back(block_from(block));
+  try {
+    for (const Json& block : json.value("matrix", Json::array()))
+      suite.blocks.push_back(block_from(block));
+  } catch (const UsageError& error) {
+    throw UsageError(
+        fmt::format("{}: block {}: {}", origin, suite.blocks.size() + 1, error.what()));
+  }
   for (MatrixBlock& block : suite.blocks) block.rates = json.value("rates", block.rates);
   return suite;
 }

@@ -368,10 +368,11 @@ GivenGrid parse_grid(const std::string& text, const std::string& unit) {
                        number(dots + 2, cross, high) && number(cross + 1, text.size(), count);
   constexpr int kMost = 1000;
   const bool is_grid = is_read && low > 0 && high >= low && std::isfinite(high) && count >= 1;
-  require(is_grid,
-          [&] { return fmt::format("expected a grid such as rate=1e-4..1e-1x4, got '{}'", text); });
+  require(is_grid, [&] {
+    return fmt::format("--grid must have a form such as rate=1e-4..1e-1x4, got '{}'", text);
+  });
   require(count <= kMost,
-          [&] { return fmt::format("a grid has at most 1,000 values, got '{}'", text); });
+          [&] { return fmt::format("--grid must have at most 1,000 values, got '{}'", text); });
   GivenGrid grid{.option = text.substr(0, equals), .values = {}, .unit = unit};
   for (int i = 0; i < count; ++i)
     grid.values.push_back(low * std::pow(high / low, count > 1 ? Real(i) / (count - 1) : 0));

@@ -169,7 +169,9 @@ Shard shard_of_array(const Environment& environment) {
   const bool is_one = id && least && count && step > 0 && *id >= *least &&
                       (*id - *least) % step == 0 && (*id - *least) / step < *count;
   require(is_one, [&] {
-    return fmt::format("--shard auto needs a task of an array with even steps, got {}", told);
+    return fmt::format(
+        "--shard auto requires a task of a SLURM array whose indices have equal steps, got {}",
+        told);
   });
   return {(*id - *least) / step + 1, *count};
 }
@@ -191,8 +193,9 @@ Shard shard_of(const std::string& asked, const Environment& environment) {
   const bool is_automatic = asked == "auto";
   const std::string own = environment("ISOLINE_SHARD");
   if (is_automatic && own.empty()) {
-    require(!environment(kVariables[0]).empty(),
-            "--shard auto needs ISOLINE_SHARD or SLURM_ARRAY_TASK_ID, and neither is set");
+    require(
+        !environment(kVariables[0]).empty(),
+        "--shard auto requires the environment variable ISOLINE_SHARD or SLURM_ARRAY_TASK_ID, and neither is set");
     return shard_of_array(environment);
   }
   const std::string& text = is_automatic ? own : asked;

@@ -72,13 +72,14 @@ Means means_of(const ChooseArguments& given) {
 int run(const ChooseArguments& given, Session&) {
   const results::Study study =
       reports::read_study(given.folders, progress_on_terminal("reading records"));
-  require(!study.runs.empty(), "no records: `isoline run --out FOLDER` writes them");
+  require(!study.runs.empty(), "no records: `isoline run --out FOLDER` writes records");
   const results::Comparison comparison = results::compare_optimizers(
       study, reports::yardstick_at(reports::Measure::work, given.tolerance));
   const Means means = means_of(given);
   const results::Advice advice = results::advise(comparison, means);
-  require(!advice.settings.empty(),
-          [&] { return reports::means_text(means) + ": these results have no such problem"; });
+  require(!advice.settings.empty(), [&] {
+    return reports::means_text(means) + ": these results do not have such a problem";
+  });
   say(stdout, reports::advice_text(comparison, means, advice) + "\n");
   constexpr std::size_t kShown = 10;
   for (const results::Advised& one : advice.ranked | std::views::take(kShown))

@@ -33,9 +33,9 @@ int run(const MergeArguments& given, Session&) {
   if (!outcome.conflicts.empty()) {
     say(stderr, conflicts_text(outcome.conflicts));
     say(stderr,
-        fmt::format("{} is not written: remove the wrong records, or --force their runs, and "
-                    "merge again\n",
-                    given.out));
+        fmt::format(
+            "{} was not written: remove the wrong records, or run their cells again with --force, and merge again\n",
+            given.out));
     return kWorse;
   }
   say(stdout, fmt::format("{} in {}: {} with timings of several folders, {} left out\n",

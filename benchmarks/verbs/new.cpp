@@ -78,8 +78,7 @@ void require_name(const std::string& name, const Catalog& catalog) {
                      name.find("--") == std::string::npos && std::ranges::all_of(name, is_allowed);
   require(holds, [&] {
     return fmt::format(
-        "a name must be lower-case letters, digits and single hyphens between them, "
-        "{} at most and the first a letter, got '{}'",
+        "a name must consist of at most {} lower-case letters, digits and single hyphens, and must begin with a letter, got '{}'",
         kMost, name);
   });
   require(!catalog.problems.contains(name) && !catalog.optimizers.contains(name), [&] {

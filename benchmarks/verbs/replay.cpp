@@ -110,12 +110,13 @@ std::vector<std::string> sampled_records(const ReplayArguments& given) {
   for (const fs::path folder : given.records)
     for (const std::string& name : names_in(folder / "runs"))
       if (name.ends_with(".json")) records.push_back((folder / "runs" / name).string());
-  require(!records.empty(), "--sample expects result folders, and these have no records");
+  require(!records.empty(), "--sample expects result folders, and these folders have no records");
   const bool is_share = given.sample.ends_with('%');
   double number = 0;
   const char *begin = given.sample.data(), *end = begin + given.sample.size() - is_share;
   require(std::from_chars(begin, end, number).ptr == end && number > 0, [&] {
-    return "--sample expects a share such as 1% or a number such as 20, got '" + given.sample + "'";
+    return "--sample must be a percentage such as 1% or a number such as 20, got '" + given.sample +
+           "'";
   });
   if (is_share) number = std::ceil(number / 100 * double(records.size()));
   number = std::clamp(std::floor(number), 1.0, double(records.size()));

@@ -72,8 +72,9 @@ void keep_problems(reports::Study& study, const std::string& text) {
   };
   std::erase_if(study.runs, [&](const Record& run) { return is_other(run.request.problem.spec); });
   std::erase_if(study.plan.cells, [&](const PlannedCell& cell) { return is_other(cell.problem); });
-  require(!study.runs.empty(),
-          [&] { return fmt::format("--problem {}: no record is of such a problem", text); });
+  require(!study.runs.empty(), [&] {
+    return fmt::format("--problem {}: these results do not have such a problem", text);
+  });
 }
 
 // By the desktop's program, which outlives this one; prints a message if it is missing.
@@ -106,7 +107,7 @@ int run(const ReportArguments& given, Session& session) {
         study.unreadable.empty() ? ""
                                  : fmt::format(", and {} that cannot be read",
                                                reports::counted(study.unreadable.size(), "file"));
-    return fmt::format("no records in {}{}: `isoline run --out FOLDER` writes them",
+    return fmt::format("no records in {}{}: `isoline run --out FOLDER` writes records",
                        fmt::join(given.folders, ", "), damaged);
   });
   const reports::Yardstick yardstick = yardstick_of(given);

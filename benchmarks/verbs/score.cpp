@@ -100,7 +100,7 @@ int run(const ScoreArguments& given, Session& session) {
     block.optimizers.clear();
     for (const std::string& some : {given.optimizer, given.peers})
       if (!some.empty() && some != "none") block.optimizers.push_back(some);
-    require(!block.optimizers.empty(), "nothing to score: name an --optimizer");
+    require(!block.optimizers.empty(), "nothing to score: pass --optimizer");
     if (!given.problem.empty()) block.problems = {given.problem};
   }
   if (!given.problem.empty()) suite.blocks.resize(1);

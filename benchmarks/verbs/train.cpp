@@ -53,7 +53,8 @@ Request request_of(const TrainArguments& given, const Catalog& catalog) {
   OptionValues options = options_of(problem_spec);
   if (!options.contains(kModeOption)) options.set(kModeOption, kLearnMode);
   const Component problem = complete_problem(catalog, problem_spec.name, options);
-  require(problem.is_learned, "train: mode=direct has no network to train; remove this option");
+  require(problem.is_learned,
+          "train: with mode=direct, there is no network to train; remove this option");
   const Rates rates = Rates::builtin();
   return named({.problem = problem,
                 .optimizer = with_rates(catalog, spec, rates.find(problem, spec.name)),

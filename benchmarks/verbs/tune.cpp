@@ -85,7 +85,7 @@ std::vector<Request> cells_of(const Catalog& catalog, const TuneArguments& given
 }
 
 std::vector<Request> cells_named(const Catalog& catalog, const TuneArguments& given) {
-  require(!given.problem.empty(), "tune: problems are missing: pass SPEC, --problem or --suite");
+  require(!given.problem.empty(), "tune: no problems: pass SPEC, --problem or --suite");
   const MatrixBlock block{.problems = {given.problem},
                           .optimizers = {given.optimizer.empty() ? "*" : given.optimizer},
                           .budget = {.iterations = given.iterations, .work = given.work}};
@@ -95,7 +95,7 @@ std::vector<Request> cells_named(const Catalog& catalog, const TuneArguments& gi
 TuningPlan plan_of(const Catalog& catalog, const TuneArguments& given) {
   TuningPlan plan{.seeds = parse_seeds(given.seeds), .is_common = given.leaves_out};
   require(!given.leaves_out || given.grid.empty(),
-          "tune: --leave-one-out uses each method's own grid, not --grid");
+          "tune: --leave-one-out uses one grid per method and cannot be combined with --grid");
   if (!given.grid.empty()) plan.grid = parse_grid(given.grid, given.unit);
   const Rates rates = Rates::builtin();
   std::set<std::pair<std::string, std::string>> known;
@@ -117,9 +117,9 @@ TuningPlan plan_of(const Catalog& catalog, const TuneArguments& given) {
                                      : row && !row->is_from_grid ? row->options
                                                                  : OptionValues()});
   }
-  require(!plan.pairs.empty(), "tune: none of these methods has an option to tune");
+  require(!plan.pairs.empty(), "tune: none of these methods has a tunable option");
   require(!given.leaves_out || families.size() > 1,
-          "tune: --leave-one-out needs problems of at least two families (names)");
+          "tune: --leave-one-out requires problems with at least two different names");
   return plan;
 }
 

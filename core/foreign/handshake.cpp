@@ -19,7 +19,7 @@ namespace isoline {
 
 ChildProgram::Start door_to(const std::string& command) {
   require(!command.empty(),
-          "process needs a command, such as process[command=\"python3 mine.py\"], got none");
+          "process requires a command, such as process[command=\"python3 mine.py\"]");
   const char* const theirs = std::getenv("PYTHONPATH");
   const std::string ours = client_folder("python").string();
   return {.command = command,
@@ -76,22 +76,22 @@ class Said {
     if (!json_.is_object()) fail("answers with", json_, "an object");
     const std::int64_t protocol = whole("protocol", 0, 1'000'000, {});
     require(protocol == kWireProtocol, [&] {
-      return fmt::format("{} uses protocol {}, but this program needs {}", sender_, protocol,
-                         kWireProtocol);
+      return fmt::format("{} uses version {} of the protocol, but Isoline uses version {}", sender_,
+                         protocol, kWireProtocol);
     });
   }
 
   void expect_role(std::string_view role) const {
     const std::string said = text("role");
     require(said == role, [&] {
-      return fmt::format("{} is {} {}, but is used as {} {}", sender_, article(said), quoted(said),
-                         article(role), role);
+      return fmt::format("{} is {} {}, but the command uses it as {} {}", sender_, article(said),
+                         quoted(said), article(role), role);
     });
   }
   bool has(const char* name) const { return json_.contains(name) && !json_[name].is_null(); }
 
   std::string text(const char* name, std::size_t most = kMostWords) const {
-    const std::string law = fmt::format("text of at most {} bytes", most);
+    const std::string law = fmt::format("a string of at most {} bytes", most);
     const std::string said = value<std::string>(name, &Json::is_string, law.c_str()).value_or("");
     if (said.size() > most) refuse(name, law);
     return said;
@@ -147,7 +147,8 @@ class Said {
   std::map<std::string, std::string> texts(const char* name) const {
     std::map<std::string, std::string> all;
     if (!has(name)) return all;
-    const std::string law = fmt::format("an object of at most {} short texts", kMostPackages);
+    const std::string law =
+        fmt::format("an object of at most {} strings of at most 64 bytes each", kMostPackages);
     const Json& given = json_[name];
     if (!given.is_object() || given.size() > kMostPackages) refuse(name, law);
     for (const auto& [key, value] : given.items()) {
@@ -160,8 +161,7 @@ class Said {
   OptionTable options(const char* name) const {
     if (!has(name)) return {};
     const std::string law = fmt::format(
-        "a list of at most {} objects with a new name of letters, digits and hyphens, and with a "
-        "default",
+        "a list of at most {} objects, each with a new name of letters, digits and hyphens, and with a default",
         kMostPackages);
     const Json& list = json_[name];
     if (!list.is_array() || list.size() > kMostPackages) refuse(name, law);
@@ -230,8 +230,9 @@ class Said {
         fmt::format("{} {} {}, which must be {}", sender_, what, quoted(json_text(value)), law));
   }
   [[noreturn]] void refuse(const char* name, const std::string& law) const {
-    if (!has(name)) throw UsageError(fmt::format("{} lacks {}, {}", sender_, name, law));
-    fail(fmt::format("says {} =", name), json_[name], law);
+    if (!has(name))
+      throw UsageError(fmt::format("{} does not declare {}, which must be {}", sender_, name, law));
+    fail(fmt::format("declares {} =", name), json_[name], law);
   }
 
   const Json json_;
@@ -249,7 +250,7 @@ Foreign foreign_of(const Said& said) {
   foreign.tunable = said.text("tunable", kMostName);
   const auto tunable = std::ranges::find(foreign.options, foreign.tunable, &OptionField::name);
   require(foreign.tunable.empty() || tunable != foreign.options.end(),
-          [&] { return "tunable must name a declared option, got " + foreign.tunable; });
+          [&] { return "tunable must be the name of a declared option, got " + foreign.tunable; });
   return foreign;
 }
 
@@ -286,8 +287,9 @@ ProblemHandshake problem_handshake(const std::string& text, const std::string& s
   problem.inverse_price = said.whole("inverse_price", 1, kMostPrice, 1);
   problem.are_differences = said.flag("differences");
   problem.inverse = said.choice("inverse", kInverses);
-  require(problem.oracles.contains(Oracle::inverse) == !problem.inverse.empty(),
-          [&] { return sender + " must declare the oracle inverse and its kind together"; });
+  require(problem.oracles.contains(Oracle::inverse) == !problem.inverse.empty(), [&] {
+    return sender + " must declare either both the oracle inverse and its kind, or neither";
+  });
   problem.start = said.numbers("start", problem.inputs, true);
   problem.drawn = said.numbers("drawn", problem.inputs, false);
   problem.target = said.numbers("target", problem.outputs, true);
@@ -306,12 +308,13 @@ ProblemHandshake problem_handshake(const std::string& text, const std::string& s
   problem.aim = said.choice("aim", kAimNames) == name_of(Aim::x) ? Aim::x : Aim::loss;
   problem.has_x_error = said.flag("has_x_error");
   require(problem.aim == Aim::loss || !problem.truth.empty() || problem.has_x_error,
-          [&] { return sender + " has the success criterion x, but truth is missing"; });
+          [&] { return sender + " declares aim = x, which requires truth or x_error"; });
   constexpr std::array<std::string_view, 1> kScales = {"own"};
   problem.has_own_scale = !said.choice("start_scale", kScales).empty();
   problem.x_floor = said.number("x_floor").value_or(0);
   require(problem.x_floor >= 0, [&] {
-    return fmt::format("{} says x_floor = {}, which must not be negative", sender, problem.x_floor);
+    return fmt::format("{} declares x_floor = {}, which must not be negative", sender,
+                       problem.x_floor);
   });
   return problem;
 }

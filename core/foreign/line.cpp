@@ -120,7 +120,8 @@ void Line::wait(short events, const Deadline& deadline) {
 
 void Line::send_pieces(const FrameHead& head, std::span<const Piece> pieces) {
   char early = 0;  // an unsolicited answer would be taken for the next one
-  if (recv(socket_, &early, 1, MSG_PEEK | MSG_DONTWAIT) > 0) fail("sent an unsolicited frame");
+  if (recv(socket_, &early, 1, MSG_PEEK | MSG_DONTWAIT) > 0)
+    fail("sent data that was not requested");
   std::array<Piece, kMostPieces> left{};
   std::size_t count = 0;
   left[count++] = {&head, sizeof head};
@@ -192,7 +193,7 @@ FrameHead Line::receive_head(void* room, std::size_t most, std::size_t& got,
     read += receive_some(std::span(parts).first(most > 0 ? 2 : 1), deadline);
   }
   got = read - sizeof head;
-  if (got > head.bytes) fail("sent more than the header of its frame says");
+  if (got > head.bytes) fail("sent more bytes than the header of its frame states");
   return head;
 }
 
@@ -208,7 +209,7 @@ void Line::receive_rest(char* bytes, std::size_t count, const Deadline& deadline
 std::string Line::message_text(const FrameHead& head, std::string begun, std::uint64_t most,
                                const Deadline& deadline) {
   if (head.bytes > most)
-    fail(fmt::format("sent a text of {} bytes; at most {} are allowed", head.bytes, most));
+    fail(fmt::format("sent a string of {} bytes; at most {} bytes are allowed", head.bytes, most));
   const std::size_t got = begun.size();
   begun.resize(head.bytes);
   receive_rest(begun.data() + got, begun.size() - got, deadline);
@@ -221,7 +222,7 @@ FrameHead Line::receive(std::span<Real> room, double seconds) {
   std::size_t got = 0;
   const FrameHead head = receive_head(bytes.data(), bytes.size(), got, deadline);
   if (head.bytes > bytes.size())
-    fail(fmt::format("sent a frame of {} bytes; at most {} are allowed here", head.bytes,
+    fail(fmt::format("sent a frame of {} bytes; at most {} bytes are allowed here", head.bytes,
                      bytes.size()));
   receive_rest(bytes.data() + got, head.bytes - got, deadline);
   return head;

@@ -80,7 +80,8 @@ Header header_from(const std::string& text) {
 }
 
 Header header_of(const std::string& bytes) {
-  require(bytes.starts_with(kMagic) && bytes.size() > kPreamble + 4, "it is not a .npy file");
+  require(bytes.starts_with(kMagic) && bytes.size() > kPreamble + 4,
+          "its content is not that of a .npy file");
   const int version = static_cast<unsigned char>(bytes[kMagic.size()]);
   require(version >= 1 && version <= 3, [&] {
     return fmt::format("its version of the format is {}; 1 to 3 can be read", version);
@@ -233,7 +234,8 @@ void write_csv(const std::filesystem::path& path, const NumberArray& array) {
 
 void require_known(const std::filesystem::path& path) {
   require(path.extension() == ".npy" || path.extension() == ".csv", [&] {
-    return fmt::format("{}: the name of an array must end with .npy or .csv", path.string());
+    return fmt::format("{}: the name of a file of numbers must end with .npy or .csv",
+                       path.string());
   });
 }
 

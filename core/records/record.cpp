@@ -338,7 +338,7 @@ std::string file_text(const Record& record) { return json_text(to_json(record)) 
 Json run_schema() { return schema_of<Record>("isoline.run/1: the record of one run"); }
 
 Record record_from_text(const std::string& text, const std::string& origin) {
-  return from_text<Record>(text, origin, "no isoline.run/1 record");
+  return from_text<Record>(text, origin, "not a record (isoline.run/1)");
 }
 
 Record read_unchecked_record(const std::string& path) {
@@ -421,7 +421,7 @@ Request named(Request request) {
 Json to_json(const Request& request) { return json_of(request); }
 
 Request request_from_json(const Json& json) {
-  return named(from_text<Request>(json_text(json), "a request", "no request"));
+  return named(from_text<Request>(json_text(json), "a request", "not a request"));
 }
 
 Budget budget_from(const JsonView& json) {
@@ -433,7 +433,7 @@ Budget budget_from(const JsonView& json) {
 Json to_json(const Plan& plan) { return json_of(plan); }
 std::string file_text(const Plan& plan) { return json_text(to_json(plan)) + "\n"; }
 Plan plan_from_text(const std::string& text, const std::string& origin) {
-  return from_text<Plan>(text, origin, "no isoline.plan/1 plan");
+  return from_text<Plan>(text, origin, "not a plan (isoline.plan/1)");
 }
 Json plan_schema() {
   return schema_of<Plan>("isoline.plan/1: every cell ever planned in a result folder");

@@ -105,7 +105,7 @@ class OnSlurm(unittest.TestCase):
         self.cluster.tell("scancel", "--batch", "--signal=TERM", f"{job}_1")
         os.kill(self.processes_of("stopped")["2/2"], signal.SIGKILL)
         self.cluster.wait_until_empty()
-        self.assertIn("interrupted; the same command", self.logs_of("stopped"))
+        self.assertIn("interrupted; ", self.logs_of("stopped"))
         for task in ["1", "2"]:
             self.assertIn("Restarts=1 ", self.cluster.tell("scontrol", "show", "job",
                                                            f"{job}_{task}"))
