@@ -49,7 +49,7 @@ struct ExportFormat {
   Export (*write)(const Comparison&);
 };
 inline constexpr ExportFormat kExportFormats[] = {
-    {"csv", "one row per stored iteration",
+    {"csv", "one row per stored point",
      [](const Comparison& comparison) {
        return Export{{{"", curves_csv(comparison)}}};
      }},
