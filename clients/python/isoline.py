@@ -53,7 +53,7 @@ class Refused(RuntimeError):
 def _real(values, name):
     """An array of doubles without gaps, or a list of numbers. Refuses what doubles cannot hold."""
     if values is None:
-        raise Refused(f"{name} is None; if it is the result of a function, a return is missing")
+        raise Refused(f"{name} is None; does the function that computes it lack a return?")
     if hasattr(values, "detach"):  # a tensor of torch
         values = values.detach().cpu().numpy()
     if numpy is None:
@@ -187,12 +187,13 @@ _declared, _tunable, _has_introduced = [], None, False
 def option(name, default, doc="", tunable=False):
     """The value of an option of this script: of process[command="python3 mine.py",name=value].
 
-    Its type, a number, a whole number, true or false, or text, is that of the default. Call it
-    before problem() or optimizer(). `tunable`: `isoline tune` chooses this option of an optimizer.
+    The option has the type of its default: a number, a whole number, true or false, or a string.
+    Call option() before problem() or optimizer(). tunable=True: `isoline tune` looks for the best
+    value of this option of an optimizer.
     """
     global _tunable
     if _has_introduced:
-        raise Refused(f"option {name} must be declared before problem() or optimizer() is called")
+        raise Refused(f"option('{name}') must be called before problem() or optimizer()")
     given = _greeted()[1].get("options", {})
     _declared.append({"name": name, "default": default, "doc": doc})
     _tunable = name if tunable else _tunable
@@ -200,7 +201,7 @@ def option(name, default, doc="", tunable=False):
 
 
 def _refuse(line, why):
-    """Isoline shows the reason in the place of a description."""
+    """Sends the reason instead of a description; Isoline shows it."""
     line.send(HELLO, FAILED, _text(why))
     raise Stop
 
@@ -208,9 +209,8 @@ def _refuse(line, why):
 def _introduce(line, greeting, role, said):
     global _has_introduced
     if greeting["role"] != role:
-        article = "an" if role == "optimizer" else "a"
-        wrong = f"this script is {article} {role}; use it as such, not as {greeting['role']}"
-        _refuse(line, wrong)
+        own, other = (("an " if each == "optimizer" else "a ") + each for each in (role, greeting["role"]))
+        _refuse(line, f"this script is {own}, but the command uses it as {other}")
     packages = {}
     for name in ("numpy", "scipy", "torch", "jax"):
         module = sys.modules.get(name)
@@ -408,18 +408,20 @@ def problem(
 
     forward(x) -> y. Products with the Jacobian come from one of these:
     - vjp(x, u) -> Jᵀu, jvp(x, v) -> Jv, jacobian(x) -> (m, n), if passed;
-    - torch or jax, if forward uses their numbers;
-    - central differences, with differences=True; the record says so, and their cost is counted.
-    Otherwise the problem offers losses only.
+    - torch or jax, if forward takes and returns their arrays;
+    - central differences, with differences=True; the record states this, and their cost is counted.
+    Otherwise, the problem does not offer derivatives.
 
-    inverse(y, x0) -> x, or None without a solution.
+    inverse(y, x0) -> x, or None if it does not find a solution.
     truth: the x that produced the target.
-    drawn: the start of this seed(), instead of one that Isoline samples near `start`.
+    drawn: the starting point for this seed(), instead of one that Isoline samples around `start`.
     bounds=(lower, upper): numbers or lists; Isoline does not call forward outside them.
     aim="x": the success criterion is the error in x, not the loss.
-    start_scale="own": starts of other seeds differ by a tenth of each unknown, not of max(1, |x|).
-    x_error(x) -> number: the distance to the nearest solution; without it, that to `truth`.
-    x_floor: the smallest error in x that noise in the data permits; up to 1.1 times that is solved.
+    start_scale="own": the unknowns of random starts have a standard deviation of a tenth of |start|,
+    instead of a tenth of max(1, |start|).
+    x_error(x) -> number: the distance to the nearest solution; by default, the distance to `truth`.
+    x_floor: the smallest error in x that the noise in the data permits. A run with at most 1.1 times
+    this error counts as solved.
     """
     line, greeting = _greeted()
     try:
@@ -537,11 +539,11 @@ def _inverted(payload, inverse, n, m):
 class optimizer:
     """An optimizer that Isoline runs: x0, and the oracles of L and of r = (y − y*)/√B.
 
-    needs: the required derivatives, of "pullback", "jacobian", "pushforward", "hessian_product".
+    needs: a list of the required derivatives: "pullback", "jacobian", "pushforward", "hessian_product".
     least_squares=True: the method minimizes ½‖r‖², so it does not apply to problems with another loss.
-    reports=True: the script calls report(x) once per iteration. Otherwise each new best point counts
+    reports=True: the script calls report(x) once per iteration. Otherwise, each new best point counts
     as one iteration.
-    When the run is over, every method raises Stop, which exits the script.
+    When the run is over, every call raises Stop, which exits the script.
     """
 
     def __init__(
@@ -598,7 +600,7 @@ class optimizer:
         self._ask(REPORT, x)
 
     def finish(self, x, message=""):
-        """Returns the result x, with the method's own statement about it."""
+        """Ends the run with the result x. The record contains the message."""
         if message:
             self._line.send(CLAIM, DONE, _text(message)[:1000])
             self._answer()
