@@ -31,7 +31,7 @@ isoline_sizes sizes_of(const PluginInstance& instance) {
     throw std::runtime_error(words + ": dimension() failed");
   const auto hold = [&](const char* name, std::uint64_t least, std::uint64_t size) {
     require(size >= least && size <= kMostSize, [&] {
-      return fmt::format("{}: dimension() must set {} to a number from {} to {}, got {}", words,
+      return fmt::format("{}: dimension() must give {} from {} to {}, got {}", words,
                          name, least, kMostSize, size);
     });
   };

@@ -192,7 +192,7 @@ class ProblemsWithNumPy(Problems):
             self.assertEqual(program.ask(5, 0, []), [0, 2, 4, 1, 3, 5])
 
     def test_refuses_what_doubles_cannot_hold(self):
-        for result, word in [("np.array([1j])", b"complex"), ("None", b"return is missing"),
+        for result, word in [("np.array([1j])", b"complex"), ("None", b"lack a return"),
                              ("[1, None]", b"None"), ("['1']", b"real numbers"),
                              ("np.ma.masked_array([1., 2.], [0, 1])", b"masked")]:
             text = f"import isoline, numpy as np\nisoline.problem(lambda x: {result}, [1])"

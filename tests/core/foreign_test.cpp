@@ -109,7 +109,7 @@ TEST(Line, WhatBreaksTheLawOfFramesIsRefused) {
   expect_said(frame(4, 0, std::uint64_t{1} << 63, bytes_of(kNumbers)),
               "pullback with 9223372036854775808 bytes instead");
   expect_said(frame(4, 0, 8, "12345678"), "8 bytes instead of 16");
-  expect_said(frame(4, 0, 8, bytes_of(kNumbers)), "more than the header");
+  expect_said(frame(4, 0, 8, bytes_of(kNumbers)), "more bytes than");
   expect_said(frame(99, 0, 16, bytes_of(kNumbers)), "a frame of verb 99");
 }
 
@@ -239,16 +239,16 @@ TEST(Handshakes, ThatBreakTheLawAreQuoted) {
              {"target", {1, 2, "three"}, "a list of 3 numbers"},
              {"oracles", {"forward", "gradient"}, " pushforward pullback jacobian inverse"},
              {"name", Json::array({1}), "at most 64 bytes"},
-             {"packages", {{"numpy", 1}}, "at most 100 short texts"},
+             {"packages", {{"numpy", 1}}, "64 bytes each"},
              {"inverse", "perfect", "exact damped estimate approximate"},
              {"minimum", "small", "a number"}};
   for (const auto& [member, value, law] : all) {
     const std::string said = complaint(member, value);
-    EXPECT_TRUE(said.starts_with("`mine` says " + member + " = " + json_text(value) + ", "))
+    EXPECT_TRUE(said.starts_with("`mine` declares " + member + " = " + json_text(value) + ", "))
         << said;
     EXPECT_TRUE(said.ends_with(law)) << said;
   }
-  EXPECT_TRUE(complaint("target", nullptr).starts_with("`mine` lacks target"));
+  EXPECT_TRUE(complaint("target", nullptr).starts_with("`mine` does not declare target"));
 }
 
 TEST(Handshakes, OfAnotherProtocolOrRoleAreRefused) {
@@ -262,7 +262,7 @@ TEST(Handshakes, OfAnotherProtocolOrRoleAreRefused) {
 TEST(Handshakes, BoundsLieOneBelowTheOtherAndHoldEveryPointThatIsSaid) {
   for (const Json& wrong : {Json{{0, 1}, {0, 1}}, Json{{0, 0}, {1, "nan"}}, Json{{0, 0}},
                             Json{{0}, {1}}, Json("none"), Json{{0, 0}, {1, "one"}}})
-    EXPECT_TRUE(complaint("bounds", wrong).starts_with("`mine` says bounds = " + json_text(wrong)));
+    EXPECT_TRUE(complaint("bounds", wrong).starts_with("`mine` declares bounds = " + json_text(wrong)));
   Json json = a_problem();
   json["start"] = {1, 2};
   json["bounds"] = {{"-inf", 2}, {1, "inf"}};
@@ -286,7 +286,7 @@ TEST(Handshakes, AnInverseAndItsKindBelongTogether) {
 }
 
 TEST(Handshakes, WhoSeeksXSaysWhich) {
-  EXPECT_TRUE(complaint("aim", "x").ends_with("truth is missing"));
+  EXPECT_TRUE(complaint("aim", "x").ends_with("truth or x_error"));
   Json json = a_problem();
   json.update({{"aim", "x"}, {"has_x_error", true}, {"start_scale", "own"}, {"x_floor", 0.5}});
   const ProblemHandshake said = problem_handshake(json_text(json), "`mine`");

@@ -168,7 +168,7 @@ const Law kLaws[] = {{"version", "version 1 of isoline.h, got 2"},
                      {"bad name", "`name` must be"},
                      {"empty title", "trial-products: `title` is empty"},
                      {"null source", "trial-products: `source` is null"},
-                     {"inverse of unknown kind", "dimension() must say"},
+                     {"inverse of unknown kind", "dimension() must set"},
                      {"alien capability", "capabilities 0x10000000000 are"},
                      {"no capability", "a problem must have ISOLINE_FORWARD"},
                      {"two kinds of step", "either ISOLINE_STEP or ISOLINE_SOLVE"},
@@ -182,8 +182,8 @@ const Law kLaws[] = {{"version", "version 1 of isoline.h, got 2"},
                      {"no outputs", "outputs from 1 to 134217728, got 0"},
                      {"2^40 outputs", "outputs from 1 to 134217728, got 1099511627776"},
                      {"2^40 kept", "kept from 0 to 134217728, got 1099511627776"},
-                     {"no dimension", "dimension() has no answer"},
-                     {"no instance", "instance() has no answer"},
+                     {"no dimension", "dimension() failed"},
+                     {"no instance", "instance() failed"},
                      {"null instance of it", "open() returned null"}};
 
 TEST(PluginLaws, ThatAreBrokenAreToldWithTheLibraryAndWhatWasGiven) {
@@ -211,7 +211,7 @@ std::string message_of_overreach(const char* defect) {
 TEST(PluginLaws, AMethodIsRefusedWhatItDidNotDeclareWhateverItMakesOfThat) {
   EXPECT_NE(message_of_overreach("").find("jacobian"), std::string::npos)
       << message_of_overreach("");
-  EXPECT_NE(message_of_overreach("gradient first").find("need linearize() first"),
+  EXPECT_NE(message_of_overreach("gradient first").find("call linearize() before"),
             std::string::npos);
   EXPECT_NE(message_of_overreach("unknown verdict").find("got 7"), std::string::npos);
   EXPECT_NE(message_of_overreach("failed step").find("trial-overreach: step() failed"),
