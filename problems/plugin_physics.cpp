@@ -31,8 +31,8 @@ isoline_sizes sizes_of(const PluginInstance& instance) {
     throw std::runtime_error(words + ": dimension() failed");
   const auto hold = [&](const char* name, std::uint64_t least, std::uint64_t size) {
     require(size >= least && size <= kMostSize, [&] {
-      return fmt::format("{}: dimension() must give {} from {} to {}, got {}", words,
-                         name, least, kMostSize, size);
+      return fmt::format("{}: dimension() must give {} from {} to {}, got {}", words, name, least,
+                         kMostSize, size);
     });
   };
   hold("inputs", 1, sizes.inputs);

@@ -76,8 +76,8 @@ class Said {
     if (!json_.is_object()) fail("answers with", json_, "an object");
     const std::int64_t protocol = whole("protocol", 0, 1'000'000, {});
     require(protocol == kWireProtocol, [&] {
-      return fmt::format("{} uses protocol {}, but Isoline uses protocol {}", sender_,
-                         protocol, kWireProtocol);
+      return fmt::format("{} uses protocol {}, but Isoline uses protocol {}", sender_, protocol,
+                         kWireProtocol);
     });
   }
 

@@ -262,7 +262,8 @@ TEST(Handshakes, OfAnotherProtocolOrRoleAreRefused) {
 TEST(Handshakes, BoundsLieOneBelowTheOtherAndHoldEveryPointThatIsSaid) {
   for (const Json& wrong : {Json{{0, 1}, {0, 1}}, Json{{0, 0}, {1, "nan"}}, Json{{0, 0}},
                             Json{{0}, {1}}, Json("none"), Json{{0, 0}, {1, "one"}}})
-    EXPECT_TRUE(complaint("bounds", wrong).starts_with("`mine` declares bounds = " + json_text(wrong)));
+    EXPECT_TRUE(
+        complaint("bounds", wrong).starts_with("`mine` declares bounds = " + json_text(wrong)));
   Json json = a_problem();
   json["start"] = {1, 2};
   json["bounds"] = {{"-inf", 2}, {1, "inf"}};
