@@ -130,7 +130,7 @@ TEST(Line, AQuestionLongerThanItsRoomIsRefusedBeforeItIsRead) {
   BothEnds ends;
   ends.write(frame(17, 0, std::uint64_t{1} << 40, ""));
   std::array<double, 4> room{};
-  EXPECT_NE(refusal<LineError>([&] { ends.line->receive(room); }).find("at most 32 are allowed"),
+  EXPECT_NE(refusal<LineError>([&] { ends.line->receive(room); }).find("bytes; at most 32"),
             std::string::npos);
 }
 
