@@ -287,7 +287,7 @@ TEST(Npy, SurvivesTheRoundTripAtEveryRank) {
 
 TEST(Npy, RefusesWhatItCannotTakeWithOneSentence) {
   const std::string good = by_numpy();
-  EXPECT_NE(refusal_of("hello").find("not a .npy file"), std::string::npos);
+  EXPECT_NE(refusal_of("hello").find("a .npy file"), std::string::npos);
   EXPECT_NE(refusal_of(good.substr(0, good.size() - 3)).find("bytes of numbers"),
             std::string::npos);
   std::string complex = good;
