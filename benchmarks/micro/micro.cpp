@@ -513,6 +513,40 @@ void register_spectral() {
                     });
 }
 
+// --- the parts of a step of half-inverse gradients, which the published scripts time apart: the
+// derivative (a forward pass and J), the inversion (all from J to Δθ), and the update of θ.
+
+void time_parts(benchmark::State& state, const char* text) {
+  const Problem problem = make_problem(text);
+  Still still(problem, "hig[factorization=svd]", 0);
+  std::vector<double> derivative, inversion, update;  // s
+  for (auto _ : state) {
+    Point at;
+    Matrix J;
+    derivative.push_back(seconds_of(1, [&] {
+      problem.forward(still.theta, at);
+      problem.jacobian(J, at);
+    }));
+    const double step = still.run();
+    const Vector delta = still.moved - still.theta;
+    update.push_back(seconds_of(1, [&] { still.moved = still.theta + delta; }));
+    inversion.push_back(step - derivative.back() - update.back());
+    state.SetIterationTime(step);
+  }
+  state.counters["derivative_ns"] = 1e9 * median(derivative);
+  state.counters["inversion_ns"] = 1e9 * median(inversion);
+  state.counters["update_ns"] = 1e9 * median(update);
+}
+
+void register_parts() {
+  for (const char* problem :
+       {"linear-chain[mode=learn,batch=32]", "coupled-oscillators[mode=learn,batch=128]",
+        "quantum-dipole[mode=learn,batch=16]"})
+    benchmark::RegisterBenchmark(fmt::format("parts/hig/{}", problem).c_str(), time_parts, problem)
+        ->Iterations(5)
+        ->UseManualTime();
+}
+
 }  // namespace
 }  // namespace isoline::benchmarks::micro
 
@@ -525,6 +559,7 @@ int main(int count, char** arguments) {
   register_transforms();
   register_round_trips();
   register_spectral();
+  register_parts();
   benchmark::Initialize(&count, arguments);
   if (benchmark::ReportUnrecognizedArguments(count, arguments)) return 1;
   benchmark::RunSpecifiedBenchmarks();
