@@ -143,7 +143,7 @@ def findings(report):
     starts = max(cell["runs"] for cell in report["cells"] if cell["problem"] in report["ranked"])
     band = sum(place["in_group"] for place in leader["places"])
     methods = len(leader["places"])
-    lead = (f"**Findings** from {report['answered'] - inapplicable:,} runs; in {inapplicable} further cases, the method does "
+    lead = (f"**Findings** from {report['answered'] - inapplicable:,} runs of `quick`; in {inapplicable} further cases, the method does "
             f"not apply. {methods} methods are ranked on {leader['settings']} settings of {leader['families']} physics problems "
             f"({starts} instances each): the more settings solved and the less work, the higher the score.")
     decision = (f"By work, {first['optimizer']} is significantly ahead of every other method: it"
@@ -151,7 +151,7 @@ def findings(report):
                 f"By work, no method is significantly ahead. {first['optimizer']}")
     return lead, [
         f"{decision} ranks first (solves {first['solved']} of {leader['settings']} settings), {second['optimizer']} "
-        f"second (solves {second['solved']}; paired sign-flip test, p = {second['p']:.2f}). {band - 1 or 'None'} of the "
+        f"second (solves {second['solved']}; sign-flip test, p = {second['p']:.2f}). {band - 1 or 'None'} of the "
         f"{methods - 1} others {'is' if band < 3 else 'are'} not significantly worse.",
         f"By wall time, {' and '.join(by_time)} {'ranks' if len(by_time) == 1 else 'rank'} first.",
         f"levenberg-marquardt solves {lm['solved']} settings and needs {float(lm['typical']):.1f} times the least work in the "
