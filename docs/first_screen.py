@@ -154,8 +154,8 @@ def findings(report):
         f"second (solves {second['solved']}; sign-flip test, p = {second['p']:.2f}). {band - 1 or 'None'} of the "
         f"{methods - 1} others {'is' if band < 3 else 'are'} not significantly worse.",
         f"By wall time, {' and '.join(by_time)} {'ranks' if len(by_time) == 1 else 'rank'} first.",
-        f"levenberg-marquardt solves {lm['solved']} settings and needs {float(lm['typical']):.1f} times the least work in the "
-        f"median; gauss-newton solves {by_name['gauss-newton']['solved']}.",
+        f"levenberg-marquardt solves {lm['solved']} settings (median slowdown: {float(lm['typical']):.1f} times the least "
+        f"work), gauss-newton {by_name['gauss-newton']['solved']}.",
         f"With rates tuned on the other problem families (leave-one-family-out), adam solves {by_name['adam']['solved']} "
         f"settings, hig {by_name['hig']['solved']} and gd {by_name['gd']['solved']}.",
         f"{len(inverse)} of the {leader['settings']} settings provide an inverse P⁻¹. Given P⁻¹ (†), sip solves {len(solved)} "
