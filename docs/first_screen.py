@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""Writes the findings and the moving picture on the first screen of README.md.
+"""Writes the findings and the animated picture on the first screen of README.md.
 
     ./isoline run quick && python3 docs/first_screen.py results/quick
 
 The findings come from report/report.json in the result folder and replace the text between the two
-markers in README.md. The picture, docs/heat.svg, shows x of `heat` at the snapshots of three records,
-against forward solves.
+markers in README.md. The picture, docs/heat.svg, animates x of `heat` over forward solves, from the
+snapshots in three records.
 """
 
 import base64
@@ -116,7 +116,7 @@ def picture(results):
 
 
 def sine_at_equal_work(report):
-    """How many times as large adam's error in x is as that of sip, as the first tab says."""
+    """The error in x of adam divided by that of sip, as the tab Overview states it."""
     for sentence in report["verdict"]:
         match = re.match(r"sine\[.*\bsip\b.*smallest error in x.*; next (?:is )?adam, ([\d.]+)× as large", sentence)
         if match:
@@ -126,7 +126,7 @@ def sine_at_equal_work(report):
 
 
 def findings(report):
-    """A paragraph and six sentences with numbers of report.json."""
+    """A paragraph and six findings, with numbers from report.json."""
     by_name = {each["optimizer"]: each["standings"]["1e-6"] for each in report["optimizers"]}
     leader, lm = report["leader"], by_name["levenberg-marquardt"]
     first, second = leader["places"][:2]
@@ -140,33 +140,33 @@ def findings(report):
     sine = next(cell for cell in report["cells"]
                 if cell["problem"].startswith("sine[") and cell["optimizer"].startswith("sip"))
     seeds, given = sine["runs"], sine["optimizer"].partition(", given ")[2] or "extra information"
-    best = "One method is" if leader["significant"] else "No method is"
     starts = max(cell["runs"] for cell in report["cells"] if cell["problem"] in report["ranked"])
     band = sum(place["in_group"] for place in leader["places"])
     methods = len(leader["places"])
-    lead = (f"**Findings** from {report['answered'] - inapplicable:,} runs; in {inapplicable} further cases, the method does "
-            f"not apply to the problem. {methods} methods are ranked on {leader['settings']} settings of {leader['families']} problems "
-            f"from physics ({starts} instances each). Their score rewards little work and many solved settings.")
+    lead = (f"**Findings** from {report['answered'] - inapplicable:,} runs of `quick`; in {inapplicable} further cases, the method does "
+            f"not apply. {methods} methods are ranked on {leader['settings']} settings of {leader['families']} physics problems "
+            f"({starts} instances each): the more settings solved and the less work, the higher the score.")
+    decision = (f"By work, {first['optimizer']} is significantly ahead of every other method: it"
+                if leader["significant"] else
+                f"By work, no method is significantly ahead. {first['optimizer']}")
     return lead, [
-        f"{best} significantly best in work. {first['optimizer']} ranks first (solves {first['solved']} of "
-        f"{leader['settings']} settings), {second['optimizer']} second (solves {second['solved']}; paired sign-flip "
-        f"test, p = {second['p']:.2f}). {band - 1 or 'None'} of the {methods - 1} other methods "
-        f"{'is' if band < 3 else 'are'} not significantly worse.",
-        f"In wall time, {' and '.join(by_time)} {'ranks' if len(by_time) == 1 else 'rank'} first.",
-        f"levenberg-marquardt solves {lm['solved']} settings (on the median setting, with {float(lm['typical']):.1f} times "
-        f"the least work), gauss-newton {by_name['gauss-newton']['solved']}.",
-        f"With learning rates tuned on other families of problems, adam solves {by_name['adam']['solved']} settings, "
-        f"hig {by_name['hig']['solved']} and gd "
-        f"{by_name['gd']['solved']}.",
-        f"{len(inverse)} of the {leader['settings']} settings have an inverse P⁻¹. Given P⁻¹ (†), sip solves "
-        f"{len(solved)} of them, each in {works} forward solves. Each problem states the cost of its P⁻¹ in forward solves.",
-        "Networks were trained to invert a sine map. At equal work, the median error in x after training by sip, given "
-        f"{given} (†), is 1/{sine_at_equal_work(report):.0f} of that after training by adam ({seeds} seeds).",
+        f"{decision} ranks first (solves {first['solved']} of {leader['settings']} settings), {second['optimizer']} "
+        f"second (solves {second['solved']}; sign-flip test, p = {second['p']:.2f}). {band - 1 or 'None'} of the "
+        f"{methods - 1} others {'is' if band < 3 else 'are'} not significantly worse.",
+        f"By wall time, {' and '.join(by_time)} {'ranks' if len(by_time) == 1 else 'rank'} first.",
+        f"levenberg-marquardt solves {lm['solved']} settings (median slowdown: {float(lm['typical']):.1f} times the least "
+        f"work), gauss-newton {by_name['gauss-newton']['solved']}.",
+        f"With rates tuned on the other problem families (leave-one-family-out), adam solves {by_name['adam']['solved']} "
+        f"settings, hig {by_name['hig']['solved']} and gd {by_name['gd']['solved']}.",
+        f"{len(inverse)} of the {leader['settings']} settings provide an inverse P⁻¹. Given P⁻¹ (†), sip solves {len(solved)} "
+        f"of these, each with {works} forward solves. This work includes the calls of P⁻¹, at a cost that each problem states.",
+        "Networks were also trained to invert a sine map. At equal work, the median error in x is "
+        f"{sine_at_equal_work(report):.0f} times as large after training with adam as with sip, given {given} (†; {seeds} seeds).",
     ]
 
 
 def write_findings(folder):
-    """Replaces the findings in README.md by those of the report.json in this folder."""
+    """Replaces the findings in README.md with those from the report.json in this folder."""
     readme = ROOT / "README.md"
     before, rest = readme.read_text().split("<!-- findings -->\n")
     after = rest[rest.index("<!-- end of findings -->"):]

@@ -84,7 +84,7 @@ std::string given_by(const std::set<std::string>& privileges) {
   for (const std::string& privilege : privileges) {
     const std::string given = is_inverse_of_physics(privilege) ? "P⁻¹"
                               : privilege == name_of(Privilege::estimate)
-                                  ? "an estimate from how the data were made"
+                                  ? "an estimate from the data generator"
                                   : "the " + privilege;
     if (text.find(given) == std::string::npos) text += (text.empty() ? "" : " and ") + given;
   }

@@ -159,7 +159,7 @@ bool has_both(const ComparedCell& a, const ComparedCell& b, std::size_t figure) 
 Differences differences_of_kind(const ComparedCell& a, const ComparedCell& b) {
   Differences found;
   for (const auto& [figure, what] :
-       {std::pair(kXError, "error in x"), {work_at(Aim::loss, 0), "work to the targets"}})
+       {std::pair(kXError, "error in x"), {work_at(Aim::loss, 0), "work to reach the targets"}})
     if (a.has(figure) && !b.has(figure) && a.status == b.status)
       found.push_back(difference_in(a, Change::worse, what, "known", "gone"));
   if (a.privileges == b.privileges) return found;

@@ -42,10 +42,10 @@ inline constexpr FigureKind kFigureKinds[] = {
     {"best_loss", "best loss", kBestLoss},
     {"path", "mean loss of the path", kPath},
     {"x_error", "error in x", kXError},
-    {"work", "work to ", kWork, kTargets},
-    {"found", "work to an error in x of ", kWorkToX, kTolerances.size()},
+    {"work", "work to reach ", kWork, kTargets},
+    {"found", "work to reach an error in x of ", kWorkToX, kTolerances.size()},
     {"unverified", "targets missed by the last point", kUnverified}};
-std::string figure_name(std::size_t figure);  // "work to 1e-3"
+std::string figure_name(std::size_t figure);  // "work to reach 1e-3"
 // The figure of one of the tolerances of the tables; the work in the sense of loss or of x.
 constexpr std::size_t work_at(Aim aim, std::size_t tolerance) {
   return aim == Aim::x ? kWorkToX + tolerance : kWork + kTolerances[tolerance].rung;

@@ -82,7 +82,7 @@ std::string best_of_each(const Comparison& c) {
     longest = std::max(longest, width_of(lines.back()));
   }
   const std::size_t half = 2 * longest + 2 <= kWidest ? (lines.size() + 1) / 2 : lines.size();
-  std::string text = fmt::format("\nLeast median {}\n", counted_to_tau(c));
+  std::string text = fmt::format("\nSmallest median {}\n", counted_to_tau(c));
   for (std::size_t i = 0; i < half; ++i) {
     const bool is_pair = half < lines.size() && i + half < lines.size();
     text += (is_pair ? left(lines[i], longest + 2) + lines[i + half] : lines[i]) + "\n";
@@ -123,9 +123,10 @@ std::string every_cell(const Comparison& c) {
       if (c.cell(p, s).planned > 0 && !c.cell(p, s).is_measured()) text += line_of(c, p, s, width);
   }
   std::string marks = fmt::format(
-      "Runs: the runs that reach {}, out of all. Columns of tolerances: median {} to the "
-      "tolerance, in {}. ms: median wall time to {}. Loss: median final loss. {} *: the least of "
-      "its problem; ✗: at most half of the runs reached the tolerance; n/a: not applicable",
+      "runs: how many of the runs reached {}. Columns of tolerances: the median {} needed to reach "
+      "the tolerance, in {}. ms: the median wall time needed to reach {}. loss: the median final "
+      "loss. {} *: the smallest value for its problem; ✗: at most half of the runs reached the "
+      "tolerance; n/a: not applicable",
       tau_name(c), counted_name(c), unit_name(c), tau_name(c), success_text(c));
   if (std::ranges::any_of(c.problems, &ProblemAxis::lacks_least_loss))
     marks += "; ?: least loss unknown";

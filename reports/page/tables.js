@@ -108,7 +108,7 @@ function hideClaims() {
 // What is known of a cell of the heat table, at the tolerance and by the measure of the page.
 function explanationOf(p, s) {
   const problem = DATA.problems[p], cell = cellOf(problem, s), title = `${DATA.optimizers[s]} on ${problem.spec}`;
-  if (cell === undefined) return [title, 'never planned'];
+  if (cell === undefined) return [title, 'not part of the study'];
   if (!isMeasured(cell)) return [title, 'not applicable'];
   const learned = problem.learned?.rows.find((row) => row.s === s);
   const lines = learned === undefined ? [] : [`error in x at equal work: ${figure(learned.error)} (${figure(learned.low ?? Infinity)}–${figure(learned.high ?? Infinity)})`, `loss in y there: ${figure(learned.loss)}`];

@@ -31,7 +31,7 @@ std::vector<std::uint64_t> ranked_seeds(const Comparison& c) {
   return {seeds.begin(), seeds.end()};
 }
 
-// "19 test problems (5 from physics, at most 64 unknowns; 3 starting points each)"
+// "19 test problems (5 from physics, at most 64 unknowns; 3 starting points per problem)"
 std::string settings_text(const Comparison& c) {
   std::size_t physics = 0;
   Index unknowns = 0;
@@ -52,9 +52,9 @@ std::string settings_text(const Comparison& c) {
   const bool is_crossed = seeds.size() > std::max(instances, starts);
   if (seeds.size() > 1)
     about += (about.empty() ? "" : "; ") +
-             (is_crossed ? words("ranking.crossed", instances, starts)
+             (is_crossed ? words("ranking.crossed", instances, starts, common_noun(c))
                          : words(instances > 1 ? "ranking.instances" : "ranking.starts",
-                                 std::max(instances, starts)));
+                                 std::max(instances, starts), common_noun(c)));
   return words(names < settings ? "ranking.settings" : "ranking.problems", settings, names,
                about.empty() ? "" : " (" + about + ")");
 }

@@ -372,7 +372,7 @@ std::string_view unit_name(Measure by) {
 std::string_view unit_name(const Comparison& c) { return unit_name(c.yardstick.by); }
 
 std::string counted_to_tau(const Comparison& c) {
-  const std::string text = fmt::format("{} to {}", counted_name(c), tau_name(c));
+  const std::string text = fmt::format("{} needed to reach {}", counted_name(c), tau_name(c));
   return counted_name(c) == unit_name(c) ? text : fmt::format("{}, in {}", text, unit_name(c));
 }
 

@@ -113,7 +113,8 @@ std::string_view counted_name(Measure by);
 std::string_view counted_name(const Comparison& comparison);
 std::string_view unit_name(Measure by);
 std::string_view unit_name(const Comparison& comparison);
-std::string counted_to_tau(const Comparison& comparison);  // "work to 1e-6, in forward solves"
+// "work needed to reach 1e-6, in forward solves"
+std::string counted_to_tau(const Comparison& comparison);
 // An amount as tables write it, ✗ where infinite: times are given in seconds and written in ms.
 std::string amount(Measure by, Real value);
 std::string amount(const Comparison& comparison, Real value);
