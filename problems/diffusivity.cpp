@@ -9,6 +9,7 @@
 // neighbours. Without the latter, an m of alternating signs has no effect. x* is m* = x₁² − x₂² +
 // 2x₁x₂, whose prior vanishes, and u* = sin πx₁ sin πx₂. Haber and Ascher (2001) state such
 // problems in this form.
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -77,9 +78,11 @@ class Diffusion final : public BySparseJacobian {
  public:
   explicit Diffusion(int n) : BySparseJacobian(pattern_of(n)), n_(n) {}
 
-  void forward(BatchRef x, BatchRef, BatchOut y, Workspace&) const override {
-    const auto m = x.col(0).head(nodes()), u = x.col(0).tail(nodes());
-    const Vector root = (0.5 * m.array()).exp();  // e^(mᵢ/2)
+  void forward(BatchRef x, BatchRef, BatchOut y, Workspace& w) const override {
+    const VectorRef m = x.col(0).head(nodes()), u = x.col(0).tail(nodes());
+    if (w.saved.size() < 2) w.saved.resize(2);  // the first one holds the values of J
+    w.saved[1] = (0.5 * m.array()).exp();
+    const Real* const root = w.saved[1].data();  // e^(mᵢ/2)
     Index prior = 2 * Index{nodes()};
     for (int i = 0; i < nodes(); ++i) {
       const Stencil stencil(i, n_);
@@ -95,15 +98,15 @@ class Diffusion final : public BySparseJacobian {
   }
 
   void sparse_jacobian(VectorOut values, Workspace& w) const override {
-    const auto m = w.x.col(0).head(nodes()), u = w.x.col(0).tail(nodes());
-    const Vector root = (0.5 * m.array()).exp();
+    const VectorRef u = w.x.col(0).tail(nodes());
+    const Real* const root = w.saved[1].data();
     Real* out = values.data();
     for (int i = 0; i < nodes(); ++i) {
       const Stencil stencil(i, n_);
       const Real outside = stencil.missing() * root[i] * root[i];
       Real* const by_m = out;
-      Real* const by_u = out += stencil.size;
-      out += stencil.size;
+      Real* const by_u = by_m + stencil.size;
+      out = by_u + stencil.size;
       int own = 0;
       for (int k = 0; k < stencil.size; ++k)
         if (stencil.begin()[k] == i) own = k;
