@@ -1,10 +1,10 @@
 // Levenberg-Marquardt, Marquardt (1963), with Moré's scaling (1978) and the gain-ratio
 // rule of Nielsen (1999): d = argmin ‖J d + r‖² + μ‖D d‖², Dⱼ the largest norm the j-th
-// column of J has had. Steps that do not lower ‖r‖ are rejected and the damping is raised. A long
-// path of steps that gain little lies in a curved valley: there, D fades and d has a term of second
-// order. On fresh samples at every step J and r are those of the step's own. With damping=fixed,
-// the rule of mini-batches that cannot be compared: θ ← θ − η Jᵀ (K + μ)⁻¹ r, K = JJᵀ, μ a share of
-// the mean diagonal of K, and every step is taken.
+// column of J has had. Steps that do not lower ‖r‖ are rejected and the damping is raised. After a
+// step that gained little, d gets a term of second order. On fresh samples at every step J and r
+// are those of the step's own. With damping=fixed, the rule of mini-batches that cannot be
+// compared: θ ← θ − η Jᵀ (K + μ)⁻¹ r, K = JJᵀ, μ a share of the mean diagonal of K, and every step
+// is taken.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -57,7 +57,7 @@ class DampedLeastSquares {
     if (is_sparse_) sparse_.start(*f.sparse_pattern());
   }
   // Scaling and factorization as the method's options have them.
-  void set(Meter& f, Linearization& at, const Vector& b, std::string_view scaling, bool fades) {
+  void set(Meter& f, Linearization& at, const Vector& b, std::string_view scaling) {
     const Index n = f.unknowns();
     rows_ = b.size();
     has_gram_ = false;
@@ -79,8 +79,8 @@ class DampedLeastSquares {
       norms_ = J_.colwise().norm();
     }
     if (scale_.size() != n) scale_.setZero(n);
-    if (scaling == "fading" && fades) scale_ /= 2;
-    if (scaling == "more" || scaling == "fading") scale_ = scale_.cwiseMax(norms_);
+    if (scaling == "more") scale_ = scale_.cwiseMax(norms_);
+    if (scaling == "fading") scale_ = (scale_ / 2).cwiseMax(norms_);
     if (scaling == "none") scale_.setOnes();
     if (scaling == "jacobian") scale_ = norms_;
     // A parameter that has done nothing yet has no scale, and no step.
@@ -250,16 +250,14 @@ class DampedLeastSquares {
 
 struct LevenbergMarquardt {
   Real initial_damping = 1e-4, rate = 1, acceleration = 0.75;
-  Index patience = 30;
-  std::string damping = "adaptive", factorization = "auto", scaling = "fading";
+  std::string damping = "adaptive", factorization = "auto", scaling = "more";
 
   struct State {
     DampedLeastSquares squares;
     SpectralStep spectral;
     NielsenDamping damping;
     bool has_point = false;
-    Real gain = 1;         // actual over predicted decrease of the last step, 0 where rejected
-    Index poor_steps = 0;  // of a gain below kLinear, from the start of the run
+    Real gain = 1;  // actual over predicted decrease of the last step, 0 where rejected
     Linearization at, trial;
     Vector step, candidate, bend;   // (n), of the acceleration
     Vector Jd, residual, Jbend;     // (m·B)
@@ -269,7 +267,7 @@ struct LevenbergMarquardt {
     s.squares.persist(archive);
     s.spectral.persist(archive);
     s.damping.persist(archive);
-    archive(s.has_point, s.gain, s.poor_steps, s.last_length, s.residual);
+    archive(s.has_point, s.gain, s.last_length, s.residual);
   }
 
   State init(Meter& f, const Vector&) const {
@@ -291,8 +289,7 @@ struct LevenbergMarquardt {
     }
     if (!s.squares.solve(s.damping.mu, factorization, s.step, s.Jd)) return Status::stalled;
     const Real predicted = predicted_decrease(s);
-    if (acceleration > 0 && is_in_valley(s) && s.gain < kLinear && !accelerate(f, theta, s))
-      return reject(f, s);
+    if (acceleration > 0 && s.gain < kPoorGain && !accelerate(f, theta, s)) return reject(f, s);
     s.candidate = theta + s.step;
     if (s.candidate == theta && !f.has_fresh_batches()) return Status::converged;
     f.linearize(s.candidate, s.trial);
@@ -308,7 +305,7 @@ struct LevenbergMarquardt {
     }
     theta = s.candidate;
     std::swap(s.at, s.trial);
-    note_gain(s, is_rounding ? 1 : actual / predicted);
+    s.gain = is_rounding ? 1 : actual / predicted;
     if (!f.has_fresh_batches()) accept(f, s);
     s.damping.accept(s.gain);
     return Status::running;
@@ -316,17 +313,12 @@ struct LevenbergMarquardt {
 
   static Status reject(Meter& f, State& s) {
     f.reject_step();
-    note_gain(s, 0);
+    s.gain = 0;
     return s.damping.reject();
   }
 
-  // Below a gain of 3/4, from which on Moré (1978) doubles the radius, r is not linear in d.
-  static constexpr Real kLinear = 0.75;
-  static void note_gain(State& s, Real gain) {
-    s.gain = gain;
-    s.poor_steps += gain < kLinear;
-  }
-  bool is_in_valley(const State& s) const { return s.poor_steps >= patience; }
+  // Up to a gain of 1/4, Moré (1978) reduces the radius: r is far from linear in d.
+  static constexpr Real kPoorGain = 0.25;
 
   Status step_fixed(Meter& f, Vector& theta, State& s) const {
     f.linearize(theta, s.at);
@@ -339,7 +331,7 @@ struct LevenbergMarquardt {
   // J, −r and D at the point just accepted.
   void accept(Meter& f, State& s) const {
     s.residual = (f.target() - s.at.y()).reshaped();
-    s.squares.set(f, s.at, s.residual, scaling, is_in_valley(s));
+    s.squares.set(f, s.at, s.residual, scaling);
     s.has_point = true;
   }
 
@@ -388,11 +380,8 @@ void fields(LevenbergMarquardt& o, auto& field) {
         "damping μ at the start, in units of D²; where it is fixed, μ as a share of the mean "
         "diagonal of JJᵀ");
   field("acceleration", o.acceleration, at_least(0),
-        "of damping=adaptive: α of geodesic acceleration, which after a step of gain below 3/4 "
+        "of damping=adaptive: α of geodesic acceleration, which after a step of gain below 1/4 "
         "adds to d the a of second order where 2‖D a‖ ≤ α‖D d‖, else rejects the step; 0: none");
-  field("patience", o.patience, between(0, 1e9),
-        "of damping=adaptive: steps of gain below 3/4, the rejected ones included, before which a "
-        "run neither accelerates nor fades");
   field("damping", o.damping, Choices{"adaptive", "fixed"},
         "by the gain of each step, or always the same");
   field("rate", o.rate, above(0), "of damping=fixed: step length η");
@@ -400,10 +389,9 @@ void fields(LevenbergMarquardt& o, auto& field) {
         "by QR; by Cholesky of the smaller Gram matrix, which of networks of dense layers is "
         "formed layer by layer; or by sparse Cholesky of a sparse J, after elimination of blocks "
         "where the problem declares them, of damping=adaptive; auto: by size and accuracy");
-  field("scaling", o.scaling, Choices{"fading", "more", "none", "jacobian"},
-        "of damping=adaptive: D of the largest norms that J's columns have had, in the end halved "
-        "at each step; the same and never halved, as Moré has it; 1; or of the norms they have "
-        "now");
+  field("scaling", o.scaling, Choices{"more", "fading", "none", "jacobian"},
+        "of damping=adaptive: D of the largest norms that J's columns have had, as Moré has it; of "
+        "these, halved at each step; 1; or of the norms they have now");
 }
 
 // Levenberg-Marquardt by products, for problems too large for a Jacobian: θ ← θ + d,
