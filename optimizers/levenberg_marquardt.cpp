@@ -1,9 +1,10 @@
 // Levenberg-Marquardt, Marquardt (1963), with Moré's scaling (1978) and the gain-ratio
 // rule of Nielsen (1999): d = argmin ‖J d + r‖² + μ‖D d‖², Dⱼ the largest norm the j-th
-// column of J has had. Steps that do not lower ‖r‖ are rejected and the damping is raised. On fresh
-// samples at every step J and r are those of the step's own. With damping=fixed, the rule of
-// mini-batches that cannot be compared: θ ← θ − η Jᵀ (K + μ)⁻¹ r, K = JJᵀ, μ a share of the mean
-// diagonal of K, and every step is taken.
+// column of J has had. Steps that do not lower ‖r‖ are rejected and the damping is raised. After a
+// step that gained little, d gets a term of second order. On fresh samples at every step J and r
+// are those of the step's own. With damping=fixed, the rule of mini-batches that cannot be
+// compared: θ ← θ − η Jᵀ (K + μ)⁻¹ r, K = JJᵀ, μ a share of the mean diagonal of K, and every step
+// is taken.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -60,6 +61,7 @@ class DampedLeastSquares {
     const Index n = f.unknowns();
     rows_ = b.size();
     has_gram_ = false;
+    factored_ = -1;
     // An audit grants both, and J serves any problem.
     is_layered_ = !is_sparse_ && !f.is_granted(Oracle::jacobian);
     if (is_sparse_) {
@@ -163,9 +165,13 @@ class DampedLeastSquares {
     constexpr int kMostCorrections = 6;
     constexpr Real kEnough = 1e-10;  // of the correction that is left out
     form_gram();
-    factor_ = gram_;
-    factor_.diagonal().array() += mu;
-    if (!cholesky(factor_)) return false;
+    if (factored_ != mu) {
+      factored_ = -1;
+      factor_ = gram_;
+      factor_.diagonal().array() += mu;
+      if (!cholesky(factor_)) return false;
+      factored_ = mu;
+    }
     rest_ = right_.head(rows_);
     if (!is_wide()) pull(rest_);
     solution_ = is_wide() ? rest_ : pulled_;
@@ -221,10 +227,12 @@ class DampedLeastSquares {
     for (Index i = 0; i < wide_.rows(); ++i) J_.col(order_[i]) = wide_.row(i).transpose();
     inverse_ = (scale_.array() > 0).select(scale_.cwiseInverse(), 1);
     is_layered_ = has_gram_ = false;
+    factored_ = -1;
   }
 
   Index rows_ = 0;  // m·B
   bool is_layered_ = false, has_gram_ = false;
+  Real factored_ = -1;  // the μ of factor_; negative: none
   LayeredJacobian layered_;
   bool is_sparse_ = false;
   SparseLeastSquares sparse_;
@@ -241,7 +249,7 @@ class DampedLeastSquares {
 };
 
 struct LevenbergMarquardt {
-  Real initial_damping = 1e-4, rate = 1, acceleration = 0;
+  Real initial_damping = 1e-4, rate = 1, acceleration = 0.75;
   std::string damping = "adaptive", factorization = "auto", scaling = "more";
 
   struct State {
@@ -249,6 +257,7 @@ struct LevenbergMarquardt {
     SpectralStep spectral;
     NielsenDamping damping;
     bool has_point = false;
+    Real gain = 1;  // actual over predicted decrease of the last step, 0 where rejected
     Linearization at, trial;
     Vector step, candidate, bend;   // (n), of the acceleration
     Vector Jd, residual, Jbend;     // (m·B)
@@ -258,7 +267,7 @@ struct LevenbergMarquardt {
     s.squares.persist(archive);
     s.spectral.persist(archive);
     s.damping.persist(archive);
-    archive(s.has_point, s.last_length, s.residual);
+    archive(s.has_point, s.gain, s.last_length, s.residual);
   }
 
   State init(Meter& f, const Vector&) const {
@@ -280,10 +289,7 @@ struct LevenbergMarquardt {
     }
     if (!s.squares.solve(s.damping.mu, factorization, s.step, s.Jd)) return Status::stalled;
     const Real predicted = predicted_decrease(s);
-    if (acceleration > 0 && !accelerate(f, theta, s)) {
-      f.reject_step();
-      return s.damping.reject();
-    }
+    if (acceleration > 0 && s.gain < kPoorGain && !accelerate(f, theta, s)) return reject(f, s);
     s.candidate = theta + s.step;
     if (s.candidate == theta && !f.has_fresh_batches()) return Status::converged;
     f.linearize(s.candidate, s.trial);
@@ -295,15 +301,24 @@ struct LevenbergMarquardt {
       if (!(length <= s.last_length / 2)) return Status::converged;
       s.last_length = length;
     } else if (!(actual > 0 && predicted > 0)) {
-      f.reject_step();
-      return s.damping.reject();
+      return reject(f, s);
     }
     theta = s.candidate;
     std::swap(s.at, s.trial);
+    s.gain = is_rounding ? 1 : actual / predicted;
     if (!f.has_fresh_batches()) accept(f, s);
-    s.damping.accept(is_rounding ? 1 : actual / predicted);
+    s.damping.accept(s.gain);
     return Status::running;
   }
+
+  static Status reject(Meter& f, State& s) {
+    f.reject_step();
+    s.gain = 0;
+    return s.damping.reject();
+  }
+
+  // Up to a gain of 1/4, Moré (1978) reduces the radius: r is far from linear in d.
+  static constexpr Real kPoorGain = 0.25;
 
   Status step_fixed(Meter& f, Vector& theta, State& s) const {
     f.linearize(theta, s.at);
@@ -365,8 +380,8 @@ void fields(LevenbergMarquardt& o, auto& field) {
         "damping μ at the start, in units of D²; where it is fixed, μ as a share of the mean "
         "diagonal of JJᵀ");
   field("acceleration", o.acceleration, at_least(0),
-        "of damping=adaptive: α of geodesic acceleration, which adds to d the a of second order "
-        "where 2‖D a‖ ≤ α‖D d‖, else rejects the step; 0: none");
+        "of damping=adaptive: α of geodesic acceleration, which after a step of gain below 1/4 "
+        "adds to d the a of second order where 2‖D a‖ ≤ α‖D d‖, else rejects the step; 0: none");
   field("damping", o.damping, Choices{"adaptive", "fixed"},
         "by the gain of each step, or always the same");
   field("rate", o.rate, above(0), "of damping=fixed: step length η");
@@ -495,7 +510,7 @@ void register_levenberg_marquardt(OptimizerRegistry& registry) {
        .family = Family::curvature,
        .kind = Kind::least_squares,
        .formula = "θ ← θ + argmin ‖J d + r‖² + μ‖D d‖²",
-       .source = "Marquardt (1963); Moré (1978); Nielsen (1999)",
+       .source = "Marquardt (1963); Moré (1978); Nielsen (1999); Transtrum, Sethna (2012)",
        .note =
            "A rejected candidate is an iteration, too. With damping=fixed every step is taken, "
            "D is 1, and μ a share of the mean diagonal of JJᵀ. On mini-batches the largest norms "

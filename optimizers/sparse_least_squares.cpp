@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <utility>
 
 namespace isoline::optimizers {
 
@@ -325,6 +326,7 @@ void SparseLeastSquares::start(const SparsePattern& pattern) {
 }
 
 void SparseLeastSquares::set(const Vector& values, VectorRef inverse) {
+  factored_ = -1;
   scaled_.resize(values.size());
   for (Index p = 0; p < values.size(); ++p)
     scaled_[p] = values[p] * inverse[pattern_->column[static_cast<std::size_t>(p)]];
@@ -343,8 +345,11 @@ bool SparseLeastSquares::solve(Real mu, VectorRef b, Vector& s, Vector& As) {
   constexpr Real kEnough = 1e-10;                           // of the correction that is left out
   constexpr Real kLeastRaised = 1e-14, kMostRaised = 1e-6;  // of columns of length 1
   if (scaled_.size() != pattern_->values() || !is_finite(scaled_)) return false;
-  for (Real raised = mu; !factor(raised); raised = std::max(10 * raised, kLeastRaised))
+  const bool is_factored = std::exchange(factored_, -1) == mu;
+  for (Real raised = mu; !is_factored && !factor(raised);
+       raised = std::max(10 * raised, kLeastRaised))
     if (raised > kMostRaised) return false;
+  factored_ = mu;
   s.setZero(pattern_->columns);
   As.setZero(b.size());
   Real last = std::numeric_limits<Real>::infinity();

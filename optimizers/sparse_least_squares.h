@@ -31,6 +31,7 @@ class SparseLeastSquares {
   std::shared_ptr<BlockSchur> schur_;  // where blocks can be eliminated
   SparseCholesky whole_;               // else
   Vector scaled_;                      // the values of A
+  Real factored_ = -1;                 // the μ of the last factorization; negative: none
   Vector rest_, correction_;           // (m), (n)
 };
 

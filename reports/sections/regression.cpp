@@ -8,6 +8,7 @@
 #include <set>
 
 #include "core/options.h"
+#include "core/results/published_digits.h"
 #include "reports/sections/sections.h"
 #include "reports/sections/words.h"
 
@@ -64,11 +65,6 @@ TableCell starts_cell(const Digits& all, const std::string& name) {
   return cell;
 }
 
-// Mean digits as the header of Ceres' nist.cc has them.
-constexpr std::pair<const char*, Real> kPublished[] = {{"Ceres", 9.4},    {"HBN", 6.8},
-                                                       {"MINPACK", 4.4},  {"gnuplot", 4.3},
-                                                       {"GaussFit", 4.0}, {"Excel", 2.3}};
-
 }  // namespace
 
 Table certified_table(const Comparison& c) {
@@ -103,7 +99,7 @@ Table certified_table(const Comparison& c) {
   const Sum best = sum_of(methods[order[0].second]);
   table.reading = words("certified.reading", optimizer_text(c, order[0].second), best.solved,
                         best.cells, best.mean());
-  for (const auto& [name, mean] : kPublished) {
+  for (const auto& [name, mean] : results::kPublishedDigits) {
     std::vector<TableCell>& row = table.rows.emplace_back(table.columns.size(), TableCell(""));
     row[0] = words("certified.published", name);
     row[2] = {digits_text(mean), {{"mean", mean}}};

@@ -11,9 +11,9 @@
 namespace isoline::optimizers {
 namespace {
 
+// Means over the 54 regressions.
 struct Sum {
-  int solved = 0;
-  Real digits = 0, calls = 0;  // mean log relative error; residual evaluations of all runs
+  Real solved = 0, digits = 0, calls = 0;  // to four digits; log relative error; residual calls
 };
 
 Outcome on_nist(const std::string& method, const std::string& dataset, int start) {
@@ -26,42 +26,49 @@ Real digits_of(const Outcome& outcome) {
   return std::isnan(digits) ? 0 : std::clamp(digits, 0.0, 11.0);
 }
 
+// Means over starts that differ from the published ones by 1e-9. Rounding of the
+// loss, which the last steps do not exceed, decides between 7 and 11 digits of a regression: the
+// mean over the 54 has a standard deviation of 0.1 over such starts, with the bare libraries, too.
 Sum on_nist(const std::string& method) {
+  constexpr int kStarts = 8;
+  constexpr Real kShift = 1e-9;
   Sum sum;
   for (const OptionField& field : problems::all_problems().at("nist").options)
     for (const std::string& dataset : field.choices)
       for (const int start : {1, 2}) {
-        const Outcome outcome = on_nist(method, dataset, start);
-        sum.solved += digits_of(outcome) >= 4;
-        sum.digits += digits_of(outcome) / 54;
-        sum.calls += static_cast<Real>(
-            outcome.trace->last.counts[static_cast<std::size_t>(Oracle::forward)]);
+        const Problem problem =
+            make("nist[dataset=" + dataset + ",start=" + std::to_string(start) + "]");
+        RandomStream stream(0, dataset + std::to_string(start), "shifted start");
+        for (int i = 0; i < kStarts; ++i) {
+          const Vector shift = kShift * stream.normal_vector(problem.unknowns());
+          const Outcome outcome =
+              run_from(problem.start().cwiseProduct((1 + shift.array()).matrix()), problem, method,
+                       {.iterations = 100'000, .work = 10'000, .target = 0});
+          sum.solved += Real{digits_of(outcome) >= 4} / kStarts;
+          sum.digits += digits_of(outcome) / 54 / kStarts;
+          sum.calls += static_cast<Real>(
+                           outcome.trace->last.counts[static_cast<std::size_t>(Oracle::forward)]) /
+                       kStarts;
+        }
       }
   return sum;
 }
 
 struct Expected {
   const char* method;
-  int solved;
-  Real digits;
+  Real solved, digits, calls;  // of the bare library; 0: counted in another way
 };
 
-// Whether the last step, whose gain is below rounding, is accepted decides between 9 and 11 digits
-// of a regression, and differs with the rounding of r: the mean varies by 0.2 with the initial
-// step.
 TEST(Peers, HaveTheDigitsOfTheBareLibrariesOnNist) {
   for (const Expected& each :
-       {Expected{"minpack-lmder", 53, 9.01}, Expected{"ceres-tiny", 53, 9.52},
-        Expected{"gsl-multifit", 52, 9.40},
-        Expected{"minpack-lmder[ftol=1.49012e-8,xtol=1.49012e-8]", 48, 6.99}}) {
+       {Expected{"minpack-lmder", 53, 9.01, 3816}, Expected{"ceres-lm", 53, 9.41, 0},
+        Expected{"ceres-tiny", 53, 9.52, 0}, Expected{"gsl-multifit", 52, 9.40, 0},
+        Expected{"minpack-lmder[ftol=1.49012e-8,xtol=1.49012e-8]", 48, 6.99, 0}}) {
     const Sum sum = on_nist(each.method);
     EXPECT_NEAR(sum.solved, each.solved, 1) << each.method;
-    EXPECT_NEAR(sum.digits, each.digits, 0.3) << each.method;
+    EXPECT_NEAR(sum.digits, each.digits, 0.2) << each.method;  // two standard deviations
+    if (each.calls > 0) EXPECT_NEAR(sum.calls / each.calls, 1, 0.02) << each.method;
   }
-}
-
-TEST(Peers, MakeAsManyCallsAsTheBareLibraryOnNist) {
-  EXPECT_NEAR(on_nist("minpack-lmder").calls, 3816, 0.15 * 3816);  // of 3,587 to 4,274, as above
 }
 
 TEST(Peers, OnlyGeodesicAccelerationSolvesBoxBodFromItsFirstStart) {

@@ -175,6 +175,26 @@ TEST(Large, DenseMethodsAreInapplicableWithTheSize) {
   EXPECT_NE(why("ceres-lm[linear-solver=sparse-schur]", problem), "");
 }
 
+// --- an unknown field in a differential equation
+
+TEST(Diffusivity, IsFoundByOneSparseFactorizationPerStep) {
+  const Problem problem = make("diffusivity[n=24]");  // 1,152 unknowns
+  for (const char* method : {"levenberg-marquardt", "gauss-newton", "ceres-lm"}) {
+    const Outcome outcome = run(problem, method, {.iterations = 60, .target = 1e-20});
+    EXPECT_LT(outcome.trace->last.x_error, 1e-6 * problem.truth()->norm()) << method;
+    EXPECT_EQ(count_of(outcome, Oracle::jacobian), 0) << method;
+    EXPECT_GT(count_of(outcome, Oracle::sparse_jacobian), 0) << method;
+  }
+}
+
+TEST(Diffusivity, IsTooLargeForDenseMethodsOnAFineGrid) {
+  const Problem problem = make("diffusivity[n=256]");
+  for (const char* method : {"newton", "levenberg-marquardt[factorization=orthogonal]", "hig"})
+    EXPECT_NE(why(method, problem).find("131072"), std::string::npos) << why(method, problem);
+  for (const char* method : {"levenberg-marquardt", "gauss-newton", "ceres-lm"})
+    EXPECT_EQ(why(method, problem), "") << method;
+}
+
 // --- bundle adjustment
 
 TEST(Bundle, EveryLinearSolverFindsTheSameMinimum) {

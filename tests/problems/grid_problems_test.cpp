@@ -435,5 +435,37 @@ TEST(PoissonHig, TruthIsNoiseThatFallsWithTheSquareOfTheWaveNumber) {
   }
 }
 
+// --- diffusivity
+
+// The greatest distance of its fluxes at the truth from h² f over the nodes with four neighbours,
+// f = −∇·(e^m ∇u) = −e^m (∇m·∇u + ∇²u) for the published m and u.
+Real distance_from_source(int n) {
+  const Problem problem = make("diffusivity[n=" + std::to_string(n) + "]");
+  const Real h = 1.0 / (n + 1);
+  Real most = 0;
+  for (int column = 1; column + 1 < n; ++column)
+    for (int row = 1; row + 1 < n; ++row) {
+      const Real x = (row + 1) * h, y = (column + 1) * h;
+      const Real u_x = M_PI * std::cos(M_PI * x) * std::sin(M_PI * y),
+                 u_y = M_PI * std::sin(M_PI * x) * std::cos(M_PI * y),
+                 u = std::sin(M_PI * x) * std::sin(M_PI * y);
+      const Real f = -std::exp(x * x - y * y + 2 * x * y) *
+                     ((2 * x + 2 * y) * u_x + (2 * x - 2 * y) * u_y - 2 * M_PI * M_PI * u);
+      most = std::max(most, std::abs(problem.target()(row + n * column, 0) / (h * h) - f));
+    }
+  return most;
+}
+
+TEST(Diffusivity, FluxesApproachTheContinuousOperatorToSecondOrder) {
+  EXPECT_NEAR(distance_from_source(31) / distance_from_source(63), 4, 0.2);  // h is halved
+}
+
+TEST(Diffusivity, HasAPriorThatVanishesAtTheTruth) {
+  const Problem problem = make("diffusivity[n=12]");
+  EXPECT_EQ(problem.residuals(), 12 * 12 * 2 + 10 * 10);
+  EXPECT_LT(problem.target().bottomRows(10 * 10).cwiseAbs().maxCoeff(), 1e-14);
+  EXPECT_EQ(problem.sparse_pattern()->widest_row(), 10);
+}
+
 }  // namespace
 }  // namespace isoline::problems
