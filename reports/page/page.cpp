@@ -21,6 +21,7 @@ namespace isoline::reports {
 std::string_view embedded_page_html();
 std::string_view embedded_page_css();
 std::string_view embedded_page_js();
+std::string_view embedded_guide();
 
 namespace {
 
@@ -127,9 +128,10 @@ std::string published_html(const Document& document) {
   if (best == nullptr) return html;
   const std::vector<Plot> plots = claim_plots(best->evidence, best->id + "-first");
   if (plots.empty()) return html;
-  return fmt::format("{}<p class=reading><a href=\"#claim-{}\">{}</a> {}</p>{}", html, best->id,
-                     html_text(best->sentence), html_text(words("page.quantity", best->quantity)),
-                     plot_html(plots[0]));
+  return fmt::format(
+      "{0}<div data-claim=\"{1}\"><p class=reading><a href=\"#claim-{1}\">{2}</a> {3}</p>{4}</div>",
+      html, best->id, html_text(best->sentence), html_text(words("page.quantity", best->quantity)),
+      plot_html(plots[0]));
 }
 
 // The first tab: alerts; a sentence that decides, of which all that these runs say opens; facts.
@@ -178,7 +180,8 @@ bool is_kind(std::string_view kind) {
 }
 
 constexpr std::array<std::string_view, 5> kDashes = {"none", "7 3", "2 3", "9 3 2 3", "14 4"};
-constexpr std::array<int, 3> kShares = {100, 72, 50};  // of the kind's colour; the rest is ink
+// Of the kind's own colour, and 55 % of it with another; distances in Lab are 8 and more.
+constexpr std::array<std::string_view, 5> kMixed = {"", "ink", "s6", "s3", "bad"};
 
 }  // namespace
 
@@ -192,10 +195,12 @@ std::string kind_rules(const Comparison& c) {
   for (std::size_t s = 0; s < c.optimizers.size(); ++s) {
     std::string kind = c.optimizers[s].mathematics();
     if (!is_kind(kind)) kind = "other";
-    const std::size_t place = counts[kind]++;
-    rules += fmt::format(
-        "[data-s=\"{}\"]{{--series:color-mix(in oklab,var(--{}) {}%,var(--ink));--dash:{}}}\n", s,
-        kind, kShares[place / kDashes.size() % kShares.size()], kDashes[place % kDashes.size()]);
+    const std::size_t place = counts[kind]++, round = place / kDashes.size();
+    const std::string_view mixed = kMixed[(place + round) % kMixed.size()];
+    std::string colour = fmt::format("var(--{})", kind);
+    if (!mixed.empty()) colour = fmt::format("color-mix(in oklab,{} 55%,var(--{}))", colour, mixed);
+    rules += fmt::format("[data-s=\"{}\"]{{--series:{};--dash:{}}}\n", s, colour,
+                         kDashes[place % kDashes.size()]);
   }
   return rules;
 }
@@ -220,6 +225,7 @@ std::string html_report(const Document& document) {
   Parts parts{{"title", html_text(title_of(c))},
               {"style", std::string(embedded_page_css()) + kind_rules(c)},
               {"scripts", std::string(embedded_page_js())},
+              {"guide", html_text(std::string(embedded_guide()))},
               {"tau", tau_name(c)},
               {"headline", head_html(document)},
               {"page.ranking",
