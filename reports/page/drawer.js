@@ -76,7 +76,7 @@ function openClaim(id) {
   const parts = [...made.content.querySelectorAll('.decided > dl, table')].filter((part) => part.tagName === 'DL' || part.querySelector('th:last-child')?.textContent === 'record');
   showDrawer(element('h3', {}, claim.querySelector('summary').textContent), element('p', {}, leaving(`#claim-${id}`, worded('whole-claim'))), ...parts.reverse().map((part) => part.tagName === 'DL' ? part : scrolledPart(part)));
 }
-const scrolledPart = (table) => element('div', {className: 'scroll'}, table);
+const scrolledPart = (table) => element('div', {className: 'scroll claim-runs'}, table);
 
 // What is measured apart from runs, and the command that measures it again.
 const openCommand = (title, key, command, ...file) => showDrawer(element('h3', {}, title), element('p', {}, worded(key)), ...file, element('p', {}, ...withCopy(command)));

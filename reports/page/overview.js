@@ -85,7 +85,7 @@ function bestFirst() {
 
 // A long name loses its end before the options that tell it from others.
 function brief({spec, name}) {
-  const most = 22, options = spec.startsWith(name) ? spec.slice(name.length) : '';
+  const most = 19, options = spec.startsWith(name) ? spec.slice(name.length) : '';
   return spec.length <= most || options === '' ? spec : `${name.slice(0, Math.max(4, most - 1 - options.length))}…${options}`;
 }
 
@@ -137,6 +137,7 @@ function makeMore(table, draw) {
     label();
   });
   button.className = 'more';
+  button.hidden = true;  // until its table is drawn
   table.parentElement.after(element('p', {}, button));
   const label = () => {
     const rest = table.querySelectorAll('.rest').length, all = table.tBodies[0]?.rows.length ?? 0;

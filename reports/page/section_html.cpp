@@ -232,7 +232,7 @@ std::string details_html(const Comparison& c) {
   for (const std::string_view what : {name_of(by), std::string_view("time, ms,")})
     for (const Tolerance& tolerance : c.yardstick.tolerances)
       table.columns.push_back(fmt::format("{} to {}", what, tolerance.name));
-  for (const char* last : {"final loss", "error in x", "how the runs ended", "command"})
+  for (const char* last : {"final loss", "final error in x", "how the runs ended", "command"})
     table.columns.emplace_back(last);
   for (std::size_t p = 0; p < c.problems.size(); ++p)
     for (std::size_t s = 0; s < c.optimizers.size(); ++s) {

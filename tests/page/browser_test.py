@@ -628,6 +628,35 @@ class Whole(InBrowser):
             "--iterations", "40", "--out", folder, "--quiet")
         return pathlib.Path(folder, "report", "index.html")
 
+    def test_learned_columns_are_on_screen_beside_as_many_others_as_the_default_suite_has(self):
+        for width in (1400, 1920):
+            resized(self.browser, width, 900)
+            self.open("")
+            self.browser.wait("return TASKS.size === 0 && document.querySelector('#heat td') !== null")
+            ends = self.browser.run(
+                "const like = (group) => DATA.problems.find((one) => one.group === group);"
+                "for (const [group, count] of [['physics', 18], ['classical', 20]])"
+                "  for (let i = 0; i < count; ++i) DATA.problems.push({...like(group)});"
+                "drawHeat(document.getElementById('heat'));"
+                "const heads = [...document.querySelectorAll('#heat thead th[data-p]')];"
+                "return heads.filter((head) => DATA.problems[head.dataset.p].learned !== undefined)"
+                ".map((head) => head.getBoundingClientRect().right)")
+            self.assertGreater(len(ends), 0)
+            self.assertLessEqual(max(ends), width)
+
+    def test_every_error_of_a_learned_problem_says_where_it_is_read(self):
+        self.open("")
+        self.browser.wait("return document.querySelector('#heat td') !== null")
+        p = self.browser.run("return DATA.problems.findIndex((one) => one.learned !== undefined)")
+        self.open(f"#problem-{p}")
+        self.browser.wait("return document.querySelector('.problem.chosen .reached td') !== null")
+        self.browser.run("const part = document.getElementById('learned'); part.open = true; unpackAll(part)")
+        heads = self.browser.run("return [...document.querySelectorAll('th[scope=col], th[scope=colgroup]')]"
+                                 ".map((head) => head.textContent).filter((text) => /error in x/.test(text))")
+        self.assertGreaterEqual(len(heads), 3)
+        for head in heads:
+            self.assertRegex(head, "equal work|at the end|final")
+
     def test_every_number_of_a_table_opens_its_evidence(self):
         counts = {}
         for tab in ("overview", "problems", "methods", "statistics", "runs"):
