@@ -33,7 +33,7 @@ function showDrawer(...content) {
 
 // The settings behind a number: the median of each method on each of them; of one method also the least of
 // all that are ranked. A filter hides no evidence, so what names a method is `line`.
-function openSettings(title, methods, settings) {
+function openSettings(title, methods, settings, none = worded('no-settings')) {
   const {counted, unit} = measureNow(), isOne = methods.length === 1, table = element('table', {className: 'settings-of'}), tau = tauName(view.target);
   const least = (p) => Math.min(...DATA.ranked.map((s) => cellOf(DATA.problems[p], s)).filter((cell) => cell !== undefined).map((cell) => takenBy(cell)));
   const told = (cell) => `${reachedOf(cell)}/${cell.reached.length}${cell.failed > 0 ? worded('failed-of', {runs: cell.failed}) : ''}`;
@@ -43,7 +43,7 @@ function openSettings(title, methods, settings) {
   };
   const heads = isOne ? worded('method-columns').split(' | ') : [worded('method-columns').split(' | ')[0], ...methods.map((s) => DATA.optimizers[s])];
   const all = settings.filter((p) => methods.some((s) => cellOf(DATA.problems[p], s) !== undefined));
-  filledTable(table, all.length === 0 ? worded('no-settings') : worded('settings', {measure: counted, tau, unit: unit === counted ? '' : worded('unit', {unit})}), [element('tr', {}, ...heads.map((head) => element('th', {scope: 'col'}, head)))],
+  filledTable(table, all.length === 0 ? none : worded('settings', {measure: counted, tau, unit: unit === counted ? '' : worded('unit', {unit})}), [element('tr', {}, ...heads.map((head) => element('th', {scope: 'col'}, head)))],
       all.map((p) => element('tr', {}, element('th', {scope: 'row'}, DATA.problems[p].spec), ...methods.flatMap((s) => cellsOf(p, s)))));
   showDrawer(element('h3', {}, title), ...methods.map((s) => element('p', {}, leaving(`#optimizer-${s}`, worded('method-card', {method: DATA.optimizers[s]})))), scrolled(table));
 }
@@ -85,7 +85,7 @@ const openPrices = ({spec, sheet}) => openCommand(spec, 'measured-again', `./iso
 // What the place of a cell says of its number: by itself, or by its row, its column or the part of the page
 // around it.
 function keysOf(cell) {
-  const table = cell.closest('table'), row = cell.parentElement, head = table.tHead?.rows[table.tHead.rows.length - 1].cells[cell.cellIndex];
+  const table = cell.closest('table'), row = cell.parentElement, head = table.tHead?.rows.length === 1 ? table.tHead.rows[0].cells[cell.cellIndex] : undefined;
   const key = (name) => [cell, row, head, table.closest(`[data-${name}]`)].find((place) => place?.dataset[name] !== undefined)?.dataset[name];
   const [p, s] = cell.dataset.of?.split(' ') ?? [key('p'), key('line') ?? key('s')], numbers = [p, s].map((text) => (text === undefined ? undefined : Number(text)));
   return {p: numbers[0], s: numbers[1], claim: key('claim'), method: table.id === 'methods-table' ? DATA.methods[numbers[1]] : key('method'), table: table.dataset.table, column: head?.textContent};
@@ -108,7 +108,7 @@ function openEvidence(cell) {
   if (method !== undefined) return openCommand(method, 'audited-again', `./isoline audit ${method}`);
   if (s === undefined) return;  // a name, or a number of the report as a whole
   const pair = table === 'leader' && s !== DATA.ranked[0] ? [DATA.ranked[0], s] : [s];
-  openSettings(pair.map((one) => DATA.optimizers[one]).join(' : '), pair, settingsBehind(table, column, s));
+  openSettings(pair.map((one) => DATA.optimizers[one]).join(' : '), pair, settingsBehind(table, column, s), column === 'failed' ? worded('none-failed') : undefined);
 }
 
 const NUMBERS = 'main td:not(.optimizer td, .prices td), #drawer .settings-of td';

@@ -9,6 +9,7 @@
 #include <iterator>
 #include <map>
 #include <set>
+#include <sstream>
 #include <string_view>
 
 #include "core/results/ranking.h"
@@ -180,8 +181,14 @@ bool is_kind(std::string_view kind) {
 }
 
 constexpr std::array<std::string_view, 5> kDashes = {"none", "7 3", "2 3", "9 3 2 3", "14 4"};
-// Of the kind's own colour, and 55 % of it with another; distances in Lab are 8 and more.
-constexpr std::array<std::string_view, 5> kMixed = {"", "ink", "s6", "s3", "bad"};
+// A share of the kind's own colour, in percent, and the colour that it is mixed with: all that come
+// of it are 7 and more apart in Lab, in both themes, within a kind and between kinds.
+struct Shade {
+  int share;
+  std::string_view mixed;
+};
+constexpr std::array<Shade, 5> kShadesOfKind = {
+    {{100, "ink"}, {60, "ink"}, {60, "s6"}, {60, "s0"}, {70, "paper"}}};
 
 }  // namespace
 
@@ -196,11 +203,10 @@ std::string kind_rules(const Comparison& c) {
     std::string kind = c.optimizers[s].mathematics();
     if (!is_kind(kind)) kind = "other";
     const std::size_t place = counts[kind]++, round = place / kDashes.size();
-    const std::string_view mixed = kMixed[(place + round) % kMixed.size()];
-    std::string colour = fmt::format("var(--{})", kind);
-    if (!mixed.empty()) colour = fmt::format("color-mix(in oklab,{} 55%,var(--{}))", colour, mixed);
-    rules += fmt::format("[data-s=\"{}\"]{{--series:{};--dash:{}}}\n", s, colour,
-                         kDashes[place % kDashes.size()]);
+    const auto& [share, mixed] = kShadesOfKind[(place + round) % kShadesOfKind.size()];
+    rules += fmt::format(
+        "[data-s=\"{}\"]{{--series:color-mix(in oklab,var(--{}) {}%,var(--{}));--dash:{}}}\n", s,
+        kind, share, mixed, kDashes[place % kDashes.size()]);
   }
   return rules;
 }
@@ -215,6 +221,14 @@ std::string marks_html(const OptimizerAxis& axis) {
   return marks;
 }
 
+// The guide with its lines, which html_text would join.
+std::string guide_html() {
+  std::string html;
+  std::istringstream lines{std::string(embedded_guide())};
+  for (std::string line; std::getline(lines, line);) html += html_text(line) + "\n";
+  return html;
+}
+
 std::string html_report(const Document& document) {
   const Comparison& c = document.comparison;
   const AllFields fields = all_found_fields(c);
@@ -225,7 +239,7 @@ std::string html_report(const Document& document) {
   Parts parts{{"title", html_text(title_of(c))},
               {"style", std::string(embedded_page_css()) + kind_rules(c)},
               {"scripts", std::string(embedded_page_js())},
-              {"guide", html_text(std::string(embedded_guide()))},
+              {"guide", guide_html()},
               {"tau", tau_name(c)},
               {"headline", head_html(document)},
               {"page.ranking",

@@ -49,10 +49,15 @@ const numbers = [...tab.querySelectorAll('td')].filter((cell) => /^[\\d✗≈]/.
 const silent = numbers.filter((cell) => {
   drawer.close();
   cell.click();
-  return !drawer.open || drawer.querySelector('li, td, code') === null;
+  const isNone = cell.textContent.startsWith('0');  // of none nothing has to be shown
+  return !drawer.open || (drawer.querySelector('li, td, code') === null && !isNone);
 });
 drawer.close();
-return [numbers.length, silent.map((cell) => `${cell.closest('table').dataset.table}: ${cell.textContent}`)];"""
+return [numbers.length,
+    silent.map((cell) => `${cell.closest('table').dataset.table}: ${cell.textContent}`)];"""
+# Heads of columns of an error in x.
+HEADS = """return [...document.querySelectorAll('th[scope=col], th[scope=colgroup]')]
+    .map((head) => head.textContent).filter((text) => /error in x/.test(text));"""
 # How many screens below the top an element stands, and whether it can be seen at all.
 SCREENS_DOWN = """const box = document.querySelector(arguments[0]).getBoundingClientRect();
 return box.height > 0 ? (box.bottom + scrollY) / innerHeight : null;"""
@@ -368,6 +373,18 @@ class Page(InBrowser):
                 self.assertGreater(colours.least_distance(palette, vision), told_apart,
                                    f"{theme}, {vision}")
 
+    def test_methods_of_one_kind_differ_in_colour_too(self):
+        for theme in ("light", "dark"):
+            self.browser.run("document.documentElement.dataset.theme = arguments[0]", theme)
+            shades = self.browser.run(
+                "const pixel = new OffscreenCanvas(1, 1).getContext('2d', {willReadFrequently: true});"
+                "const place = document.body.appendChild(document.createElement('i'));"
+                "place.style.color = 'var(--series)'; return DATA.optimizers.map((_, s) => {"
+                "place.dataset.s = s; pixel.fillStyle = getComputedStyle(place).color;"
+                "pixel.fillRect(0, 0, 1, 1); return '#' + [...pixel.getImageData(0, 0, 1, 1).data]"
+                ".slice(0, 3).map((one) => one.toString(16).padStart(2, '0')).join(''); })")
+            self.assertGreater(colours.least_distance(shades, "normal"), 6, theme)
+
     def test_names_at_the_ends_of_lines_can_be_read(self):
         self.open(f"#problem-{self.problem('beale')}")
         self.browser.wait(IS_DRAWN, ".problem.chosen .curves")
@@ -459,7 +476,7 @@ class Page(InBrowser):
         heads = self.browser.run("return [...document.querySelectorAll('#drawer .settings-of th[scope=col]')]"
                                  ".slice(1).map((head) => head.innerText)")
         rows = self.browser.run("return [...document.querySelectorAll('[data-table=leader] tbody th')]"
-                                ".map((name) => name.innerText)")
+                                ".map((name) => name.textContent)")
         self.assertEqual(heads, [rows[0], rows[2]])
         self.browser.click("#drawer .settings-of tbody tr:first-child td:nth-child(3)")
         for file in self.records():
@@ -647,12 +664,12 @@ class Whole(InBrowser):
     def test_every_error_of_a_learned_problem_says_where_it_is_read(self):
         self.open("")
         self.browser.wait("return document.querySelector('#heat td') !== null")
+        heads = self.browser.run(HEADS)
         p = self.browser.run("return DATA.problems.findIndex((one) => one.learned !== undefined)")
         self.open(f"#problem-{p}")
         self.browser.wait("return document.querySelector('.problem.chosen .reached td') !== null")
         self.browser.run("const part = document.getElementById('learned'); part.open = true; unpackAll(part)")
-        heads = self.browser.run("return [...document.querySelectorAll('th[scope=col], th[scope=colgroup]')]"
-                                 ".map((head) => head.textContent).filter((text) => /error in x/.test(text))")
+        heads += self.browser.run(HEADS)
         self.assertGreaterEqual(len(heads), 3)
         for head in heads:
             self.assertRegex(head, "equal work|at the end|final")
