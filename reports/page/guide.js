@@ -17,7 +17,7 @@ function guideParts(markdown) {
   return [...markdown.matchAll(/```[^\n]*\n([\s\S]*?)```|(.+(?:\n(?!```).+)*)/g)].map(([, code, block]) => {
     if (code !== undefined) return element('pre', {}, code);
     const heading = /^#+ /.exec(block)?.[0].length, lines = block.split('\n'), items = block.split(/(?:^|\n)\s*(?:-|\d+\.) /);
-    if (heading !== undefined) return element(heading === 2 ? 'h3' : 'h4', {}, ...guideText(block.slice(heading)));
+    if (heading !== undefined) return element(`h${heading}`, {}, ...guideText(block.slice(heading)));
     if (block.startsWith('|')) return guideTable(lines);
     if (items[0] === '' && items.length > 1) return element(block.startsWith('-') ? 'ul' : 'ol', {}, ...items.slice(1).map((item) => element('li', {}, ...guideText(item))));
     return element('p', {}, ...guideText(block));
