@@ -128,7 +128,10 @@ document.addEventListener('click', (event) => {
 document.addEventListener('keydown', (event) => {
   const {key} = event, at = document.activeElement, row = at.closest?.('td')?.parentElement;
   if (key === 'Escape') document.getElementById('drawer').close();
-  if (key === 'Enter' && row) return at.click();
+  if (key === 'Enter' && row) {
+    event.preventDefault();  // else it would press the button that has the focus then
+    return at.click();
+  }
   const rows = row ? [...row.parentElement.rows].filter((one) => one.getClientRects().length > 0) : [], next = {
     Enter: () => (at.matches('.scroll') ? at.querySelector('td') : null), Escape: () => row && at.closest('.scroll'),
     ArrowRight: () => row && at.nextElementSibling, ArrowLeft: () => row && at.previousElementSibling,

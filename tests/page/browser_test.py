@@ -45,7 +45,8 @@ for (const one of tab.querySelectorAll('details:not([open])')) {
   unpack(one);
   unpackAll(one);
 }
-const numbers = [...tab.querySelectorAll('td')].filter((cell) => /^[\\d✗≈]/.test(cell.textContent));
+const numbers = [...tab.querySelectorAll('td')].filter((cell) => /^[\\d✗≈]/.test(cell.textContent) &&
+    cell.closest('[data-table=certified] tr:not([data-s]), [data-table=builds]') === null);
 const silent = numbers.filter((cell) => {
   drawer.close();
   cell.click();
