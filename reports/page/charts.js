@@ -79,17 +79,17 @@ const isLineShown = (group) => !group.classList.contains('off') && (group.datase
 const linesOf = (chart) => [...chart.querySelectorAll(`.area > ${LINE}`)];
 const pathOf = (group) => group.querySelector('.line');
 
-// Names at the ends of lines, each below those above it that it would meet, placed once.
+// Names at the ends of lines, each below those above it that it would meet, and all above the lower edge.
 const END_HEIGHT = 14;
-function placedEnds(ends) {
-  const placed = [];
-  for (const end of [...ends].sort((a, b) => a.y - b.y)) {
-    let y = end.y;
-    for (const other of placed)  // from top to bottom, as they were placed
-      if (end.x < other.x + other.width && other.x < end.x + end.width && Math.abs(other.y - y) < END_HEIGHT) y = other.y + END_HEIGHT;
-    placed.push({...end, y});
-    placed.sort((a, b) => a.y - b.y);
-  }
+function placedEnds(ends, bottom = Infinity) {
+  const placed = [...ends].sort((a, b) => a.y - b.y).map((end) => ({...end})), meet = (one, other) => one.x < other.x + other.width && other.x < one.x + one.width;
+  placed.forEach((end, i) => {
+    for (const other of placed.slice(0, i)) if (meet(end, other)) end.y = Math.max(end.y, other.y + END_HEIGHT);
+  });
+  [...placed].reverse().forEach((end, i, all) => {
+    end.y = Math.min(end.y, bottom);
+    for (const other of all.slice(0, i)) if (meet(end, other)) end.y = Math.min(end.y, other.y - END_HEIGHT);
+  });
   return placed;
 }
 
@@ -115,9 +115,10 @@ function placeNames(chart) {
     }
     const [x, y] = inside[inside.length - 1], text = endOf(chart, group);
     text.classList.remove('off');
-    ends.push({text, x: box.x + box.width * clamp((x - left) / width) + 6, y: box.y + box.height * clamp((y - top) / height), width: 6.4 * text.textContent.length});
+    const room = 6.6 * text.textContent.length, last = chart.viewBox.baseVal.width - room;
+    ends.push({text, x: Math.min(box.x + box.width * clamp((x - left) / width) + 6, last), y: box.y + box.height * clamp((y - top) / height), width: room});
   }
-  for (const {text, x, y} of placedEnds(ends)) {
+  for (const {text, x, y} of placedEnds(ends, box.y + box.height)) {
     text.setAttribute('x', x);
     text.setAttribute('y', y + 4);
   }

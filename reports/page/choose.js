@@ -23,6 +23,7 @@ function drawAdvice(place) {
   for (let i = 0; i < flat.length; i += 6) {
     const [s, solved, , score, work, isInGroup] = flat.slice(i, i + 6);
     const row = element('tr', {className: isInGroup ? 'tied' : ''}, cellWith(String(i / 6 + 1)), element('th', {scope: 'row'}, ...nameOfMethod(s)), cellWith(String(solved), `/${settings}`), cellWith(figure(work ?? Infinity)), cellWith(score.toFixed(2)));
+    row.dataset.line = s;  // no filter hides it
     rows.push(row);
   }
   const table = element('table', {className: 'advised'});

@@ -83,6 +83,12 @@ function bestFirst() {
   return DATA.allLearned ? all.sort((a, b) => nearest(b) - nearest(a)) : all;
 }
 
+// A long name loses its end before the options that tell it from others.
+function brief({spec, name}) {
+  const most = 19, options = spec.startsWith(name) ? spec.slice(name.length) : '';
+  return spec.length <= most || options === '' ? spec : `${name.slice(0, Math.max(4, most - 1 - options.length))}…${options}`;
+}
+
 function heatHeads(columns) {
   const groups = new Map();
   for (const p of columns) groups.set(DATA.problems[p].group, (groups.get(DATA.problems[p].group) ?? 0) + 1);
@@ -90,7 +96,7 @@ function heatHeads(columns) {
   return [element('tr', {}, head('optimizer', {rowSpan: 2}), head('solved', {rowSpan: 2}),
       ...[...groups].map(([group, count]) => head(group === 'learned' ? worded('learned') : group, {className: 'group', colSpan: count, scope: 'colgroup'}))),
     element('tr', {}, ...columns.map((p) => {
-      const made = head(element('a', {href: `#problem-${p}`}, element('span', {}, DATA.problems[p].spec)));
+      const made = head(element('a', {href: `#problem-${p}`, title: DATA.problems[p].spec}, element('span', {}, brief(DATA.problems[p]))));
       made.dataset.p = p;
       return made;
     }))];
@@ -131,6 +137,7 @@ function makeMore(table, draw) {
     label();
   });
   button.className = 'more';
+  button.hidden = true;  // until its table is drawn
   table.parentElement.after(element('p', {}, button));
   const label = () => {
     const rest = table.querySelectorAll('.rest').length, all = table.tBodies[0]?.rows.length ?? 0;

@@ -9,6 +9,7 @@
 #include <iterator>
 #include <map>
 #include <set>
+#include <sstream>
 #include <string_view>
 
 #include "core/results/ranking.h"
@@ -21,6 +22,7 @@ namespace isoline::reports {
 std::string_view embedded_page_html();
 std::string_view embedded_page_css();
 std::string_view embedded_page_js();
+std::string_view embedded_guide();
 
 namespace {
 
@@ -127,9 +129,10 @@ std::string published_html(const Document& document) {
   if (best == nullptr) return html;
   const std::vector<Plot> plots = claim_plots(best->evidence, best->id + "-first");
   if (plots.empty()) return html;
-  return fmt::format("{}<p class=reading><a href=\"#claim-{}\">{}</a> {}</p>{}", html, best->id,
-                     html_text(best->sentence), html_text(words("page.quantity", best->quantity)),
-                     plot_html(plots[0]));
+  return fmt::format(
+      "{0}<div data-claim=\"{1}\"><p class=reading><a href=\"#claim-{1}\">{2}</a> {3}</p>{4}</div>",
+      html, best->id, html_text(best->sentence), html_text(words("page.quantity", best->quantity)),
+      plot_html(plots[0]));
 }
 
 // The first tab: alerts; a sentence that decides, of which all that these runs say opens; facts.
@@ -178,7 +181,14 @@ bool is_kind(std::string_view kind) {
 }
 
 constexpr std::array<std::string_view, 5> kDashes = {"none", "7 3", "2 3", "9 3 2 3", "14 4"};
-constexpr std::array<int, 3> kShares = {100, 72, 50};  // of the kind's colour; the rest is ink
+// A share of the kind's own colour, in percent, and the colour that it is mixed with: all that come
+// of it are 7 and more apart in Lab, in both themes, within a kind and between kinds.
+struct Shade {
+  int share;
+  std::string_view mixed;
+};
+constexpr std::array<Shade, 5> kShadesOfKind = {
+    {{100, "ink"}, {60, "ink"}, {60, "s6"}, {60, "s0"}, {70, "paper"}}};
 
 }  // namespace
 
@@ -192,10 +202,11 @@ std::string kind_rules(const Comparison& c) {
   for (std::size_t s = 0; s < c.optimizers.size(); ++s) {
     std::string kind = c.optimizers[s].mathematics();
     if (!is_kind(kind)) kind = "other";
-    const std::size_t place = counts[kind]++;
+    const std::size_t place = counts[kind]++, round = place / kDashes.size();
+    const auto& [share, mixed] = kShadesOfKind[(place + round) % kShadesOfKind.size()];
     rules += fmt::format(
-        "[data-s=\"{}\"]{{--series:color-mix(in oklab,var(--{}) {}%,var(--ink));--dash:{}}}\n", s,
-        kind, kShares[place / kDashes.size() % kShares.size()], kDashes[place % kDashes.size()]);
+        "[data-s=\"{}\"]{{--series:color-mix(in oklab,var(--{}) {}%,var(--{}));--dash:{}}}\n", s,
+        kind, share, mixed, kDashes[place % kDashes.size()]);
   }
   return rules;
 }
@@ -210,6 +221,14 @@ std::string marks_html(const OptimizerAxis& axis) {
   return marks;
 }
 
+// The guide with its lines, which html_text would join.
+std::string guide_html() {
+  std::string html;
+  std::istringstream lines{std::string(embedded_guide())};
+  for (std::string line; std::getline(lines, line);) html += html_text(line) + "\n";
+  return html;
+}
+
 std::string html_report(const Document& document) {
   const Comparison& c = document.comparison;
   const AllFields fields = all_found_fields(c);
@@ -220,6 +239,7 @@ std::string html_report(const Document& document) {
   Parts parts{{"title", html_text(title_of(c))},
               {"style", std::string(embedded_page_css()) + kind_rules(c)},
               {"scripts", std::string(embedded_page_js())},
+              {"guide", guide_html()},
               {"tau", tau_name(c)},
               {"headline", head_html(document)},
               {"page.ranking",

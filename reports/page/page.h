@@ -79,11 +79,11 @@ bool is_large(const Comparison& comparison);
 // where neither holds.
 std::string marks_html(const OptimizerAxis& axis);
 
-// One colour a kind of method, in every report; within a kind a dash and a lightness by rank.
+// One colour a kind of method, in every report; within a kind a dash and a shade of it by rank.
 
 std::string kind_title(std::string_view kind);  // "Adaptive gradients"
 // Rules of the style sheet: what has data-s has the colour and dash of that optimizer. No two of a
-// kind have both alike, up to fifteen.
+// kind have both alike, up to 25, and no two of five either.
 std::string kind_rules(const Comparison& comparison);
 std::string swatch();  // a short line in the colour and dash of the element around it
 

@@ -78,6 +78,7 @@ liveChoose(document.getElementById('means'));
 document.querySelectorAll('article.problem').forEach(liveProblem);
 FOLLOWERS.push(hideClaims, () => countRows());
 explainTerms();
+offerGuide(document.getElementById('docs'));
 makeTabs();
 applyView();
 openAddress();

@@ -120,6 +120,7 @@ std::string problem_json(const Comparison& c, std::size_t p,
              indices(ranked), indices(shown_at_first(c, ranked))) +
          origins_json(c, p) + learned_json(c, p) +
          (problem.lacks_least_loss() ? ",\"isUnknown\":true" : "") +
+         (prices_of(problem) ? ",\"sheet\":" + json_quoted(problem.sheet->file_name()) : "") +
          (fields ? ",\"fields\":" + fields_json(*fields) : "") + "}";
 }
 
@@ -295,14 +296,14 @@ std::string page_data(const Document& document, const AllFields& fields) {
   const Comparison& c = document.comparison;
   std::string text = fmt::format(
       "{{\"runs\":{},\"by\":\"{}\",\"allLearned\":{},\"shades\":{},\"measures\":{},\"isTimedTogether\":{},"
-      "\"rungs\":{},\"targets\":{},{},\"given\":{},\"ranked\":{},\"common\":{},\"claims\":{},"
+      "\"rungs\":{},\"targets\":{},{},\"given\":{},\"ranked\":{},\"common\":{},\"sanity\":{},\"claims\":{},"
       "\"pinned\":{},\"group\":{},\"advice\":{},\"words\":{},\"terms\":{},\"standings\":{},\"problems\":[",
       json_quoted(runs_address(document)), name_of(c.yardstick.by), is_all_learned(c),
       json_list(kShades, exact_figure), measures_json(c), c.is_any_timed_together,
       json_list(c.yardstick.tolerances,
                 [](const Tolerance& tolerance) { return std::to_string(tolerance.rung); }),
       indices(targets_of(c)), axes_json(c), given_json(c), indices(c.order.methods),
-      indices(c.order.settings), claims_about(document), pinned_json(c),
+      indices(c.order.settings), indices(c.sanity.settings), claims_about(document), pinned_json(c),
       indices(c.decision ? c.decision->group() : std::vector<std::size_t>()), advice_json(c),
       script_words("script."), script_words("glossary."), standings_json(c));
   for (std::size_t p = 0; p < c.problems.size(); ++p)

@@ -85,11 +85,16 @@ function priceTable() {
   const middle = (s, measure) => (solved.length === 0 ? '–' : figure(Number(medianOf(solved.map(({p}) => takenBy(cellOf(DATA.problems[p], s), view.target, measure)).sort((x, y) => x - y)).toPrecision(4))));
   const rows = [...DATA.measures.map(({counted, unit}, measure) => [`${counted}, ${unit}`, (s) => middle(s, measure)]), ['required derivatives', (s) => DATA.asks[s]],
     ['extra information (†)', (s) => DATA.privileges[s] || 'none'], ['kind', (s) => DATA.kinds[s]]];
-  const table = element('table', {className: 'prices'});
+  const table = element('table', {className: 'prices'}), open = () => openSettings(worded('compared'), methods, solved.map(({p}) => p));
   filledTable(table, worded('price-caption', {settings: solved.length, tau: tauName(view.target)}), [element('tr', {}, element('td'), ...methods.map((s) => element('th', {scope: 'col'}, named(s))))],
       rows.map(([what, of]) => element('tr', {}, element('th', {scope: 'row'}, what), ...methods.map((s) => element('td', {className: 'text'}, of(s))))));
+  for (const row of [...table.tBodies[0].rows].slice(0, MEASURES.length))
+    for (const cell of [...row.cells].slice(1)) cell.addEventListener('click', open);
   return table;
 }
+
+// What a sentence on two methods counts.
+const pairEvidence = (a, b) => Object.assign(pressable(worded('pair-evidence'), undefined, () => openSettings(worded('compared'), [a, b], settingsOf([a, b]).map(({p}) => p))), {className: 'evidence'});
 
 // A sentence that says no more than the interval does.
 function pairSentence(a, b) {
@@ -111,10 +116,11 @@ function dotRows(rows) {
       dot.dataset.s = pair.methods[i];
       return dot;
     });
-    const link = element('a', {href: `#problem-${p}`}, element('span', {}, DATA.problems[p].spec), element('span', {className: 'way'}, ...dots), element('small', {}, words));
-    link.dataset.p = p;
+    const link = element('a', {href: `#problem-${p}`, title: DATA.problems[p].spec}, brief(DATA.problems[p])), row = element('li', {}, link, element('span', {className: 'way'}, ...dots), element('small', {}, words));
+    row.dataset.p = p;
     link.addEventListener('click', () => showLines(p, pair.methods));
-    return element('li', {}, link);
+    row.addEventListener('click', ({target}) => { if (target !== link) openDrawer(p, ...pair.methods); });
+    return row;
   }));
 }
 
@@ -146,6 +152,7 @@ function scatter(rows) {
     taken.forEach((value, i) => {
       if (i === 0 || value === Infinity) return;
       const dot = svgElement('circle', {cx: at(taken[0]), cy: 320 - at(value), r: 4, 'data-s': pair.methods[i], 'data-p': p});
+      dot.addEventListener('click', () => openDrawer(p, pair.methods[0], pair.methods[i]));
       dot.append(svgElement('title', {}, `${DATA.problems[p].spec}: ${taken.map(short).join(' : ')}`));
       drawn.append(dot);
     });
@@ -155,7 +162,7 @@ function scatter(rows) {
 function drawPair(place) {
   const redraw = () => drawPair(place), {methods} = pair, rows = settingRows(), selects = [...Array(Math.min(MOST_COMPARED, methods.length + 1)).keys()].map((i) => pairSelect(i, redraw));
   place.replaceChildren(element('p', {className: 'chosen-two'}, ...selects.flatMap((select, i) => (i === 0 ? [select] : [i === 1 ? ' against ' : ' ', select]))),
-      ...methods.slice(1).map((s) => element('p', {className: 'verdict'}, pairSentence(methods[0], s))),
+      ...methods.slice(1).map((s) => element('p', {className: 'verdict'}, pairSentence(methods[0], s), ' ', pairEvidence(methods[0], s))),
       element('div', {className: 'decided'}, element('div', {}, element('p', {className: 'legend'}, worded('pair-legend', {measure: measureNow().counted})), dotRows(rows), ...learnedSection()),
           element('div', {}, scrolled(priceTable()), ...scatter(rows))));
 }

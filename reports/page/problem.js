@@ -62,7 +62,7 @@ function drawLegend(place, problem, lines) {
     row.classList.toggle('rest', i >= MOST_ROWS && !lines.has(s));
     return row;
   });
-  const heads = problem.learned === undefined ? ['method', measureNow().name, 'ms', 'runs'] : ['method', 'error in x', 'loss', 'runs'];
+  const heads = problem.learned === undefined ? ['method', measureNow().name, 'ms', 'runs'] : ['method', 'error in x at equal work', 'loss at equal work', 'runs'];
   const table = element('table', {className: 'folded'}, element('caption', {}, captionOf(problem, works.length, ranking.length)),
       element('thead', {}, element('tr', {}, ...heads.map((text) => element('th', {scope: 'col'}, text)))), element('tbody', {}, ...rows));
   const choose = (lines) => () => showLines(DATA.problems.indexOf(problem), lines);

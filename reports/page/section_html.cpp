@@ -36,6 +36,7 @@ std::string cell_html(const Table& table, const TableCell& cell, std::size_t col
                     : align == 'r' ? "td"
                                    : "td class=text";
   tag += about(table.column_topics, column);
+  if (cell.of) tag += fmt::format(" data-of=\"{} {}\"", cell.of->first, cell.of->second);
   if (!cell.note.empty()) tag += fmt::format(" title=\"{}\"", html_text(cell.note));
   std::string text = html_text(cell.text);
   if (align == 'b' && !text.empty()) text = command_button(cell.text);
@@ -82,10 +83,10 @@ std::string table_html(const Table& table, const std::string& name) {
   constexpr std::size_t kTall = 25;  // rows: more scroll in a window of their own
   const bool is_tall = table.rows.size() > kTall && !table.is_folded;
   html += fmt::format(
-      "{}<div class=\"scroll{}\" tabindex=0 role=region aria-label=\"{}\"><table class=sortable>{}"
-      "</table></div>",
+      "{}<div class=\"scroll{}\" tabindex=0 role=region aria-label=\"{}\"><table class=sortable "
+      "data-table=\"{}\">{}</table></div>",
       table.is_folded ? "<details><summary>Table</summary>" : "", is_tall ? " tall" : "",
-      html_text(table.title.empty() ? name : table.title), rows_html(table));
+      html_text(table.title.empty() ? name : table.title), table.id, rows_html(table));
   if (!table.caption.empty())
     html += fmt::format("<p class=legend>{}</p>", html_text(table.caption));
   for (std::size_t i = 0; i < std::min(table.meanings.size(), table.columns.size()); ++i)
@@ -148,9 +149,11 @@ std::string record_link(const Document& document, const std::string& name) {
 
 std::string claim_html(const Document& document, const Judgement& judgement) {
   Section claim = claim_section(judgement);
-  for (Table& table : claim.tables)
+  for (Table& table : claim.tables) {
+    table.is_folded = false;  // its part is
     if (!table.columns.empty() && table.columns.back() == "record")
       for (auto& row : table.rows) row.back().link = record_link(document, row.back().text);
+  }
   std::string html = fmt::format(
       "<details class=claim id=\"{0}\" data-claim=\"{1}\"><summary><b>{2}</b> {3} "
       "<code>{1}</code></summary><noscript>\n<div class=decided><dl>",
@@ -229,7 +232,7 @@ std::string details_html(const Comparison& c) {
   for (const std::string_view what : {name_of(by), std::string_view("time, ms,")})
     for (const Tolerance& tolerance : c.yardstick.tolerances)
       table.columns.push_back(fmt::format("{} to {}", what, tolerance.name));
-  for (const char* last : {"final loss", "error in x", "how the runs ended", "command"})
+  for (const char* last : {"final loss", "final error in x", "how the runs ended", "command"})
     table.columns.emplace_back(last);
   for (std::size_t p = 0; p < c.problems.size(); ++p)
     for (std::size_t s = 0; s < c.optimizers.size(); ++s) {

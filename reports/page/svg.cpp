@@ -243,9 +243,16 @@ std::string published_svg(const Frame& area, const PlotSeries& goal) {
                    x, area.y(goal.y[0]), html_text(goal.name), figure(goal.y[0]), ends);
 }
 
-// Names at the ends of the lines that are shown, each below those above it that it would meet.
+std::size_t letters_of(std::string_view text) {
+  constexpr unsigned kContinues = 0x80, kKind = 0xC0;  // bytes of UTF-8
+  return static_cast<std::size_t>(std::ranges::count_if(
+      text, [](char byte) { return (static_cast<unsigned char>(byte) & kKind) != kContinues; }));
+}
+
+// Names at the ends of the lines that are shown, each below those above it that it would meet, and
+// all above the lower edge.
 std::string end_names(const Drawing& drawing, const Frame& frame) {
-  constexpr Real kHeight = 14, kLetter = 6.4;
+  constexpr Real kHeight = 14, kLetter = 6.6;
   constexpr std::size_t kLongest = 24;
   struct End {
     Real x, y, width;
@@ -260,21 +267,25 @@ std::string end_names(const Drawing& drawing, const Frame& frame) {
     if (last == 0 || is_hidden(drawing, line)) continue;
     std::string text = line.name;
     if (text.size() > kLongest) text = text.substr(0, kLongest - 1) + "…";
-    const Real x = drawing.plot.kind == Plot::Kind::steps ? frame.window.x_high : line.x[last - 1];
-    ends.push_back({std::min(frame.x(x), frame.right()) + 6,
-                    std::clamp(frame.y(line.y[last - 1]), frame.top, frame.bottom()),
-                    kLetter * static_cast<Real>(text.size()), i, text});
+    const Real x = drawing.plot.kind == Plot::Kind::steps ? frame.window.x_high : line.x[last - 1],
+               width = kLetter * static_cast<Real>(letters_of(text));
+    ends.push_back(
+        {std::min(std::min(frame.x(x), frame.right()) + 6, frame.right() + kNameWidth - width),
+         std::clamp(frame.y(line.y[last - 1]), frame.top, frame.bottom()), width, i, text});
   }
+  const auto meet = [](const End& one, const End& other) {
+    return one.x < other.x + other.width && other.x < one.x + one.width;
+  };
   std::ranges::sort(ends, {}, &End::y);
-  std::vector<const End*> placed;
+  for (std::size_t i = 0; i < ends.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j)
+      if (meet(ends[i], ends[j])) ends[i].y = std::max(ends[i].y, ends[j].y + kHeight);
   std::string svg;
-  for (End& end : ends) {
-    for (const End* other : placed)
-      if (end.x < other->x + other->width && other->x < end.x + end.width &&
-          std::abs(end.y - other->y) < kHeight)
-        end.y = other->y + kHeight;
-    placed.push_back(&end);
-    std::ranges::sort(placed, {}, [](const End* one) { return one->y; });
+  for (std::size_t i = ends.size(); i-- > 0;) {
+    End& end = ends[i];
+    end.y = std::min(end.y, frame.bottom());
+    for (std::size_t j = i + 1; j < ends.size(); ++j)
+      if (meet(end, ends[j])) end.y = std::min(end.y, ends[j].y - kHeight);
     svg += fmt::format("<text x={:.0f} y={:.0f}{}>{}</text>", end.x, end.y + 4,
                        line_attributes(drawing.plot.series[end.place], end.place, ""),
                        html_text(end.text));
@@ -353,10 +364,10 @@ std::string plot_html(const Plot& plot) {
   const Drawing drawing{
       .plot = plot, .join = is_steps ? Join::steps : Join::straight, .has_names = is_steps};
   return fmt::format(
-      "<figure class=plot id={}><figcaption><b>{}.</b> {}</figcaption>{}{}<p class=legend>{}</p>"
+      "<figure class=plot id={}{}><figcaption><b>{}.</b> {}</figcaption>{}{}<p class=legend>{}</p>"
       "</figure>\n",
-      plot.id, html_text(plot.title), html_text(plot.reading), drawing_svg(drawing),
-      names_html(drawing), html_text(plot.caption));
+      plot.id, topic_attributes(plot.topic), html_text(plot.title), html_text(plot.reading),
+      drawing_svg(drawing), names_html(drawing), html_text(plot.caption));
 }
 
 }  // namespace isoline::reports

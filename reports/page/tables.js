@@ -89,7 +89,7 @@ function makeFilter(input, table, output) {
 function explainTerms() {
   const tip = document.getElementById('tip');
   const explain = ({target}) => {
-    const place = target.closest?.('thead th, #measures button'), name = place?.textContent.trim().replace(/, .*| to .*/, '');
+    const place = target.closest?.('thead th, #measures button'), name = place?.textContent.trim().replace(/^final |, .*| to .*| at .*/g, '');
     if (place && Object.hasOwn(DATA.terms, name)) showTip(tip, [name, DATA.terms[name]], place);
   };
   for (const event of ['pointerover', 'focusin']) document.addEventListener(event, explain);

@@ -67,7 +67,7 @@ namespace {
 
 // One method that trained, or one that solved single instances, over its runs.
 struct Side {
-  std::size_t optimizer = 0;
+  std::size_t problem = 0, optimizer = 0;
   const Cell* cell = nullptr;
   std::string name;
   Spread seconds, iterations;  // of the processor: to the end, or to the error that is asked
@@ -108,10 +108,13 @@ Side side_of(const Comparison& c, std::size_t problem, std::size_t optimizer, Sp
     };
     return c.aggregate(cell.runs, of, cell.missing());
   };
-  return {optimizer, &cell,
+  return {problem,
+          optimizer,
+          &cell,
           setting_text(c, problem, optimizer) +
               marks_text({.has_extra_information = !cell.privileges.empty()}),
-          spent(&std::pair<Real, Real>::first), spent(&std::pair<Real, Real>::second)};
+          spent(&std::pair<Real, Real>::first),
+          spent(&std::pair<Real, Real>::second)};
 }
 
 // The nearest to x first.
@@ -174,17 +177,23 @@ std::vector<TableCell> amortized_row(const Side& network, const Side& single, Re
   if (!std::isnan(from) && !times.is_solved()) pays = words("amortized-table.open");
   if (!std::isnan(from) && times.is_solved())
     pays = {from == kNever ? "never" : figure(from), {{"pays_from", from}}};
-  return {network.name,
-          single.name,
-          number_cell("x_error", network.cell->x_error.median),
-          time_cell(network, in_seconds),
-          number_cell("training_iterations", network.iterations.median),
-          example,
-          time_cell(single, milliseconds),
-          number_cell("iterations", single.iterations.median),
-          fmt::format("{}/{}", times.n - times.unsolved, times.n),
-          fmt::format("{}, {}", network.cell->failed, single.cell->failed),
-          pays};
+  std::vector<TableCell> row = {network.name,
+                                single.name,
+                                number_cell("x_error", network.cell->x_error.median),
+                                time_cell(network, in_seconds),
+                                number_cell("training_iterations", network.iterations.median),
+                                example,
+                                time_cell(single, milliseconds),
+                                number_cell("iterations", single.iterations.median),
+                                fmt::format("{}/{}", times.n - times.unsolved, times.n),
+                                fmt::format("{}, {}", network.cell->failed, single.cell->failed),
+                                pays};
+  constexpr std::size_t kOfSolver = 6;  // the first column of it
+  for (std::size_t i = 0; i < row.size(); ++i) {
+    const Side& side = i < kOfSolver ? network : single;
+    row[i].of = {side.problem, side.optimizer};
+  }
+  return row;
 }
 
 std::string reading_of(const Side& network, const Side& single, Real inference) {

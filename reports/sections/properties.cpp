@@ -83,6 +83,14 @@ Table properties_table(const Audits& all) {
                              : std::vector<TableCell>{shown_spec(audited.spec), audited.reason});
     table.row_topics.push_back({.method = audited.name});
   }
+  const auto has_flags = [](const AuditedOptimizer& audited) { return !audited.flags.empty(); };
+  if (std::ranges::none_of(all, has_flags)) {  // of which a sentence tells
+    table.columns.pop_back();
+    table.meanings.pop_back();
+    table.parts.back() = 1;
+    for (auto& row : table.rows)
+      if (row.size() > table.columns.size()) row.pop_back();
+  }
   return table;
 }
 

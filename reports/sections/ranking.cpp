@@ -316,7 +316,11 @@ Table sanity_table(const Comparison& c) {
 Table settings_table(const Comparison& c, const char* key, const std::vector<std::size_t>& settings,
                      const auto& title, const auto& show) {
   Table table = worded_table(key);
-  for (const std::size_t p : settings) table.columns.push_back(title(p));
+  table.column_topics.emplace_back();
+  for (const std::size_t p : settings) {
+    table.columns.push_back(title(p));
+    table.column_topics.push_back({.problem = p});
+  }
   std::vector<Real> least(settings.size(), kNever);
   for (std::size_t s = 0; s < c.optimizers.size(); ++s) {
     std::vector<TableCell> row;

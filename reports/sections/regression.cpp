@@ -134,7 +134,7 @@ std::vector<Table> uncertainty_tables(const Comparison& c) {
       if (!known) continue;
       Table table = worded_table("uncertainty", problem_name(c.problems[p]));
       table.id += fmt::format("-{}", p);
-      table.topic = {.problem = p};
+      table.topic = {.optimizer = s, .problem = p};
       table.is_folded = true;
       for (std::size_t i = 0; i < known->x.size(); ++i)
         table.rows.push_back({fmt::format("x{}", i + 1), number_cell("x", known->x[i]),

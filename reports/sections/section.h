@@ -28,9 +28,11 @@ struct TableCell {
 
   std::string text;
   Numbers numbers;
-  std::string note = {};          // the tooltip on the page
-  std::string remark = {};        // beside the text, in small
-  std::string link = {};          // where the page leads from here
+  std::string note = {};    // the tooltip on the page
+  std::string remark = {};  // beside the text, in small
+  std::string link = {};    // where the page leads from here
+  // The problem and the optimizer of its runs, where neither row nor column names them.
+  std::optional<std::pair<std::size_t, std::size_t>> of = {};
   bool is_best = false;           // of its column
   std::optional<int> shade = {};  // of a heat map: 0 the best, then by factors of two, to 7
 };
@@ -77,6 +79,7 @@ struct Plot {
   bool is_log_x = false, is_log_y = false;
   std::vector<PlotSeries> series = {};
   std::vector<PlotSeries> published = {};  // drawn into lines; of one point: where it is read
+  Topic topic = {};
 };
 
 struct Reading {

@@ -104,6 +104,7 @@ Section spectra_section(const Comparison& c) {
       empty.kind = Plot::Kind::lines;
       empty.id += fmt::format("-{}", p);
       empty.is_log_x = empty.is_log_y = true;
+      empty.topic = {.problem = p};
       return empty;
     };
     section.plots.push_back(values_plot(plot("plot-spectrum"), seen));
@@ -290,6 +291,8 @@ Table heat_map(const Comparison& c, const SweepGrid& grid, std::size_t number) {
       TableCell& cell = row.emplace_back("");
       if (!spread) continue;
       cell = {reached_figure(spread->median), {{"median", spread->median}, {"n", Real(spread->n)}}};
+      const Run& first = c.runs[grid.runs[r][row.size() - 2][0]];
+      cell.of = {first.problem, first.optimizer};
       if (spread->median < kNever) cell.shade = shade_of(spread->median, least);
       cell.is_best = spread->median == least && least < kNever;
       near += spread->median <= 2 * least;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <regex>
 #include <set>
 #include <tuple>
 
@@ -485,6 +486,34 @@ TEST(TimeLeft, CountsCellsWithoutAPredictionAsTheMeanOfTheOthers) {
   unknown.finish({}, 5);
   EXPECT_EQ(unknown.at(5).value_or(0), 15);
   EXPECT_FALSE(TimeLeft().at(1).has_value()) << "nothing is expected";
+}
+
+std::string shown(Progress& progress) {
+  testing::internal::CaptureStderr();
+  progress.show(true);
+  return testing::internal::GetCapturedStderr();
+}
+
+// However long the fast cell took, the slow one is 10¹² times as long, which is hours.
+TEST(Progress, PrintsTheTimeOfTheSlowCellsThatAreLeftAndNotTheMeanOfThoseThatEnded) {
+  Progress progress(Progress::Style::plain, "cells", 2, 0);
+  progress.expect(1e-3);
+  progress.expect(1e9);
+  progress.finished(1e-3);
+  const std::string text = shown(progress);
+  EXPECT_TRUE(text.starts_with("cells 1/2 ")) << text;
+  EXPECT_TRUE(std::regex_search(text, std::regex(" \\d+ h \\d\\d min left"))) << text;
+}
+
+TEST(Progress, PrintsNoTimeWhereThePredictedTimeIsOver) {
+  Progress progress(Progress::Style::plain, "cells", 3, 0);
+  progress.expect(1);
+  progress.expect(1);
+  progress.finished(2);
+  EXPECT_FALSE(std::regex_search(shown(progress), std::regex("\\d s left")));
+  progress.finished(1);
+  progress.finished(1);
+  EXPECT_EQ(shown(progress).find("left"), std::string::npos) << "all have ended";
 }
 
 }  // namespace

@@ -16,7 +16,7 @@ ARGUMENTS = [
     "--host-resolver-rules=MAP * ~NOTFOUND",
 ]
 KEYS = {"tab": "\ue004", "enter": "\ue007", "escape": "\ue00c", "space": "\ue00d",
-        "right": "\ue014", "home": "\ue011", "end": "\ue010", "shift": "\ue008"}
+        "right": "\ue014", "down": "\ue015", "home": "\ue011", "end": "\ue010", "shift": "\ue008"}
 
 
 def missing():

@@ -38,6 +38,27 @@ return linesOf(chart).filter(isLineShown).map((line) => [nameOf(line), pointsOf(
 STANDINGS = """return [...document.querySelectorAll('#standings-table tbody tr')]
     .filter((row) => row.getClientRects().length > 0)
     .map((row) => [...row.cells].map((cell) => cell.innerText.replace('†', '').trim()));"""
+# The numbers of the tables of a tab, and those of which a press opens nothing.
+SILENT = """const tab = document.getElementById(arguments[0]), drawer = document.getElementById('drawer');
+for (const one of tab.querySelectorAll('details:not([open])')) {
+  one.open = true;
+  unpack(one);
+  unpackAll(one);
+}
+const numbers = [...tab.querySelectorAll('td')].filter((cell) => /^[\\d✗≈]/.test(cell.textContent) &&
+    cell.closest('[data-table=certified] tr:not([data-s]), [data-table=builds]') === null);
+const silent = numbers.filter((cell) => {
+  drawer.close();
+  cell.click();
+  const isNone = cell.textContent.startsWith('0');  // of none nothing has to be shown
+  return !drawer.open || (drawer.querySelector('li, td, code') === null && !isNone);
+});
+drawer.close();
+return [numbers.length,
+    silent.map((cell) => `${cell.closest('table').dataset.table}: ${cell.textContent}`)];"""
+# Heads of columns of an error in x.
+HEADS = """return [...document.querySelectorAll('th[scope=col], th[scope=colgroup]')]
+    .map((head) => head.textContent).filter((text) => /error in x/.test(text));"""
 # How many screens below the top an element stands, and whether it can be seen at all.
 SCREENS_DOWN = """const box = document.querySelector(arguments[0]).getBoundingClientRect();
 return box.height > 0 ? (box.bottom + scrollY) / innerHeight : null;"""
@@ -353,6 +374,18 @@ class Page(InBrowser):
                 self.assertGreater(colours.least_distance(palette, vision), told_apart,
                                    f"{theme}, {vision}")
 
+    def test_methods_of_one_kind_differ_in_colour_too(self):
+        for theme in ("light", "dark"):
+            self.browser.run("document.documentElement.dataset.theme = arguments[0]", theme)
+            shades = self.browser.run(
+                "const pixel = new OffscreenCanvas(1, 1).getContext('2d', {willReadFrequently: true});"
+                "const place = document.body.appendChild(document.createElement('i'));"
+                "place.style.color = 'var(--series)'; return DATA.optimizers.map((_, s) => {"
+                "place.dataset.s = s; pixel.fillStyle = getComputedStyle(place).color;"
+                "pixel.fillRect(0, 0, 1, 1); return '#' + [...pixel.getImageData(0, 0, 1, 1).data]"
+                ".slice(0, 3).map((one) => one.toString(16).padStart(2, '0')).join(''); })")
+            self.assertGreater(colours.least_distance(shades, "normal"), 6, theme)
+
     def test_names_at_the_ends_of_lines_can_be_read(self):
         self.open(f"#problem-{self.problem('beale')}")
         self.browser.wait(IS_DRAWN, ".problem.chosen .curves")
@@ -428,6 +461,78 @@ class Page(InBrowser):
         self.browser.press("escape")
         self.browser.wait("return !document.getElementById('drawer').open")
 
+    def records(self):
+        """The record files that the drawer links, each of which exists."""
+        links = self.browser.wait("const all = [...document.querySelectorAll('#drawer a[href$=\".json\"]')]"
+                                  ".map((link) => link.href); return all.length > 0 && all")
+        files = [pathlib.Path(urllib.request.url2pathname(link[7:])) for link in links]
+        for file in files:
+            self.assertTrue(file.exists(), file)
+        return files
+
+    def test_a_statistic_of_a_pair_opens_the_records_of_both(self):
+        self.open("#statistics")
+        cell = "[data-table=leader] tbody tr:nth-child(3) td:nth-child(7)"
+        self.browser.run("document.querySelector(arguments[0]).click()", cell)
+        heads = self.browser.run("return [...document.querySelectorAll('#drawer .settings-of th[scope=col]')]"
+                                 ".slice(1).map((head) => head.innerText)")
+        rows = self.browser.run("return [...document.querySelectorAll('[data-table=leader] tbody th')]"
+                                ".map((name) => name.textContent)")
+        self.assertEqual(heads, [rows[0], rows[2]])
+        self.browser.click("#drawer .settings-of tbody tr:first-child td:nth-child(3)")
+        for file in self.records():
+            record = json.loads(file.read_text())
+            self.assertEqual(record["request"]["optimizer"]["name"], rows[2])
+
+    def test_failed_runs_are_those_of_the_settings_on_which_they_failed(self):
+        self.open("#statistics")
+        failed = self.browser.run(
+            "const table = document.querySelector('[data-table=calls]'), column = "
+            "[...table.tHead.rows[0].cells].findIndex((head) => head.textContent === 'failed');"
+            "return [...table.tBodies[0].rows].map((row) => { row.cells[column].click();"
+            "return [Number(row.cells[column].textContent.split('/')[0]), [...document.querySelectorAll("
+            "'#drawer .settings-of td:last-child')].map((cell) => cell.textContent)]; })")
+        for count, settings in failed:
+            self.assertEqual(count, sum(int(re.search(r"(\d+) failed", text)[1]) for text in settings))
+
+    def test_the_numbers_of_a_comparison_open_the_records_of_its_methods(self):
+        self.open("?vs=gauss-newton&vs=adam&vs=ceres-lm#compare")
+        self.browser.wait("return document.querySelector('#pair .prices') !== null")
+        self.browser.click("#pair .bars-of li small")
+        methods = {json.loads(file.read_text())["request"]["optimizer"]["name"]
+                   for file in self.records()}
+        self.assertEqual(methods, {"gauss-newton", "adam", "ceres-lm"})
+        count = self.browser.run("return settingsOf(pair.methods.slice(0, 2)).length")
+        self.browser.press("escape")
+        for opener, columns in ((".verdict .evidence", 2), (".prices tbody td", 3)):
+            self.browser.run("document.querySelector('#pair ' + arguments[0]).click()", opener)
+            shown = self.browser.run("return [...document.querySelectorAll('#drawer .settings-of tbody tr')]"
+                                     ".map((row) => row.querySelectorAll('td').length)")
+            self.assertEqual(set(shown), {columns})
+            if columns == 2:
+                self.assertEqual(len(shown), count)
+
+    def test_the_keyboard_reaches_what_stands_behind_a_number(self):
+        self.browser.wait("return document.querySelector('#heat tbody td') !== null")
+        self.browser.run("document.querySelector('#heat').parentElement.focus()")
+        self.browser.press("enter", "right", "down", "enter")
+        title = self.browser.wait("return document.getElementById('drawer').open && "
+                                  "document.querySelector('#drawer h3').innerText")
+        cell = self.browser.run("const row = [...document.querySelectorAll('#heat tbody tr')].filter((one) => "
+                                "one.getClientRects().length > 0)[1], cell = row.cells[2]; return "
+                                "`${DATA.optimizers[row.dataset.s]} on ${DATA.problems[cell.dataset.p].spec}`")
+        self.assertEqual(title, cell)
+
+    def test_the_guide_to_the_page_opens_in_it(self):
+        source = pathlib.Path(__file__).parents[2] / "docs" / "reading-a-report.md"
+        headings = [line[3:] for line in source.read_text().splitlines() if line.startswith("## ")]
+        self.browser.click("#docs button")
+        self.assertEqual(self.browser.run("return [...document.querySelectorAll('#drawer h3')]"
+                                          ".map((head) => head.innerText)"), headings)
+        marks = self.browser.run("return document.querySelector('#drawer .guide').innerText")
+        for mark in ("**", "](", "| -", "```", "\\"):
+            self.assertNotIn(mark, marks)
+
     # --- two methods
 
     def test_a_figure_of_the_ranking_opens_its_settings_and_then_their_records(self):
@@ -458,7 +563,7 @@ class Page(InBrowser):
         four = ["gauss-newton", "adam", "ceres-lm", "newton"]
         self.open("?" + "&".join(f"vs={name}" for name in four) + "#compare")
         self.browser.wait("return document.querySelectorAll('#pair select').length === 4")
-        rows = self.browser.run("return [...document.querySelectorAll('#pair .bars-of:first-of-type a')]"
+        rows = self.browser.run("return [...document.querySelectorAll('#pair .bars-of:first-of-type li')]"
                                 ".map((row) => row.querySelectorAll('i').length)")
         self.assertEqual(set(rows), {4})
         self.assertGreater(self.browser.run("return document.querySelectorAll('#pair .scatter "
@@ -511,6 +616,14 @@ class Page(InBrowser):
             self.assertLessEqual(wide, 0, f"{tab} is wider than the window")
             self.assertLessEqual(self.browser.run("return document.querySelector('.bars')"
                                                   ".offsetHeight"), 105)
+            right, letters = self.browser.run(
+                "const all = [...document.querySelectorAll('.tab.open .chart')].filter((chart) => "
+                "chart.getClientRects().length > 0); return [Math.max(0, ...all.map((chart) => "
+                "areaOf(chart).getScreenCTM() && chart.querySelector('.axes').getBoundingClientRect().right)),"
+                "Math.min(99, ...all.map((chart) => parseFloat(getComputedStyle(chart).fontSize) * "
+                "chart.getBoundingClientRect().width / chart.viewBox.baseVal.width))]")
+            self.assertLessEqual(right, 400, f"a chart of {tab} leaves the window")
+            self.assertGreaterEqual(letters, 9, "pixels")
 
     def test_paper_has_the_open_tab_drawn(self):
         for tab in ("overview", "problems", "statistics"):
@@ -521,6 +634,57 @@ class Page(InBrowser):
         self.assertTrue(self.browser.run(
             "return [...document.querySelectorAll('.tab.open .chart')].every((chart) => "
             "linesOf(chart).length > 0)"))
+
+
+class Whole(InBrowser):
+    """Problems of every kind: each number of each tab opens what stands behind it."""
+
+    @classmethod
+    def made(cls, folder):
+        run("run", "--problem", "rosenbrock,helical-valley,poisson,heat,burgers,nist[dataset=Misra1a],"
+            "sine[xi=32,mode=learn]", "--optimizer", "gd,adam,gauss-newton,ceres-lm", "--seeds", "2",
+            "--iterations", "40", "--out", folder, "--quiet")
+        return pathlib.Path(folder, "report", "index.html")
+
+    def test_learned_columns_are_on_screen_beside_as_many_others_as_the_default_suite_has(self):
+        for width in (1400, 1920):
+            resized(self.browser, width, 900)
+            self.open("")
+            self.browser.wait("return TASKS.size === 0 && document.querySelector('#heat td') !== null")
+            ends = self.browser.run(
+                "const like = (group) => DATA.problems.find((one) => one.group === group);"
+                "for (const [group, count] of [['physics', 18], ['classical', 20]])"
+                "  for (let i = 0; i < count; ++i) DATA.problems.push({...like(group)});"
+                "drawHeat(document.getElementById('heat'));"
+                "const heads = [...document.querySelectorAll('#heat thead th[data-p]')];"
+                "return heads.filter((head) => DATA.problems[head.dataset.p].learned !== undefined)"
+                ".map((head) => head.getBoundingClientRect().right)")
+            self.assertGreater(len(ends), 0)
+            self.assertLessEqual(max(ends), width)
+
+    def test_every_error_of_a_learned_problem_says_where_it_is_read(self):
+        self.open("")
+        self.browser.wait("return document.querySelector('#heat td') !== null")
+        heads = self.browser.run(HEADS)
+        p = self.browser.run("return DATA.problems.findIndex((one) => one.learned !== undefined)")
+        self.open(f"#problem-{p}")
+        self.browser.wait("return document.querySelector('.problem.chosen .reached td') !== null")
+        self.browser.run("const part = document.getElementById('learned'); part.open = true; unpackAll(part)")
+        heads += self.browser.run(HEADS)
+        self.assertGreaterEqual(len(heads), 3)
+        for head in heads:
+            self.assertRegex(head, "equal work|at the end|final")
+
+    def test_every_number_of_a_table_opens_its_evidence(self):
+        counts = {}
+        for tab in ("overview", "problems", "methods", "statistics", "runs"):
+            self.open(f"#{tab}")
+            self.browser.wait("return TASKS.size === 0 && document.querySelector('#heat td') !== null"
+                              if tab == "overview" else "return TASKS.size === 0")
+            counts[tab], silent = self.browser.run(SILENT, tab)
+            self.assertEqual(silent, [], tab)
+        self.assertGreater(counts["overview"], 40)
+        self.assertGreater(counts["statistics"], 150)
 
 
 class Learned(unittest.TestCase):
@@ -621,6 +785,26 @@ class Claims(unittest.TestCase):
         self.assertGreater(int(counts[0]), 0)
         self.assertEqual([int(count) for count in counts],
                          [sum(verdict in group for verdict in facts.values()) for group in groups])
+
+    def test_a_number_of_a_claim_opens_its_records(self):
+        page = browser.Browser()
+        try:
+            page.open(self.address + "#claims")
+            decided = [claim["id"] for claim in self.json["claims"] if claim["sets"]]
+            for claim in decided:
+                page.run("document.querySelector(arguments[0]).click()",
+                         f'#claims tr[data-claim="{claim}"] td:nth-child(4)')
+                links = page.run("return [...document.querySelectorAll('#drawer td a')].map((link) => link.href)")
+                self.assertGreater(len(links), 0, claim)
+                for link in links:
+                    self.assertTrue(pathlib.Path(urllib.request.url2pathname(link[7:])).exists(), link)
+                self.assertIn(claim, page.run("return document.querySelector('#drawer code').innerText"))
+            page.open("about:blank")
+            page.open(f"{self.address}#claim-{decided[0]}")
+            page.wait("return [...document.querySelectorAll('.claim[open] td a')].some((link) => "
+                      "link.getClientRects().length > 0)")
+        finally:
+            page.close()
 
     def test_records_are_linked_and_the_command_repeats_the_claim(self):
         page = browser.Browser()

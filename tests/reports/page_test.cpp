@@ -7,6 +7,7 @@
 #include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <regex>
 #include <set>
 #include <sstream>
 
@@ -385,6 +386,44 @@ TEST(Kinds, HaveOneColourAndTellTheirMethodsApart) {
     looks.insert(rule.substr(rule.find('{')));
   }
   EXPECT_EQ(looks.size(), c.optimizers.size());
+}
+
+// The rules are of the form [data-s="0"]{--series:COLOUR;--dash:DASH}.
+TEST(Kinds, HaveFiveMethodsOfWhichNoTwoShareAColourOrADash) {
+  Comparison c;
+  const Sheet adaptive{.kind = "optimizer", .name = "adam", .mathematics = "adaptive"};
+  for (const char* label : {"adam", "adagrad", "lion", "shampoo", "adan"})
+    c.optimizers.push_back({.label = label, .sheet = &adaptive});
+  std::set<std::string> colours, dashes;
+  std::istringstream rules(kind_rules(c));
+  for (std::string rule; std::getline(rules, rule);) {
+    const std::size_t end = rule.find(';');
+    colours.insert(rule.substr(rule.find('{'), end - rule.find('{')));
+    dashes.insert(rule.substr(end));
+  }
+  EXPECT_EQ(colours.size(), c.optimizers.size());
+  EXPECT_EQ(dashes.size(), c.optimizers.size());
+}
+
+// Eight lines that all end in the lower right corner.
+TEST(PanelsOfThePage, NameTheEndsOfLinesWithinTheDrawingAndApart) {
+  Drawing drawing{.plot = {.kind = Plot::Kind::lines, .is_log_y = true}, .has_names = true};
+  for (int i = 0; i < 8; ++i)
+    drawing.plot.series.push_back(
+        {{}, "a long name of a method", {1, 2}, {1, 1e-12 * (1 + 1e-3 * i)}, {}, {}});
+  const std::string svg = drawing_svg(drawing);
+  const std::regex name("<text x=(\\d+) y=(\\d+) data-line"), size("viewBox=\"0 0 (\\d+) (\\d+)\"");
+  std::smatch box;
+  ASSERT_TRUE(std::regex_search(svg, box, size));
+  std::vector<int> heights;
+  for (std::sregex_iterator at(svg.begin(), svg.end(), name), none; at != none; ++at) {
+    EXPECT_LE(std::stoi((*at)[1]) + 6 * 23, std::stoi(box[1]));
+    EXPECT_LE(std::stoi((*at)[2]), std::stoi(box[2]) - 30) << "below the axis";
+    heights.push_back(std::stoi((*at)[2]));
+  }
+  ASSERT_EQ(heights.size(), 8U);
+  std::ranges::sort(heights);
+  for (std::size_t i = 1; i < heights.size(); ++i) EXPECT_GE(heights[i] - heights[i - 1], 13) << i;
 }
 
 // Fields: the best of each kind, their captions, histories and bytes.

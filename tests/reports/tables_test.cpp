@@ -545,6 +545,17 @@ TEST(AuditTable, TellsThePageWhichMethodARowIsAbout) {
     EXPECT_TRUE(has(html, row)) << row;
 }
 
+// A column in which no row has an entry tells a reader nothing.
+TEST(AuditTable, HasNoColumnOfContradictionsWhereThereIsNone) {
+  AuditedOptimizer honest = sample();
+  honest.flags.clear();
+  const Table with = properties_section({sample(), honest}).tables.at(0),
+              without = properties_section({honest}).tables.at(0);
+  EXPECT_EQ(without.columns.size(), with.columns.size() - 1);
+  EXPECT_EQ(without.rows.at(0).size(), without.columns.size());
+  EXPECT_FALSE(has(terminal_section(properties_section({honest})), with.columns.back()));
+}
+
 TEST(AuditTable, IsReadForANewcomer) {
   const std::vector<Reading> readings = property_readings(samples());
   ASSERT_EQ(readings.size(), 6U);
