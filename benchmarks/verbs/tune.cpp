@@ -116,7 +116,7 @@ TuningPlan plan_of(const Catalog& catalog, const TuneArguments& given) {
                                      : row && !row->is_from_grid ? row->options
                                                                  : OptionValues()});
   }
-  require(!plan.pairs.empty(), "tune: none of these methods has an option to tune");
+  require(!plan.pairs.empty(), "tune: none of these methods declares a tunable option");
   require(!given.leaves_out || families.size() > 1,
           "tune: --leave-one-out needs problems of at least two families (names)");
   return plan;
