@@ -15,6 +15,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <filesystem>
+#include <ranges>
 #include <string>
 #include <type_traits>
 
@@ -46,7 +47,8 @@ inline void trim_for_report(Record& record, bool is_claimed) {
 }
 
 // Writes every format into the folder, which it makes, several at a time. The formats of an earlier
-// report are replaced after the last one is written: a process that is killed leaves one of both.
+// report are replaced after the last one is written. The page goes first and comes last: where it
+// is, all files belong to it, and no kill leaves files of two reports.
 inline void write_report(const Document& document, const std::filesystem::path& out) {
   namespace fs = std::filesystem;
   fs::create_directories(out);
@@ -68,7 +70,9 @@ inline void write_report(const Document& document, const std::filesystem::path& 
     for (const Format& format : kFormats) fs::remove(beside(format), unknown);
     throw;
   }
-  for (const Format& format : kFormats) fs::rename(beside(format), out / format.file);
+  for (const Format& format : kFormats) fs::remove(out / format.file);
+  for (const Format& format : std::views::reverse(kFormats))
+    fs::rename(beside(format), out / format.file);
 }
 
 }  // namespace isoline::reports

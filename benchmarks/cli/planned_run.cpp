@@ -123,6 +123,9 @@ void declare_run(VerbArguments& verb, RunArguments& given) {
   verb.flag("--spectrum", given.keeps_spectra,
             "Keep the singular values of J = ∂y/∂θ at iterations 0, 1, 2, 4, 8, … and the last; "
             "finished cells without them run again");
+  verb.flag("--keep-state", given.keeps_states,
+            "Keep the state of every cell that its budget ends, so that a larger --iterations or "
+            "--work continues there (default: of cells that run for a minute or longer)");
   verb.text(
       "--shard", given.shard,
       "Run only one shard, such as 3/16; its records are written to shards/3-of-16 in the result folder. auto: take the shard from ISOLINE_SHARD or from the task of the SLURM array");

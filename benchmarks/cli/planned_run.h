@@ -26,7 +26,7 @@ struct RunArguments {
   bool force = false, reuse = false, is_dry = false, lists_all = false, exclusive = false;
   bool no_report = false, quiet = false, allow_large = false, keeps_output = false;
   bool keeps_fields = false;
-  bool keeps_spectra = false;
+  bool keeps_spectra = false, keeps_states = false;
   bool in_process = false, uncertified = false;
 };
 void declare_run(VerbArguments& verb, RunArguments& given);

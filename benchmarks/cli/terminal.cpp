@@ -85,6 +85,9 @@ void print_outcome(const Outcome& outcome, const std::filesystem::path& folder, 
                             outcome.reused_from_other_builds,
                             reports::counted(std::size_t(outcome.reused), "cell")));
   if (quiet) return;
+  if (outcome.continued > 0)
+    say(stderr, fmt::format("{} continued from the end of a run with a smaller budget\n",
+                            reports::counted(std::size_t(outcome.continued), "cell")));
   std::string counts;
   for (const auto& [status, count] : outcome.statuses)
     counts += fmt::format("{}{} {}", counts.empty() ? "" : ", ", count, name_of(status));

@@ -16,6 +16,7 @@
 
 #include "benchmarks/plan/catalog.h"
 #include "benchmarks/plan/rates.h"
+#include "benchmarks/run/store.h"
 #include "core/clock.h"
 #include "core/errors.h"
 #include "core/files.h"
@@ -49,7 +50,9 @@ void run(const Catalog& catalog, const Request& request, Trace& trace, Checkpoin
   Vector start = problem.start();
   if (returned && returned->size() > 0) start = *returned;
   if (perturbation != 0) start = perturbed_start(std::move(start), request, perturbation);
+  checkpoint.watch(trace, request.budget);
   const Vector theta = drive(*method, meter, std::move(start), checkpoint);
+  if (trace.status == Status::budget && !trace.stopped_by_clock) checkpoint.keep_end();
   if (returned) *returned = theta;
 }
 
@@ -222,11 +225,15 @@ void add_verdicts(const Trace& trace, Record& record) {
   }
 }
 
+std::string heading_of(const std::string& identity) {
+  return "isoline.checkpoint/2 " + identity + "\n";
+}
+
 }  // namespace
 
 Checkpoint::Checkpoint(std::filesystem::path path, std::string identity, double every_seconds)
     : path_(std::move(path)),
-      identity_("isoline.checkpoint/2 " + std::move(identity) + "\n"),
+      identity_(heading_of(identity)),
       every_seconds_(every_seconds),
       last_nanoseconds_(monotonic_nanoseconds()) {
   stop_requested = 0;
@@ -234,17 +241,27 @@ Checkpoint::Checkpoint(std::filesystem::path path, std::string identity, double 
 }
 
 bool Checkpoint::restore(Optimizer& method, Meter& meter, Vector& theta) {
+  const std::string of_end = heading_of(ends_.stem.filename().string());
+  if (!restore_from(path_, identity_, method, meter, theta) &&
+      !restore_from(ends_.from, of_end, method, meter, theta))
+    return false;
+  if (trace_) noted_ = trace_->last.iteration;
+  return true;
+}
+
+bool Checkpoint::restore_from(const std::filesystem::path& path, const std::string& identity,
+                              Optimizer& method, Meter& meter, Vector& theta) {
   constexpr std::size_t kDigits = 16;  // of the digest before the state
-  if (path_.empty()) return false;
+  if (path.empty()) return false;
   std::string bytes;
   try {
-    bytes = read_text(path_);
+    bytes = read_text(path);
   } catch (const UsageError&) {
     return false;
   }
-  if (!bytes.starts_with(identity_)) return false;
-  const std::string sum = bytes.substr(identity_.size(), kDigits);
-  bytes.erase(0, identity_.size() + kDigits);
+  if (!bytes.starts_with(identity)) return false;
+  const std::string sum = bytes.substr(identity.size(), kDigits);
+  bytes.erase(0, identity.size() + kDigits);
   if (sum != digest(bytes)) return false;
   try {
     Archive archive(std::move(bytes));
@@ -256,14 +273,18 @@ bool Checkpoint::restore(Optimizer& method, Meter& meter, Vector& theta) {
     require(archive.bytes_left() == 0, "it contains more than the state of this run");
   } catch (const std::exception& cause) {
     std::error_code error;
-    std::filesystem::rename(path_, path_.string() + ".damaged", error);
-    if (error) path_.clear();  // nor is it read again, or written over
+    std::filesystem::rename(path, path.string() + ".damaged", error);
+    if (error) {  // nor is it read again, or written over
+      path_.clear();
+      ends_ = {};
+    }
     throw DamagedCheckpoint(cause.what());
   }
   return true;
 }
 
 bool Checkpoint::save_if_due(Optimizer& method, Meter& meter, Vector& theta) {
+  note_end(method, meter, theta);
   if (path_.empty()) return false;
   const std::int64_t now = monotonic_nanoseconds();
   const bool is_due = 1e-9 * static_cast<double>(now - last_nanoseconds_) >= every_seconds_;
@@ -278,6 +299,36 @@ bool Checkpoint::save_if_due(Optimizer& method, Meter& meter, Vector& theta) {
   } catch (const std::exception&) {  // if the disk is full, the run continues without a checkpoint
   }
   return stop_requested != 0;
+}
+
+// A budget may cut its last step short, so that the state at the end is not that of a longer run.
+// The states that are noted are those of kept iterations, where the trace states what was spent.
+void Checkpoint::note_end(Optimizer& method, Meter& meter, Vector& theta) {
+  if (ends_.stem.empty() || trace_->last.iteration == noted_) return;
+  const TracePoint& last = trace_->last;
+  noted_ = last.iteration;
+  const bool is_late = 2 * last.iteration >= budget_->iterations || last.work >= budget_->work / 2;
+  if (!is_late || last.wall_seconds < ends_.least_seconds) return;
+  Archive archive;
+  archive(theta);
+  if (!method.persist(archive)) return;
+  meter.persist(archive);
+  end_ = archive.bytes();
+  // Then another forward solve is left, and for a direct problem one of the returned point.
+  const std::int64_t forward = trace_->prices[static_cast<std::size_t>(Oracle::forward)];
+  needed_ = {.iterations = last.iteration + 1,
+             .work = last.work + (trace_->is_learned ? 1 : 2) * forward};
+}
+
+void Checkpoint::keep_end() {
+  if (end_.empty()) return;
+  const auto path = Store::end_path(ends_.stem, needed_);
+  try {
+    write_text(path, heading_of(ends_.stem.filename().string()) + digest(end_) + end_);
+    std::error_code error;
+    if (path != ends_.from) std::filesystem::remove(ends_.from, error);  // this one is later
+  } catch (const std::exception&) {  // a full disk: a larger budget starts from the beginning
+  }
 }
 
 Vector perturbed_start(Vector start, const Request& request, int number) {
@@ -331,7 +382,9 @@ void execute(const Catalog& catalog, const Request& request, Trace& trace, Check
     try {
       run(catalog, request, trace, checkpoint, returned, perturbation);
     } catch (const DamagedCheckpoint&) {  // the checkpoint is set aside, and the run starts again
+      const bool are_spectra_wanted = trace.spectra.are_wanted;
       new (&trace) Trace;
+      trace.spectra.are_wanted = are_spectra_wanted;
       run(catalog, request, trace, checkpoint, returned, perturbation);
     }
     if (trace.status == Status::running)

@@ -18,6 +18,14 @@ struct DamagedCheckpoint : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+// States of runs that their budget of iterations or work ended, from which the same run with a
+// larger budget continues.
+struct EndStates {
+  std::filesystem::path stem;  // of their files, which identifies the run; empty: none is kept
+  std::filesystem::path from;  // the one to continue from; empty: none
+  double least_seconds = 0;    // a shorter run is not worth a file
+};
+
 class Checkpoint {
  public:
   Checkpoint() = default;  // keeps nothing
@@ -28,15 +36,30 @@ class Checkpoint {
   // where a file claims to be such a state and is invalid: it is moved away, the arguments are
   // overwritten.
   bool restore(Optimizer& method, Meter& meter, Vector& theta);
+  void continue_from(EndStates ends) { ends_ = std::move(ends); }
+  // Whose end is kept; both outlive this.
+  void watch(const Trace& trace, const Budget& budget) { trace_ = &trace, budget_ = &budget; }
   // Writes the state if the last time is long enough ago, or if the process is to stop: then
   // returns true. If the disk refuses, the run continues without.
   bool save_if_due(Optimizer& method, Meter& meter, Vector& theta);
+  // For a run that its budget has ended: writes the last state noted before its end.
+  void keep_end();
 
  private:
+  bool restore_from(const std::filesystem::path& path, const std::string& identity,
+                    Optimizer& method, Meter& meter, Vector& theta);
+  void note_end(Optimizer& method, Meter& meter, Vector& theta);
+
   std::filesystem::path path_;
   std::string identity_;
   double every_seconds_ = 0;
   std::int64_t last_nanoseconds_ = 0;
+  EndStates ends_;
+  const Trace* trace_ = nullptr;
+  const Budget* budget_ = nullptr;
+  std::string end_;  // the last state noted, its iteration, and the least budget that leads there
+  std::int64_t noted_ = -1;
+  Budget needed_;
 };
 
 // θ₀ with each component moved by one unit in its last place, up or down by the stream

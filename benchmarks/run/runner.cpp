@@ -207,17 +207,31 @@ class Runner {
                     .command = options_.command}};
       progress_.started(title_of(*request));
       if (options_.force) store_.remove_checkpoint(*request);
+      const EndStates ends = end_states(*request);
+      outcome_.continued += !ends.from.empty();
       workers_[i].start(
           [&, i, request](Trace& trace) {
             trace.spectra.are_wanted = options_.keeps_spectra;
             const auto path = store_.checkpoint_path(*request);
+            Checkpoint checkpoint(path, path.stem().string(), kCheckpointSeconds);
+            checkpoint.continue_from(ends);
             Vector returned;
-            execute(catalog_, *request, trace, {path, path.stem().string(), kCheckpointSeconds},
-                    &returned, options_.perturbation);
+            execute(catalog_, *request, trace, std::move(checkpoint), &returned,
+                    options_.perturbation);
             workers_[i].keep_returned({returned.data(), static_cast<std::size_t>(returned.size())});
           },
           limits(*request), request->threads);
     }
+  }
+
+  // A repetition for its time begins at the start, as does a run that records more than others.
+  EndStates end_states(const Request& request) const {
+    if (options_.keeps_spectra || options_.perturbation != 0) return {};
+    EndStates ends{
+        .stem = store_.end_stem(request), .from = {}, .least_seconds = options_.least_kept_seconds};
+    if (!options_.force && !options_.exclusive && options_.repeat == 1 && !store_.has(request))
+      ends.from = store_.end_within_budget(request);
+    return ends;
   }
 
   Limits limits(const Request& request) {

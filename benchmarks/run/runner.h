@@ -32,6 +32,7 @@ struct Outcome {
   std::vector<std::string> remarks;         // damaged files, missing metadata
   std::vector<std::string> missing;  // cells that were done and whose records have disappeared
   std::int64_t reused_from_other_builds = 0;
+  std::int64_t continued = 0;    // cells that began at the end of a run with a smaller budget
   std::int64_t interrupted = 0;  // cells that were killed from outside: the same run repeats them
   bool is_interrupted = false;   // stopped by the user
   double seconds = 0;            // that the run took
@@ -57,10 +58,11 @@ struct RunOptions {
   Limits limits;
   int perturbation = 0;  // of the starts, in the last bit; of 0 alone the records are results
   Progress::Style progress = Progress::Style::silent;
-  bool keeps_output = false;   // of cells, in their records
-  bool keeps_fields = false;   // of every seed; else those of seed 0
-  bool keeps_spectra = false;  // a record without them is computed again
-  std::string command;         // for the record
+  bool keeps_output = false;       // of cells, in their records
+  bool keeps_fields = false;       // of every seed; else those of seed 0
+  bool keeps_spectra = false;      // a record without them is computed again
+  double least_kept_seconds = 60;  // of a cell whose state is kept for larger budgets
+  std::string command;             // for the record
 
   bool redoes(const std::optional<Record>& done) const;  // whether that prevents nothing
 };

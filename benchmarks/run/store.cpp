@@ -9,6 +9,8 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cinttypes>
+#include <cstdio>
 #include <cstring>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -304,6 +306,30 @@ fs::path Store::checkpoint_path(const Request& request) const {
 void Store::remove_checkpoint(const Request& request) const {
   std::error_code missing;
   fs::remove(checkpoint_path(request), missing);
+}
+
+fs::path Store::end_stem(const Request& request) const {
+  Request any = request;
+  any.budget.iterations = any.budget.work = 0;
+  return folder_ / "checkpoints" / fs::path(name_of(named(std::move(any)))).stem();
+}
+
+fs::path Store::end_path(const fs::path& stem, const Budget& needed) {
+  return stem.string() + fmt::format("-{}-{}.end", needed.iterations, needed.work);
+}
+
+fs::path Store::end_within_budget(const Request& request) const {
+  const fs::path stem = end_stem(request);
+  Budget latest{.iterations = 0};
+  for (const std::string& name : names_in(folder_ / "checkpoints")) {
+    Budget needed;
+    const std::string pattern = stem.filename().string() + "-%" SCNd64 "-%" SCNd64;
+    if (std::sscanf(name.c_str(), pattern.c_str(), &needed.iterations, &needed.work) == 2 &&
+        needed.iterations <= request.budget.iterations && needed.work <= request.budget.work &&
+        needed.iterations > latest.iterations)
+      latest = needed;
+  }
+  return latest.iterations > 0 ? end_path(stem, latest) : fs::path();
 }
 
 void Store::write(const Sheet& sheet) {

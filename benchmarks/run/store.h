@@ -53,6 +53,12 @@ class Store {
   // Where a run of this request by this build is kept while it goes.
   std::filesystem::path checkpoint_path(const Request& request) const;
   void remove_checkpoint(const Request& request) const;
+  // States of runs of this build that differ from the request in their budget of iterations and
+  // work alone: what their files' names begin with; the file of one that needs this budget; and the
+  // latest one within the budget of the request, or nothing.
+  std::filesystem::path end_stem(const Request& request) const;
+  static std::filesystem::path end_path(const std::filesystem::path& stem, const Budget& needed);
+  std::filesystem::path end_within_budget(const Request& request) const;
 
  private:
   // Creates the folders again if they are removed during the run.

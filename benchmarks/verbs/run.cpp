@@ -102,6 +102,7 @@ int run(const RunArguments& given, Session& session) {
                      .keeps_spectra = given.keeps_spectra,
                      .command = session.command()};
   if (given.exclusive) options.jobs = 1;
+  if (given.keeps_states) options.least_kept_seconds = 0;
   if (given.memory_bytes > 0) options.limits.memory_bytes = given.memory_bytes;
   if (!given.quiet) options.progress = Progress::style_of(STDERR_FILENO);
   if (given.is_dry) {

@@ -117,7 +117,7 @@ TuningPlan plan_of(const Catalog& catalog, const TuneArguments& given) {
                                      : row && !row->is_from_grid ? row->options
                                                                  : OptionValues()});
   }
-  require(!plan.pairs.empty(), "tune: none of these methods has a tunable option");
+  require(!plan.pairs.empty(), "tune: none of these methods declares a tunable option");
   require(!given.leaves_out || families.size() > 1,
           "tune: --leave-one-out requires problems with at least two different names");
   return plan;

@@ -253,6 +253,38 @@ class _Point:
         return self.matrix
 
 
+class _Nowhere:
+    """A point at which forward has no value: y and all products are NaN."""
+
+    def __init__(self, n, m):
+        self.n, self.m, self.y = n, m, _nans(m)
+
+    def pullback(self, _):
+        return _nans(self.n)
+
+    def pushforward(self, _):
+        return _nans(self.m)
+
+    def jacobian(self):
+        return _nans(self.n * self.m)
+
+
+def _nans(count):
+    return _column([float("nan")] * count)
+
+
+def _valued(compute, without):
+    """What compute() returns. If a formula overflows, divides by zero or leaves its domain: without()."""
+    try:
+        return compute()
+    except ArithmeticError:
+        return without()
+    except ValueError as error:
+        if str(error) != "math domain error":
+            raise
+        return without()
+
+
 class _Given:
     """Products from functions of the user."""
 
@@ -493,19 +525,20 @@ def _serve(line, products, inverse, x_error, n, m):
 
 def _answer(verb, number, payload, points, products, inverse, n, m):
     if verb == LINEARIZE:
-        if len(payload) == 8 * n:
-            points[number] = (_Point(products, _vector(payload)),)
-        else:
-            points[number] = tuple(_Point(products, x) for x in _samples(payload, n))
+        points[number] = tuple(
+            _valued(lambda x=x: _Point(products, x), lambda: _Nowhere(n, m))
+            for x in _samples(payload, n)
+        )
         return [_sized(point.y, m, "forward") for point in points[number]]
     if verb == PULLBACK:
         each = zip(points[number], _samples(payload, m))
-        return [_sized(point.pullback(u), n, "vjp") for point, u in each]
+        return [_sized(_valued(lambda p=p, u=u: p.pullback(u), lambda: _nans(n)), n, "vjp") for p, u in each]
     if verb == PUSHFORWARD:
         each = zip(points[number], _samples(payload, n))
-        return [_sized(point.pushforward(v), m, "jvp") for point, v in each]
+        return [_sized(_valued(lambda p=p, v=v: p.pushforward(v), lambda: _nans(m)), m, "jvp") for p, v in each]
     if verb == JACOBIAN:
-        return [_by_columns(point.jacobian(), m, n) for point in points[number]]
+        matrices = [_valued(point.jacobian, lambda: _nans(m * n)) for point in points[number]]
+        return [_by_columns(matrix, m, n) for matrix in matrices]
     if verb == INVERSE:
         return _inverted(payload, inverse, n, m)
     raise Refused(f"unknown verb {verb}")

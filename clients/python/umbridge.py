@@ -61,6 +61,18 @@ def split_by_sizes(values, sizes):
     return parts
 
 
+def entry(text):
+    """A name and a value from "name=value"; what is not a JSON number, true or false is text."""
+    name, equals, value = text.partition("=")
+    if not (name and equals):
+        raise argparse.ArgumentTypeError(f"must be NAME=VALUE, got {text}")
+    try:
+        found = json.loads(value)
+    except ValueError:
+        found = value
+    return name, found if isinstance(found, (bool, int, float)) else value
+
+
 def number(value):
     """A number of an answer; NaN, Infinity, null and "inf" are valid."""
     return math.nan if value is None else float(value)
@@ -74,6 +86,8 @@ class Model:
         self.name, self.config, self.process = given.model, json.loads(given.config), None
         if not isinstance(self.config, dict):
             raise ValueError("--config must be a JSON object")
+        for name, value in given.option:
+            self.config[name] = isoline.option(name, value, "entry of the model's config")
         self.url, self.connection = given.url, None
         if given.command:
             self.start(given.command, given.startup)
@@ -386,6 +400,8 @@ def main():
     one.add_argument("--url", default="", help="address of a running server")
     one.add_argument("--model", default="", help="name of the model; not needed if the server has only one")
     one.add_argument("--config", default="{}", help="JSON object passed with each call")
+    one.add_argument("--option", type=entry, action="append", default=[], metavar="NAME=VALUE",
+                     help="an entry of config that is an option of the problem, and its default")
     one.add_argument("--start", type=vector, required=True, help="x0: \"[1,2]\" or a .npy file")
     one.add_argument("--target", type=vector, required=True, help="y*")
     one.add_argument("--truth", type=vector, help="x*, if known")

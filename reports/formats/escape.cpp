@@ -90,7 +90,10 @@ std::string csv_field(std::string_view text) {
 std::string terminal_text(std::string_view text) {
   std::string safe(text);
   for (char& letter : safe)
-    if (static_cast<unsigned char>(letter) < ' ' || letter == 127) letter = '?';
+    if (letter == '\n' || letter == '\t')  // of messages in several lines
+      letter = ' ';
+    else if (static_cast<unsigned char>(letter) < ' ' || letter == 127)
+      letter = '?';
   return safe;
 }
 

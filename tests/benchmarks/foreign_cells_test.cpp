@@ -60,6 +60,11 @@ TEST_F(ForeignCells, FailWithWhatTheOtherDid) {
   expect_failed("another-verb", "a frame of verb 99");
   expect_failed("two-answers", "sent data that was");
   expect_failed("raises", "linearize: ValueError: the mesh");
+  expect_failed("raises-at-length", "linearize: ValueError: the mesh");
+}
+
+TEST_F(ForeignCells, WhoseProgramWasKilledAreInterrupted) {
+  EXPECT_EQ(record_after("is-killed").status, Status::interrupted);
 }
 
 TEST_F(ForeignCells, OfOneThatPrintsAGigabyteKeepItsBeginning) {

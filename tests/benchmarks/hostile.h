@@ -125,6 +125,7 @@ struct Hostile {
     if (misdeed == "exit") std::_Exit(0);
     if (misdeed == "kill") std::raise(SIGKILL);
     if (misdeed == "nan") theta.setConstant(std::nan(""));
+    if (misdeed == "count") ++told();
     if (misdeed == "overask") s.at.jacobian();
     if (misdeed == "crowd") crowd(3, 300);
     if (misdeed == "sleep") {
@@ -149,12 +150,12 @@ struct Hostile {
 };
 
 inline void fields(Hostile& o, auto& field) {
-  field(
-      "misdeed", o.misdeed,
-      Choices{"throw",  "throw-int", "segfault", "abort",       "complain",   "exit",   "kill",
-              "nan",    "overask",   "crowd",    "sleep",       "spin",       "hoard",  "terminate",
-              "resize", "daemon",    "chatter",  "stop-parent", "end-parent", "linger", "none"},
-      "what it does after two good steps");
+  field("misdeed", o.misdeed,
+        Choices{"throw",      "throw-int", "segfault", "abort",  "complain", "exit",
+                "kill",       "nan",       "overask",  "crowd",  "sleep",    "spin",
+                "hoard",      "terminate", "resize",   "daemon", "chatter",  "stop-parent",
+                "end-parent", "linger",    "count",    "none"},
+        "what it does after two good steps");
 }
 
 // A problem that cannot be made.

@@ -370,6 +370,78 @@ TEST(Checkpoint, ThatCannotBeRestoredIsSetAsideAndTheRunStartsFromItsBeginning) 
   }
 }
 
+// --- A run that its budget ended continues with a larger one, as if it had had that from the
+// start.
+
+class Continued : public testing::TestWithParam<std::pair<const char*, const char*>> {};
+
+TEST_P(Continued, WithALargerBudgetGivesTheRecordOfAnUninterruptedRun) {
+  const TemporaryFolder owned, apart;
+  Store store(owned.path()), whole(apart.path());
+  const RunOptions options{.least_kept_seconds = 0};
+  std::int64_t continued = 0;
+  for (const Budget& budget :
+       {Budget{.iterations = 7, .target = 0}, Budget{.iterations = 40, .target = 0},
+        Budget{.iterations = 5000, .work = 9000, .target = 0},
+        Budget{.iterations = 5000, .work = 13000, .target = 0}}) {
+    const Request request = cell_of(GetParam().first, GetParam().second, budget);
+    continued += run_all(catalog(), {request}, store, options).continued;
+    run_all(catalog(), {request}, whole, {});
+    const std::optional<Record> found = store.find(request), expected = whole.find(request);
+    ASSERT_EQ(found->status, Status::budget) << found->message;
+    EXPECT_EQ(trace_of(*found), trace_of(*expected));
+  }
+  EXPECT_EQ(continued, 3);
+  EXPECT_EQ(names_in(owned.path() / "checkpoints").size(), 1U) << "the latest state";
+  EXPECT_TRUE(names_in(apart.path() / "checkpoints").empty()) << "runs of less than a minute";
+}
+
+constexpr const char* kLearned = "sine[mode=learn,xi=4,batch=5,network=mlp[layers=6]]";
+INSTANTIATE_TEST_SUITE_P(Methods, Continued,
+                         testing::Values(std::pair{kLearned, "adam"}, std::pair{kLearned, "hig"},
+                                         std::pair{kLearned, "hessian-free"},
+                                         std::pair{kLearned, "sip[inverse=newton]"},
+                                         std::pair{kLearned, "kfac"},
+                                         std::pair{"rosenbrock", "gd[rate=1e-5]"},
+                                         std::pair{"beale", "momentum[rate=1e-5]"}));
+
+TEST(ContinuedRuns, AreThoseWhoseRecordIsThatOfAWholeRun) {
+  const TemporaryFolder owned;
+  Store store(owned.path());
+  const auto request = [](std::int64_t iterations, const char* rate = "1e-5") {
+    return cell_of("rosenbrock", fmt::format("gd[rate={}]", rate),
+                   {.iterations = iterations, .target = 0});
+  };
+  const auto continued = [&](const Request& one, RunOptions options = {}) {
+    options.least_kept_seconds = 0;
+    return run_all(catalog(), {one}, store, options).continued;
+  };
+  EXPECT_EQ(continued(request(20)), 0);
+  EXPECT_EQ(continued(request(10)), 0) << "a smaller budget";
+  EXPECT_EQ(continued(request(30, "1e-6")), 0) << "another cell";
+  EXPECT_EQ(continued(request(30), {.keeps_spectra = true}), 0) << "it has recorded less";
+  EXPECT_EQ(continued(request(31), {.repeat = 2}), 0) << "its time counts";
+  EXPECT_EQ(continued(request(32), {.exclusive = true}), 0) << "the same";
+  EXPECT_EQ(continued(request(33), {.force = true}), 0);
+  EXPECT_EQ(continued(request(34)), 1) << "from that of 33 iterations";
+  for (const std::string& name : names_in(owned.path() / "checkpoints"))
+    write_text(owned.path() / "checkpoints" / name, "damaged");
+  run_all(catalog(), {request(60)}, store, {});
+  EXPECT_EQ(store.find(request(60))->curve.iteration.size(), 61U) << "from the start";
+}
+
+TEST_F(HostileCells, ThatContinueDoNotRepeatTheirSteps) {
+  options.least_kept_seconds = 0;
+  Request request = hostile("count");
+  request.budget.target = 0;
+  for (const auto [iterations, counted] : {std::pair{50, 48}, std::pair{60, 48 + 11}}) {
+    request.budget.iterations = iterations;  // the last step of the first run is taken again
+    run_all(catalog, {named(request)}, store, options);
+    EXPECT_EQ(store.find(named(request))->summary.iterations, iterations);
+    EXPECT_EQ(told(), counted);
+  }
+}
+
 // --- Results do not depend on the division of the work: jobs and repetitions write the same
 // records.
 

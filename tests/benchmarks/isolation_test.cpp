@@ -28,7 +28,7 @@ TEST_F(Isolation, EachMisdeedEndsAsWhatItIsAndItsTraceIsKept) {
               {"spin", Status::timeout, "0.5 s of processor time", 3},  // an endless loop
               {"sleep", Status::timeout, "less than 1 %", 3},
               {"resize", Status::failed, "from 2 to 1002", 0},  // would be read past its end
-              {"hoard", Status::memory, "", 0}};
+              {"hoard", Status::memory, "--memory", 0}};
   for (const auto& end : ends) {
     // Touching half a gigabyte may take a while on a busy machine.
     options.limits.hard_seconds = end.status == Status::memory ? 30 : 0.5;

@@ -98,6 +98,24 @@ class Client(unittest.TestCase):
         found = self.record(spec("forward"), "nlopt-neldermead")
         self.assertLess(found["summary"]["loss"], 1e-6)
 
+    def test_entries_of_config_are_options_that_are_swept_and_told_to_the_model(self):
+        problem = spec("plain", GIVEN + " --label valley --option height=10 --option mesh=fine")
+        said = self.isoline("run", "--problem", problem[:-1] + ",height=5|10]", "--optimizer",
+                            "levenberg-marquardt", "--out", "swept")
+        self.assertIn("valley[height=5]", said)
+        losses = {}
+        for path in glob.glob(f"{self.folder}/swept/runs/*.json"):
+            with open(path, encoding="utf-8") as file:
+                record = json.load(file)
+            options = record["request"]["problem"]["options"]
+            self.assertEqual(options["mesh"], "fine")
+            losses[options["height"]] = record["summary"]["start_loss"]
+        residual = 1 - 1.2 ** 2
+        for height in (5, 10):
+            self.assertAlmostEqual(losses[height], ((height * residual) ** 2 + 2.2 ** 2) / 2, 12)
+        self.assertIn("unknown option", self.isoline("check", problem[:-1] + ",hight=5]", code=1).lower())
+        self.assertIn("--option", self.isoline("check", spec("plain", GIVEN + " --option 5"), code=1))
+
     def test_what_is_not_finite_is_data(self):
         start = GIVEN.replace("-1.2", "-1.1")
         found = self.record(spec("holes", start), "nlopt-neldermead")

@@ -1,5 +1,5 @@
 """A server of UM-Bridge in Python's standard library, which listens at PORT: Rosenbrock's valley,
-and the same with what other servers do, by the word that it is started with:
+whose factor 10 is the entry "height" of config, and the same with what other servers do, by the word that it is started with:
 
   plain     one input, one output
   fused     the same where a processor fuses products with sums: x2 - x1² is rounded once
@@ -26,14 +26,14 @@ PARTS = KIND == "parts"
 asked_so_far = 0
 
 
-def residuals(x):
+def residuals(x, height=10):
     if KIND == "fused":
         return [10 * float(fractions.Fraction(x[1]) - fractions.Fraction(x[0]) ** 2), 1 - x[0]]
-    return [10 * (x[1] - x[0] * x[0]), 1 - x[0]]
+    return [height * (x[1] - x[0] * x[0]), 1 - x[0]]
 
 
-def jacobian(x):
-    return [[-20 * x[0], 10.0], [-1.0, 0.0]]
+def jacobian(x, height=10):
+    return [[-2 * height * x[0], height], [-1.0, 0.0]]
 
 
 def joined(parts):
@@ -77,19 +77,19 @@ class Answers(http.server.BaseHTTPRequestHandler):
             os._exit(3)
         if KIND == "chatty":
             print("x" * (1 << 20))
-        y = residuals(x)
+        y = residuals(x, asked["config"].get("height", 10))
         if KIND == "holes" and x[0] < -1.15:
             y = [float("nan"), None]
         return ({"output": split(y[:1] if KIND == "short" else y)},)
 
     def Gradient(self, asked):
-        J = jacobian(joined(asked["input"]))
+        J = jacobian(joined(asked["input"]), asked["config"].get("height", 10))
         if PARTS:
             return ({"output": [J[asked["outWrt"]][asked["inWrt"]] * asked["sens"][0]]},)
         return ({"output": [sum(J[i][j] * asked["sens"][i] for i in range(2)) for j in range(2)]},)
 
     def ApplyJacobian(self, asked):
-        J = jacobian(joined(asked["input"]))
+        J = jacobian(joined(asked["input"]), asked["config"].get("height", 10))
         if PARTS:
             return ({"output": [J[asked["outWrt"]][asked["inWrt"]] * asked["vec"][0]]},)
         return ({"output": [sum(J[i][j] * asked["vec"][j] for j in range(2)) for i in range(2)]},)

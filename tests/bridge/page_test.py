@@ -50,6 +50,17 @@ class Page(unittest.TestCase):
         self.assertEqual(record["counts"]["pullback"], 500)
         self.assertLess(record["summary"]["loss"], 2)
 
+    def test_sweeping(self):
+        said = self.run_block("shell sweep")
+        self.assertIn("springs[stiffness=2]", said)
+        ends = {}
+        for record in self.records("results/stiffness"):
+            self.assertLess(record["summary"]["loss"], 1e-10, record["message"])
+            ends[record["request"]["problem"]["options"]["stiffness"]] = record["trajectory"]["x"][-1]
+        for stiffness, (x, y) in ends.items():
+            self.assertAlmostEqual(stiffness * x ** 3 + y, 2, 4)
+        self.assertEqual(sorted(ends), [1, 2])
+
     def test_bridging(self):
         said = self.run_block("shell model")
         self.assertIn("0 failed", said)

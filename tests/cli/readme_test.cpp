@@ -1,5 +1,6 @@
 // The instructions of the README and the guide: their commands run, their two examples compile and
 // run. CITATION.cff names this very version, in the form that CFF 1.2.0 has.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -11,6 +12,7 @@
 
 #include "core/files.h"
 #include "core/records/provenance.h"
+#include "core/status.h"
 #include "problems/conformance.h"
 #include "tests/benchmarks/matrix.h"
 #include "tests/cli/shell.h"
@@ -153,6 +155,13 @@ TEST(Readme, LinksEveryPageOfTheGuide) {
     EXPECT_NE(readme.find("](" + page + ")"), std::string::npos) << page;
   }
   EXPECT_GE(count, 25U) << "the commands were not found";
+}
+
+TEST(Guide, DefinesEveryStatus) {
+  std::string page;
+  for (const std::string& line : lines_of_page("docs/reading-a-report.md")) page += line + "\n";
+  for (const std::string_view name : kStatusNames)
+    EXPECT_EQ(page.find(fmt::format("| `{}` | ", name)) != page.npos, name != "running") << name;
 }
 
 TEST(Readme, IsAScreenAndAHalf) { EXPECT_LE(lines_of_page("README.md").size(), 100U); }

@@ -295,6 +295,12 @@ TEST(Terminal, ClosedAndFullStreamsAreNoticed) {
                  {.exit_code = 2, .err = {"No space left"}});
 }
 
+// A limit of the size of a file, which is a signal to a program that does not expect it.
+TEST(Terminal, AFileThatMayNotGrowIsAMessage) {
+  Shell().expect("./isoline list --json >/dev/null && (ulimit -f 2; ./isoline list --json >big)",
+                 {.exit_code = 2, .err = {"File too large"}});
+}
+
 TEST(Terminal, ARunSaysHowLongItTook) {
   const Finished result =
       Shell()("./isoline run --problem square --optimizer newton --no-report --out out");

@@ -162,6 +162,20 @@ class Problems(unittest.TestCase):
             infinity = float("inf")
             self.assertEqual(program.ask(2, 0, [-infinity, 1])[:2], [infinity, -infinity])
 
+    def test_has_no_value_where_a_formula_has_none(self):
+        text = "import isoline, math\n" \
+            "isoline.problem(lambda x: [math.exp(x[0]), 1 / x[1], math.log(x[1])], [1, 1], target=[0, 0, 0],\n" \
+            "    jacobian=lambda x: [[math.exp(2 * x[0]), 0], [0, -1 / x[1]**2], [0, 1 / x[1]]])"
+        with self.program(text) as program:
+            program.greet("problem", seed=0)
+            for nowhere in ([1000, 1], [1, 0], [1, -1]):
+                self.assertTrue(all(y != y for y in program.ask(2, 0, nowhere)), nowhere)
+                self.assertTrue(all(v != v for v in program.ask(5, 0, [])), nowhere)
+            self.assertEqual(program.ask(2, 0, [0, 1]), [1, 1, 0])
+            self.assertEqual(program.ask(5, 0, []), [1, 0, 0, 0, -1, 1])
+            program.ask(2, 0, [400, 1])  # J alone overflows
+            self.assertTrue(all(v != v for v in program.ask(5, 0, [])))
+
     def test_takes_frames_larger_than_its_buffer(self):
         text = "import isoline\nisoline.problem(lambda x: x, [0.0] * 20000, vjp=lambda x, u: u)"
         with self.program(text) as program:

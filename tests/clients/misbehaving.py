@@ -50,6 +50,10 @@ def misbehave(x):
         line.sendall(2 * (head(2, 0, 16) + bytes(16)))
     elif mode == "raises":
         raise ValueError("the mesh is tangled")
+    elif mode == "raises-at-length":
+        raise ValueError("the mesh is tangled" + "\ud800" + 100_000 * "x")
+    elif mode == "is-killed":
+        os.kill(os.getpid(), 9)
     elif mode == "hangs":
         time.sleep(600)
     elif mode == "forks":

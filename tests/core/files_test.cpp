@@ -144,6 +144,24 @@ TEST(Files, ATemporaryOfAnotherIsLeftAlone) {
   EXPECT_FALSE(is_abandoned(named)) << "it is no file";
 }
 
+TEST(Files, HiddenFoldersOfProcessesThatWereKilledAreRemovedByTheNext) {
+  const TemporaryFolder owned;
+  const fs::path told = owned.path() / "path";
+  const pid_t child = fork();
+  if (child == 0) {
+    const HiddenFolder folder;
+    write_text(folder.path() / "file", "text");
+    write_text(told, folder.path().string());
+    _exit(0);  // as a kill does, it leaves the folder
+  }
+  int status = 0;
+  ASSERT_EQ(waitpid(child, &status, 0), child);
+  EXPECT_TRUE(is_there(read_text(told)));
+  const HiddenFolder next;
+  EXPECT_FALSE(is_there(read_text(told)));
+  EXPECT_TRUE(is_there(next.path()));
+}
+
 TEST(Files, MovedAsideNeverReplaceEachOther) {
   const TemporaryFolder folder;
   const fs::path aside = folder.path() / "damaged", file = folder.path() / "plan.json";
@@ -180,6 +198,10 @@ TEST(Files, OfAUserAreWrittenThroughWhatIsNoFileAndNeverInThePlaceOfAnothers) {
   write_output(link, "mark 2", "mark");
   EXPECT_TRUE(fs::is_symlink(link));
   EXPECT_EQ(read_text(file), "mark 2");
+  const fs::path half = temporary_by(number_of_the_gone(), file);
+  write_text(half, "half");
+  write_output(file, "mark 2", "mark");
+  EXPECT_FALSE(is_there(half)) << "of a process that was killed";
   const fs::path pipe = owned.path() / "pipe";
   ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
   const int reader = open(pipe.c_str(), O_RDONLY | O_NONBLOCK);

@@ -2,9 +2,14 @@
 #include "reports/formats/formats.h"
 
 #include <gtest/gtest.h>
+#include <sys/ptrace.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
+#include <csignal>
 #include <filesystem>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -81,6 +86,7 @@ TEST(Escape, EachFormatHasItsOwn) {
   EXPECT_EQ(html_text("<b>&|\"'"), "&lt;b&gt;&amp;|&quot;&#39;");
   EXPECT_EQ(markdown_text("a|b\n@x_*"), "a\\|b &#64;x\\_\\*");
   EXPECT_EQ(latex_text("50 % & x_1 \\ é"), "50 \\% \\& x\\_1 \\textbackslash{} ?");
+  EXPECT_EQ(terminal_text("Traceback:\n\tline 1\x1b"), "Traceback:  line 1?");
   EXPECT_EQ(csv_field("a,\"b\""), "\"a,\"\"b\"\"\"");
   EXPECT_EQ(csv_field("=1+1"), "\"'=1+1\"");
 }
@@ -275,6 +281,60 @@ TEST(Report, ReplacesAnEarlierOneWholeOrNotAtAll) {
   EXPECT_EQ(read_text(out / "report.csv"), csv);
   for (const std::string& name : names_in(out))
     EXPECT_FALSE(name.ends_with(".tmp") && is_abandoned(out / name)) << name;
+}
+
+// The files of a report in a folder, by name.
+std::map<std::string, std::string> report_in(const std::filesystem::path& out) {
+  std::map<std::string, std::string> files;
+  for (const Format& format : kFormats)
+    if (is_there(out / format.file)) files[format.file] = read_text(out / format.file);
+  return files;
+}
+
+// Another process replaces one report by another, and stops at each of its calls of the system, so
+// that the folder is read as a kill at this moment would leave it.
+TEST(Report, ThatReplacesAnotherIsNeverMixedWithItWhereverItIsKilled) {
+  const TemporaryFolder owned;
+  const std::filesystem::path out = owned.path() / "report", other = owned.path() / "other";
+  const auto written = [](const char* method, const std::filesystem::path& folder) {
+    write_report(document_of(Compared(study_of({{"p", method, 1}}))), folder);
+    return report_in(folder);
+  };
+  const auto before = written("a", out), after = written("b", other);
+  ASSERT_EQ(before.size(), std::size(kFormats));
+  for (const auto& [name, text] : before) ASSERT_NE(text, after.at(name)) << name;
+  const pid_t child = fork();
+  if (child == 0) {
+    ptrace(PTRACE_TRACEME, 0, nullptr, nullptr);
+    raise(SIGSTOP);
+    written("b", out);
+    _exit(0);
+  }
+  const auto inodes = [&] {
+    std::vector<ino_t> all;
+    for (const Format& format : kFormats) {
+      struct stat file {};
+      all.push_back(stat((out / format.file).c_str(), &file) == 0 ? file.st_ino : 0);
+    }
+    return all;
+  };
+  int status = 0, states = 0;
+  auto seen = inodes();
+  while (waitpid(child, &status, 0) == child && WIFSTOPPED(status)) {
+    if (const auto now = inodes(); now != seen) {
+      ++states;
+      seen = now;
+      const auto files = report_in(out);
+      const bool is_new = !files.empty() && files.begin()->second == after.at(files.begin()->first);
+      for (const auto& [name, text] : files)
+        EXPECT_TRUE(text == (is_new ? after : before).at(name)) << name << " " << states;
+      EXPECT_TRUE(!files.contains("index.html") || files.size() == after.size()) << states;
+    }
+    ptrace(PTRACE_SYSCALL, child, nullptr, nullptr);
+  }
+  EXPECT_TRUE(WIFEXITED(status));
+  EXPECT_TRUE(report_in(out) == after);
+  EXPECT_EQ(states, 2 * static_cast<int>(std::size(kFormats))) << "each file goes and comes";
 }
 
 // CSV that reads back, and COCO. tests/exchange/coco_test.py reads the data folders of COCO.
