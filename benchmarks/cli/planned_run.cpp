@@ -43,6 +43,8 @@ void override_blocks(const RunArguments& given, Suite& suite) {
     if (given.stall >= 0)
       block.budget.stall =
           given.stall == kStallIterations ? std::nullopt : std::optional(given.stall);
+    if (!given.stop.empty())
+      block.budget.discrepancy = read_as("--stop", [&] { return discrepancy_of(given.stop); });
     if (given.threads > 0) block.threads = given.threads;
   }
 }
@@ -73,6 +75,9 @@ void declare_cells(VerbArguments& verb, RunArguments& given) {
             "criterion is x, to the norm of x* (default: 1e-10)");
   verb.whole_or_never("--stall", given.stall,
                       "Iterations without progress after which a cell ends (default: 100)");
+  verb.text("--stop", given.stop,
+            "Stopping rule in place of --target: discrepancy[tau=1.1] ends a cell at the first "
+            "iterate with ‖y − y*‖ ≤ τδ, if the problem has noise, with δ its level; none");
   verb.text("--start", given.start, "Start of every problem: a .npy or .csv file of n numbers");
   verb.text("--target-data", given.target_data,
             "Target y* of every problem: a .npy or .csv file of m numbers");

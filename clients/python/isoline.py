@@ -396,6 +396,7 @@ def problem(
     drawn=None,
     minimum=None,
     bounds=None,
+    active_bounds=False,
     aim=None,
     name=None,
     note=None,
@@ -416,6 +417,8 @@ def problem(
     truth: the x that produced the target.
     drawn: the start of this seed(), instead of one that Isoline samples near `start`.
     bounds=(lower, upper): numbers or lists; Isoline does not call forward outside them.
+    active_bounds=True: the solution may lie on a bound; other methods than those that respect
+        bounds do not apply.
     aim="x": the success criterion is the error in x, not the loss.
     start_scale="own": starts of other seeds differ by a tenth of each unknown, not of max(1, |x|).
     x_error(x) -> number: the distance to the nearest solution; without it, that to `truth`.
@@ -460,6 +463,7 @@ def problem(
             "has_x_error": x_error is not None,
             "x_floor": x_floor,
             "bounds": None if bounds is None else [_bound(side, start) for side in bounds],
+            "active_bounds": bool(active_bounds),
             "aim": aim,
         },
     )
