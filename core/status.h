@@ -19,6 +19,7 @@ enum class Status {
   running,
   converged,     // the method stopped by its own test
   target,        // the harness measured L at or below the target
+  discrepancy,   // the harness measured ‖y − y*‖ at or below τδ, with δ the noise level
   budget,        // iterations, work or time are spent
   stalled,       // no relative decrease above 1e-12 in Budget::stall iterations
   diverged,      // the loss is not finite, or above 1e12 times its start
@@ -29,9 +30,9 @@ enum class Status {
   memory,        // out of its memory limit
   interrupted,   // the user stopped the run
 };
-inline constexpr std::array<std::string_view, 12> kStatusNames = {
-    "running",      "converged", "target",  "budget",  "stalled", "diverged",
-    "inapplicable", "failed",    "crashed", "timeout", "memory",  "interrupted"};
+inline constexpr std::array<std::string_view, 13> kStatusNames = {
+    "running",      "converged", "target",  "discrepancy", "budget", "stalled",    "diverged",
+    "inapplicable", "failed",    "crashed", "timeout",     "memory", "interrupted"};
 
 inline std::string_view name_of(Status status) {
   return kStatusNames[static_cast<std::size_t>(status)];
@@ -81,6 +82,9 @@ struct Budget {
   double target = 1e-10;
   // Iterations without progress after which it is stalled; empty: the standard; 0: never.
   std::optional<std::int64_t> stall = {};
+  // τ of the discrepancy principle: on a problem with noise of level δ, the first iterate with
+  // ‖y − y*‖ ≤ τδ ends the run, in place of the target. 0: not used.
+  double discrepancy = 0;
 };
 
 // The exit code of every verb.

@@ -123,7 +123,7 @@ bool are_series_sound(const Trace& trace) {
 
 bool are_choices_sound(const Trace& trace) {
   return is_flag(trace.is_finished) && is_flag(trace.is_learned) &&
-         is_flag(trace.stopped_by_clock) &&
+         is_flag(trace.stopped_by_clock) && is_flag(trace.is_bounded) &&
          is_within(static_cast<int>(trace.status), static_cast<int>(kStatusNames.size()) - 1) &&
          is_within(static_cast<int>(trace.aim), static_cast<int>(kAimNames.size()) - 1);
 }

@@ -24,7 +24,9 @@ struct TracePoint {
   double loss = 0;
   double x_error = 0;        // distance to the nearest solution; nan where none is known
   double gradient_norm = 0;  // ‖∂L/∂θ‖; nan where the problem has none
-  double step_norm = 0;      // ‖θ − θ at the previous iteration‖
+  double kkt_residual = kAbsent;  // ‖θ − Π(θ − ∂L/∂θ)‖, Π onto the bounds; nan without bounds
+  double discrepancy = kAbsent;  // ‖y − y*‖ of the data; nan where their noise is not known
+  double step_norm = 0;          // ‖θ − θ at the previous iteration‖
   // For learning problems: the means over the batches of the last 64 and 256 steps, each taken
   // before its step; nan elsewhere.
   double batch_loss[2] = {kAbsent, kAbsent}, batch_x_error[2] = {kAbsent, kAbsent};
@@ -110,6 +112,8 @@ struct Trace {
   double scale = std::numeric_limits<double>::quiet_NaN();  // s; nan where f_L is, or none is known
   double x_scale = std::numeric_limits<double>::quiet_NaN();  // nan where no solution is known
   double x_floor = 0;
+  double noise_level = std::numeric_limits<double>::quiet_NaN();  // δ; nan where not known
+  bool is_bounded = false;
   double start_loss = std::numeric_limits<double>::quiet_NaN();
   double best_loss = std::numeric_limits<double>::infinity();
   double start_x_error = std::numeric_limits<double>::quiet_NaN();

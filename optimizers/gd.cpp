@@ -52,7 +52,10 @@ void register_gd(OptimizerRegistry& registry) {
                                             .title = "Gradient descent",
                                             .kind = Kind::gradient,
                                             .formula = "θ ← θ − η ∇L",
-                                            .source = "Cauchy (1847)",
+                                            .source = "Cauchy (1847); Goldstein (1964)",
+                                            .note = "Each iterate is projected onto the bounds of "
+                                                    "the problem, if there are any.",
+                                            .keeps_bounds = true,
                                             .tunable = kByCauchy}));
   registry.add(rule_entry<Momentum<false>>({.name = "momentum",
                                             .title = "Gradient descent with momentum",

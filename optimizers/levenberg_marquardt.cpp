@@ -57,7 +57,8 @@ class DampedLeastSquares {
     if (is_sparse_) sparse_.start(*f.sparse_pattern());
   }
   // Scaling and factorization as the method's options have them.
-  void set(Meter& f, Linearization& at, const Vector& b, std::string_view scaling) {
+  void set(Meter& f, Linearization& at, const Vector& theta, const Vector& b,
+           std::string_view scaling) {
     const Index n = f.unknowns();
     rows_ = b.size();
     has_gram_ = false;
@@ -76,6 +77,11 @@ class DampedLeastSquares {
       norms_(order_) = pulled_.cwiseSqrt();
     } else {
       J_ = at.jacobian();
+      if (const Bounds* bounds = f.bounds()) {
+        pulled_.noalias() = -(J_.transpose() * b);  // a multiple of ∇L
+        for (Index i = 0; i < n; ++i)
+          if (bounds->is_active(theta, pulled_, i)) J_.col(i).setZero();
+      }
       norms_ = J_.colwise().norm();
     }
     if (scale_.size() != n) scale_.setZero(n);
@@ -116,6 +122,7 @@ class DampedLeastSquares {
     Jd = moved_;
     return true;
   }
+  void push_dense(const Vector& d, Vector& Jd) const { Jd.noalias() = J_ * d; }
   Real misfit() const { return 0.5 * right_.squaredNorm(); }  // ½‖b‖²
   Real squared_length(const Vector& d) const { return scale_.cwiseProduct(d).squaredNorm(); }
   void persist(Archive& archive) {
@@ -285,12 +292,13 @@ struct LevenbergMarquardt {
   Status step_adaptive(Meter& f, Vector& theta, State& s) const {
     if (!s.has_point || f.has_fresh_batches()) {
       f.linearize(theta, s.at);
-      accept(f, s);
+      accept(f, theta, s);
     }
     if (!s.squares.solve(s.damping.mu, factorization, s.step, s.Jd)) return Status::stalled;
-    const Real predicted = predicted_decrease(s);
+    Real predicted = predicted_decrease(s);
     if (acceleration > 0 && s.gain < kPoorGain && !accelerate(f, theta, s)) return reject(f, s);
     s.candidate = theta + s.step;
+    if (f.bounds() && !f.bounds()->hold(s.candidate)) predicted = project(f, theta, s);
     if (s.candidate == theta && !f.has_fresh_batches()) return Status::converged;
     f.linearize(s.candidate, s.trial);
     const Real actual = s.squares.misfit() - 0.5 * (s.trial.y() - f.target()).squaredNorm();
@@ -306,7 +314,7 @@ struct LevenbergMarquardt {
     theta = s.candidate;
     std::swap(s.at, s.trial);
     s.gain = is_rounding ? 1 : actual / predicted;
-    if (!f.has_fresh_batches()) accept(f, s);
+    if (!f.has_fresh_batches()) accept(f, theta, s);
     s.damping.accept(s.gain);
     return Status::running;
   }
@@ -329,10 +337,18 @@ struct LevenbergMarquardt {
   }
 
   // J, −r and D at the point just accepted.
-  void accept(Meter& f, State& s) const {
+  void accept(Meter& f, const Vector& theta, State& s) const {
     s.residual = (f.target() - s.at.y()).reshaped();
-    s.squares.set(f, s.at, s.residual, scaling);
+    s.squares.set(f, s.at, theta, s.residual, scaling);
     s.has_point = true;
+  }
+
+  // The candidate, moved onto the bounds, and the decrease of ½‖r‖² that J predicts for it.
+  static Real project(const Meter& f, const Vector& theta, State& s) {
+    s.candidate = f.bounds()->nearest(s.candidate);
+    s.step = s.candidate - theta;
+    s.squares.push_dense(s.step, s.Jd);
+    return s.residual.dot(s.Jd) - 0.5 * s.Jd.squaredNorm();
   }
 
   // The decrease of ½‖r‖², ½‖J d‖² + μ‖D d‖², without cancellation.
@@ -487,8 +503,18 @@ void fields(LevenbergMarquardtCg& o, auto& field) {
         "damping μ at the start, as a share of ‖J ∇L‖²/‖∇L‖²");
 }
 
+std::string objection_of_levenberg_marquardt(const OptionValues& options, const Problem& problem) {
+  if (!problem.bounds()) return "";
+  const bool has_projection =
+      options.text("damping") == "adaptive" && options.text("factorization") != "sparse";
+  if (has_projection || !problem.bounds()->are_needed) return "";
+  return "the problem has bounds on x, which damping=fixed and factorization=sparse do not respect";
+}
+
 OracleSet needs_of_levenberg_marquardt(const OptionValues& options, const Problem& problem) {
   const std::string factorization = options.text("factorization");
+  if (problem.bounds() && options.text("damping") != "fixed")
+    return {Oracle::forward, Oracle::jacobian};
   if (options.text("damping") == "fixed")
     return needs_of(LevenbergMarquardt::spectral_factorization(factorization), tikhonov_filter(1),
                     problem);
@@ -515,12 +541,17 @@ void register_levenberg_marquardt(OptimizerRegistry& registry) {
            "A rejected candidate is an iteration, too. With damping=fixed every step is taken, "
            "D is 1, and μ a share of the mean diagonal of JJᵀ. On mini-batches the largest norms "
            "that columns have had may belong to another batch: on coupled-oscillators with tanh "
-           "neurons D = 1 (scaling=none) converges from starts from which Moré's diverges.",
+           "neurons D = 1 (scaling=none) converges from starts from which Moré's diverges. On a "
+           "problem with bounds, unknowns at a bound that ∇L presses against are left out of a "
+           "step, and the candidate is projected onto the bounds; Bertsekas (1982), Kanzow, "
+           "Yamashita, Fukushima (2004).",
        .needs = {Oracle::forward},
        .is_input_scale_invariant = true,
+       .keeps_bounds = true,
        .most_rank = 2048,
        .tunable = {.option = "initial-damping", .factor = 10},
-       .needs_for = needs_of_levenberg_marquardt}));
+       .needs_for = needs_of_levenberg_marquardt,
+       .objection = objection_of_levenberg_marquardt}));
   registry.add(stepper_entry<LevenbergMarquardtCg>(
       {.name = "levenberg-marquardt-cg",
        .title = "Levenberg-Marquardt by products",

@@ -32,6 +32,9 @@ Meter::Meter(const Problem& problem, const Budget& budget, OracleSet granted, Tr
       target_loss_(kNone),
       stall_loss_(std::numeric_limits<Real>::max()),
       target_x_error_(kNone),
+      most_discrepancy_(budget.discrepancy > 0 && problem.noise_level()
+                            ? budget.discrepancy * *problem.noise_level()
+                            : kNone),
       most_work_(budget.work -
                  (problem.is_learned() ? 0 : prices_[static_cast<std::size_t>(Oracle::forward)])),
       paid_loss_(std::nan("")) {
@@ -40,6 +43,11 @@ Meter::Meter(const Problem& problem, const Budget& budget, OracleSet granted, Tr
   name_series({});
   trace_.aim = problem.aim();
   trace_.minimum = problem.minimum().value_or(std::nan(""));
+  trace_.noise_level = problem.noise_level().value_or(std::nan(""));
+  trace_.is_bounded = problem.bounds() != nullptr;
+  if (budget.discrepancy > 0 && !problem.noise_level())
+    set_text(trace_.message,
+             "the discrepancy principle has no effect: the problem states no level of noise");
   const bool is_small = problem.inputs() <= Trace::kInputs &&
                         problem.residuals() <= Trace::kOutputs && problem.samples() == 1;
   trace_.path_inputs = is_small ? static_cast<int>(problem.inputs()) : 0;
@@ -169,7 +177,8 @@ Status Meter::begin(VectorRef theta) {
 void Meter::set_scales() {
   trace_.x_scale = problem_.x_scale(judging());
   trace_.x_floor = problem_.x_floor(judging());
-  if (trace_.aim == Aim::x && budget_.target > 0 && std::isfinite(trace_.x_scale))
+  const bool stops_at_target = budget_.target > 0 && most_discrepancy_ == kNone;
+  if (trace_.aim == Aim::x && stops_at_target && std::isfinite(trace_.x_scale))
     target_x_error_ = x_goal(budget_.target, trace_.x_scale, trace_.x_floor);
   if (!problem_.minimum()) return;
   const Real descent = trace_.start_loss - trace_.minimum;
@@ -180,7 +189,8 @@ void Meter::set_scales() {
   next_target_ = kInfinity;
   // The minimum of a learned problem is the best loss known, which a longer run may better.
   if (budget_.target == 0 && problem_.is_learned()) return;
-  if (trace_.aim == Aim::loss) target_loss_ = target_at(budget_.target);
+  if (trace_.aim == Aim::loss && most_discrepancy_ == kNone)
+    target_loss_ = target_at(budget_.target);
 }
 
 void Meter::prepare() {
@@ -221,7 +231,8 @@ void Meter::persist(Archive& archive) {
 
 Status Meter::iterate(VectorRef theta) {
   ++iteration_;
-  if (iteration_ >= next_kept_ || best_loss_ <= target_loss_) {
+  // The discrepancy principle requires each iterate, also those that are not kept.
+  if (iteration_ >= next_kept_ || best_loss_ <= target_loss_ || most_discrepancy_ > kNone) {
     watch_.pause();
     if (look_at(theta) && iteration_ >= next_kept_) keep_point();
     watch_.resume();
@@ -267,6 +278,7 @@ Vector Meter::finish(VectorRef theta, Status verdict) {
   if (problem_.is_learned() && !problem_.field()) show();
   if (verdict == Status::running) verdict = Status::converged;
   if (is_target_met()) verdict = Status::target;
+  if (is_at_noise()) verdict = Status::discrepancy;
   if (!std::isfinite(judged_.loss)) verdict = Status::diverged;
   trace_.status = verdict;
   return judged_theta_;
@@ -297,7 +309,8 @@ void Meter::measure(VectorRef theta) {
   last.processor_seconds = watch_.processor_seconds();
   last.loss = judged_.loss;
   last.x_error = problem_.x_error(judged_.x(), judging());
-  last.gradient_norm = TracePoint::kAbsent;
+  last.gradient_norm = last.kkt_residual = TracePoint::kAbsent;
+  if (problem_.noise_level()) last.discrepancy = problem_.discrepancy(judged_);
   // A second pass over the network for a validation of many samples would cost more than the step.
   if (measures_gradients_ && !problem_.is_learned() && problem_.products().has_pullback) {
     judged_g_.resize(problem_.outputs(), problem_.samples());
@@ -305,6 +318,8 @@ void Meter::measure(VectorRef theta) {
     problem_.cotangent(judged_, judged_g_);
     problem_.pullback(judged_g_, judged_gradient_, judged_);
     last.gradient_norm = judged_gradient_.norm();
+    if (const Bounds* bounds = problem_.bounds())
+      last.kkt_residual = (theta - bounds->nearest(theta - judged_gradient_)).norm();
   }
   last.step_norm = (theta - previous_).norm();
   for (int i = 0; i < 2; ++i) {
@@ -336,6 +351,7 @@ Status Meter::judge(VectorRef theta) {
     return Status::diverged;
   if (std::isnan(batch_loss_.last())) return Status::diverged;
   if (is_target_met()) return Status::target;
+  if (is_at_noise()) return Status::discrepancy;
   if (!problem_.is_learned() && has_stalled()) return Status::stalled;
   if (is_out_of_work() || iteration_ >= budget_.iterations) return Status::budget;
   if (is_out_of_time()) {

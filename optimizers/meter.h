@@ -44,6 +44,7 @@ using networks::Block;
 using networks::LayerFactor;
 using networks::LayerMoments;
 using problems::Batch;
+using problems::Bounds;
 using problems::Inverse;
 using problems::Point;
 using problems::Problem;
@@ -143,6 +144,7 @@ class Meter {
   bool is_sparse() const {
     return is_granted(Oracle::sparse_jacobian) && !is_granted(Oracle::jacobian);
   }
+  const Bounds* bounds() const { return problem_.bounds(); }  // nullptr: none
   Index unknowns() const { return problem_.unknowns(); }
   Index residuals() const { return problem_.residuals(); }
   Index samples() const { return problem_.samples(); }
@@ -223,6 +225,8 @@ class Meter {
   bool is_target_met() const {
     return judged_.loss <= target_loss_ || trace_.last.x_error <= target_x_error_;
   }
+  // The discrepancy principle, by the last point that was judged.
+  bool is_at_noise() const { return trace_.last.discrepancy <= most_discrepancy_; }
   bool is_out_of_time() const { return most_ticks_ != kNoLimit && watch_.elapsed() >= most_ticks_; }
   static constexpr auto kNoLimit = std::numeric_limits<std::uint64_t>::max();
 
@@ -249,7 +253,8 @@ class Meter {
   Point judged_;  // for the harness's own evaluations, and their ∂L/∂y (m, B) and ∇L (n)
   Matrix judged_g_;
   Vector judged_gradient_, judged_theta_, previous_;
-  Real target_x_error_;  // −∞: the loss decides
+  Real target_x_error_;    // −∞: the loss decides
+  Real most_discrepancy_;  // τδ; −∞: no such rule
   // One forward of the budget is left for the returned point.
   std::int64_t most_work_;
   bool is_exhausted_ = false;  // an oracle would have exceeded the budget

@@ -75,6 +75,8 @@ struct Search {
   bool is_over() const { return f.is_spent() || f.status() != Status::running; }
   Real evaluate(const double* at_theta, double* out) {
     theta = Map<const Vector>(at_theta, theta.size());  // aligned, whatever NLopt's array is
+    // BOBYQA and COBYLA leave the bounds by rounding.
+    if (const Bounds* bounds = f.bounds()) theta = bounds->nearest(theta);
     if (!out) return loss_scale * take(f.loss(theta));
     f.linearize(theta, at);
     at.gradient(gradient);
@@ -110,6 +112,18 @@ void set_initial_step(nlopt_opt handle, const Vector& theta, Real multiple) {
   nlopt_set_initial_step(handle, step.data());
 }
 
+// The first step stays what it is without bounds, unless a bound is nearer.
+void set_bounds(nlopt_opt handle, const Vector& theta, const Bounds& bounds) {
+  constexpr Real kShareOfBox = 0.25;  // as NLopt chooses it
+  Vector step(theta.size());
+  nlopt_get_initial_step(handle, theta.data(), step.data());
+  step = step.array().abs().min(kShareOfBox * (bounds.upper - bounds.lower).array());
+  step = (step.array() > 0).select(step, 1);  // of an unknown that is fixed
+  nlopt_set_initial_step(handle, step.data());
+  nlopt_set_lower_bounds(handle, bounds.lower.data());
+  nlopt_set_upper_bounds(handle, bounds.upper.data());
+}
+
 class Nlopt final : public Optimizer {
  public:
   Nlopt(nlopt_algorithm algorithm, const NloptOptions& options)
@@ -119,6 +133,7 @@ class Nlopt final : public Optimizer {
   Status step(Meter& f, Vector& theta) override {
     const Handle handle = make_handle(algorithm_, theta.size(), options_.memory);
     set_initial_step(handle.get(), theta, options_.initial_step);
+    if (const Bounds* bounds = f.bounds()) set_bounds(handle.get(), theta, *bounds);
     Search search{f, handle.get(), options_.loss_scale, {}, theta, Vector(theta.size()), theta};
     const nlopt_result result = minimize(search, theta);
     f.claim(nlopt_result_to_string(result));
@@ -215,6 +230,7 @@ OptimizerEntry entry_of(const Method& m, Family family, OracleSet needs) {
           .needs = needs,
           .is_input_scale_invariant = m.is_input_scale_invariant,
           .needs_same_samples = true,
+          .keeps_bounds = true,
           .most_unknowns = family == Family::nlopt ? m.most_unknowns : kMostWithoutGradient,
           .options = options_of(m, family),
           .tunable = family == Family::nlopt ? Tunable{.option = "loss-scale", .below = 5}

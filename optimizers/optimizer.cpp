@@ -58,6 +58,8 @@ std::string why_inapplicable(const OptimizerEntry& entry, const OptionValues& op
   if (factorizes && rank > entry.most_rank)
     return fmt::format("a Jacobian of rank {}, and {} is limited to {}", rank, entry.name,
                        entry.most_rank);
+  if (problem.bounds() && problem.bounds()->are_needed && !entry.keeps_bounds)
+    return "the problem has bounds on x, which this method does not respect";
   return entry.objection ? entry.objection(options, problem) : "";
 }
 

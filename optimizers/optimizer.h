@@ -94,18 +94,21 @@ class Stepping final : public Optimizer {
 // A gradient rule on its own.
 class ByGradient final : public Optimizer {
  public:
-  explicit ByGradient(std::unique_ptr<Descent> rule) : rule_(std::move(rule)) {}
+  explicit ByGradient(std::unique_ptr<Descent> rule, bool keeps_bounds = false)
+      : rule_(std::move(rule)), keeps_bounds_(keeps_bounds) {}
   void start(Meter& f, const Vector&) override { rule_->start(f.unknowns()); }
   Status step(Meter& f, Vector& theta) override {
     f.linearize(theta, at_);
     at_.gradient(gradient_);
     rule_->update(gradient_, theta);
+    if (const Bounds* bounds = f.bounds(); bounds && keeps_bounds_) theta = bounds->nearest(theta);
     return Status::running;
   }
   bool persist(Archive& archive) override { return rule_->persist(archive); }
 
  private:
   std::unique_ptr<Descent> rule_;
+  bool keeps_bounds_;
   Linearization at_;
   Vector gradient_;  // (n)
 };
@@ -142,8 +145,9 @@ OptimizerEntry rule_entry(OptimizerEntry entry) {
   entry.make_descent = [](const OptionValues& options) -> std::unique_ptr<Descent> {
     return std::make_unique<Descending<R>>(read_options<R>(options));
   };
-  entry.make = [rule = entry.make_descent](const OptionValues& options, const OptimizerRegistry&) {
-    return std::make_unique<ByGradient>(rule(options));
+  entry.make = [rule = entry.make_descent, keeps_bounds = entry.keeps_bounds](
+                   const OptionValues& options, const OptimizerRegistry&) {
+    return std::make_unique<ByGradient>(rule(options), keeps_bounds);
   };
   return entry;
 }

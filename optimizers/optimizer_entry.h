@@ -87,6 +87,8 @@ struct OptimizerEntry {
   bool is_input_scale_invariant = false;
   // Compares losses from step to step, so that fresh samples at each step would mislead it.
   bool needs_same_samples = false;
+  // Its iterates respect the bounds of a problem, which it asks the meter for.
+  bool keeps_bounds = false;
   // Above these the cell is inapplicable: n, and min(n, m·B) where J is factorized whole.
   Index most_unknowns = std::numeric_limits<Index>::max();
   Index most_rank = std::numeric_limits<Index>::max();

@@ -325,6 +325,7 @@ ProblemParts make_bal(const Bal& o, const Draw& draw) {
                            points, x.col(0).tail(points.size()).reshaped(kPoint, points.cols()));
                      }};
   if (o.noise == 0) parts.minimum = 0;
+  if (o.noise > 0) parts.noise_level = o.noise * std::sqrt(static_cast<Real>(y.size()));
   return parts;
 }
 

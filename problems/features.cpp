@@ -177,14 +177,17 @@ void wrap(ProblemParts& parts, Map map, const Features& features) {
   auto physics = std::make_unique<Featured>(std::move(parts.physics), std::move(map), features);
   const Map& to = physics->map();
   parts.start = {to.to_z(parts.start.drawn).reshaped(), to.to_z(parts.start.standard).reshaped()};
-  if (parts.truth) parts.truth = to.to_z(*parts.truth);
+  for (auto* each : {&parts.truth, &parts.made_from})
+    if (*each) *each = to.to_z(**each);
+  if (parts.bounds)
+    for (Vector* each : {&parts.bounds->lower, &parts.bounds->upper}) *each = to.to_z(*each);
   if (!to.is_identity() && parts.x_error)
     parts.x_error = [inner = parts.x_error, to](BatchRef z, const Batch& batch) {
       Batch in_x = batch;
       if (in_x.truth.size() > 0) in_x.truth = to.to_x(batch.truth);
       return inner(to.to_x(z), in_x);
     };
-  const Index rows = physics->penalties();
+  const Index rows = parts.penalties = physics->penalties();
   if (rows > 0) {
     parts.target.conservativeResize(parts.target.rows() + rows, Eigen::NoChange);
     parts.target.bottomRows(rows).setZero();
@@ -199,6 +202,8 @@ void wrap(ProblemParts& parts, Map map, const Features& features) {
   parts.physics = std::move(physics);
 }
 
+constexpr Real kOutliers = 0.1, kOutlier = 10;  // share of the values, and factor of the noise
+
 // (m)
 Vector noise_of(const Features& features, const Vector& target, RandomStream stream) {
   const auto m = static_cast<Real>(target.size());
@@ -210,28 +215,61 @@ Vector noise_of(const Features& features, const Vector& target, RandomStream str
   }
   Vector noise = sigma * stream.normal_vector(target.size());
   if (features.noise_kind == "outliers") {
-    constexpr Real kShare = 0.1, kFactor = 10;
     for (Real& value : noise)
-      if (stream.uniform() < kShare) value *= kFactor;
+      if (stream.uniform() < kOutliers) value *= kOutlier;
   }
   return noise;
 }
 
-constexpr Index kMostFitted = 512;  // unknowns
+// The square root of the mean square of the noise, relative to that of gaussian noise.
+Real size_of_noise(const std::string& kind) {
+  return kind == "outliers" ? std::sqrt(1 - kOutliers + kOutliers * kOutlier * kOutlier) : 1;
+}
 
-// The loss of the least-squares fit from x, by Levenberg and Marquardt's method.
-Real fitted_loss(const Problem& problem, Vector x) {
+// Around x*: as far as x* is large, or as the unknowns are where they have one scale. A wide box
+// also holds the start and never binds.
+Bounds box_around(const Vector& truth, const Problem& plain, bool is_active) {
+  constexpr Real kWide = 10, kBelow = 0.1;
+  constexpr Index kEvery = 3;
+  const auto k = static_cast<Real>(truth.size());
+  const Real common = plain.start_scale() == StartScale::own ? 0 : truth.norm() / std::sqrt(k);
+  Vector radius = truth.cwiseAbs().cwiseMax(common);
+  for (Real& each : radius) each = each > 0 ? each : 1;
+  if (is_active) {
+    Bounds box{truth - radius, truth + radius};
+    for (Index i = 0; i < truth.size(); i += kEvery) box.upper[i] = truth[i] - kBelow * radius[i];
+    return box;
+  }
+  radius = kWide * radius.cwiseMax((plain.start() - truth).cwiseAbs());
+  return {truth - radius, truth + radius, false};
+}
+
+constexpr Index kMostFitted = 512;  // unknowns, and of J the smaller of its sizes
+
+// Of a least-squares fit from x, by Levenberg and Marquardt's method, projected onto the bounds.
+struct Fit {
+  Real loss;
+  Matrix x;  // (k, 1)
+};
+Fit fit_from(const Problem& problem, Vector x) {
   constexpr int kMost = 200;
   Point at, trial;
   Matrix J;
-  Vector r(problem.residuals()), sizes, step;
-  problem.forward(x, at);
+  Vector r(problem.residuals()), sizes, step, next, gradient;
   Real damping = 1e-3;
   bool has_moved = true;
+  const Bounds* const bounds = problem.bounds();
+  if (bounds) x = bounds->nearest(x);
+  problem.forward(x, at);
   for (int i = 0; i < kMost && damping < 1e12; ++i) {
     if (std::exchange(has_moved, false)) {
       problem.jacobian(J, at);
       problem.residual(at, r);
+      if (bounds) {
+        gradient = J.transpose() * r;
+        for (Index j = 0; j < x.size(); ++j)
+          if (bounds->is_active(x, gradient, j)) J.col(j).setZero();
+      }
       sizes = J.colwise().norm();
       sizes = sizes.array().max(1e-12 * sizes.maxCoeff());
     }
@@ -240,7 +278,8 @@ Real fitted_loss(const Problem& problem, Vector x) {
     Vector right = Vector::Zero(stacked.rows());
     right.head(r.size()) = -r;
     if (!least_squares(stacked, right, 0, step)) break;
-    const Vector next = x + step;
+    next = x + step;
+    if (bounds) next = bounds->nearest(next);
     problem.forward(next, trial);
     has_moved = trial.loss < at.loss;
     damping = has_moved ? damping / 8 : damping * 8;
@@ -248,7 +287,7 @@ Real fitted_loss(const Problem& problem, Vector x) {
     x = next;
     std::swap(at, trial);
   }
-  return at.loss;
+  return {at.loss, x};
 }
 
 // The least distance from x* of a truncated-SVD solution with the Jacobian at x*, from x₀:
@@ -297,23 +336,38 @@ Problem with_features(Problem plain, const OptionValues& options, const Draw& dr
 
   const Index k = plain.inputs(), m = plain.outputs();
   const bool is_inexact = features.noise > 0 || features.digits > 0 || target.has_value();
-  const bool is_fitted = plain.truth() && plain.is_least_squares() && k <= kMostFitted &&
-                         plain.offers().contains(Oracle::jacobian);
-  const Vector truth = plain.truth() ? Vector(plain.truth()->reshaped()) : Vector();
+  const bool is_linearized = plain.made_from() && plain.is_least_squares() &&
+                             std::min(k, m) <= kMostFitted &&
+                             plain.offers().contains(Oracle::jacobian);
+  const bool is_fitted = is_linearized && k <= kMostFitted;
+  const Vector truth = plain.made_from() ? Vector(plain.made_from()->reshaped()) : Vector();
+  const bool is_bounded = features.bounds != "none", is_bound = features.bounds == "active";
+  require(!is_bounded || (plain.made_from() && !plain.bounds()),
+          "bounds requires a problem that has a known x*, and no bounds of its own");
+  require(!features.rotate || (!is_bounded && !plain.bounds()),
+          "rotate=true and bounds exclude each other: a rotated box has no bounds on its unknowns");
   const std::optional<Real> least = plain.minimum();
   const Real x_scale = plain.x_scale(plain.batch());
 
+  std::optional<Bounds> box;
+  if (is_bounded) box = box_around(truth, plain, is_bound);
   ProblemParts parts = std::move(plain).parts();
   parts.x_scale = x_scale;
+  if (box) parts.bounds = std::move(box);
+  if (is_bound) parts.aim = Aim::loss;
   if (target) {
     require(target->rows() == m, "the options in model must not change the number of observations");
     parts.target = *target;
   }
-  if (features.noise > 0)
-    parts.target += noise_of(features, parts.target.reshaped(), draw.stream("noise"));
+  if (features.noise > 0) {
+    const Vector noise = noise_of(features, parts.target.reshaped(), draw.stream("noise"));
+    const Real level = features.noise * size_of_noise(features.noise_kind) * parts.target.norm();
+    parts.noise_level = std::hypot(level, parts.noise_level.value_or(0));
+    parts.target += noise;
+  }
   if (features.digits > 0) round_values(parts.target, features.digits);
   if (is_inexact) parts.x_floor = {};
-  if (is_inexact && is_fitted) {
+  if (is_inexact && is_linearized) {
     Problem inexact(std::move(parts));
     const Real floor = truncated_floor(inexact, truth);
     parts = std::move(inexact).parts();
@@ -323,11 +377,15 @@ Problem with_features(Problem plain, const OptionValues& options, const Draw& dr
   const bool is_mapped = !map.is_identity();
   if (is_mapped || features.digits > 0 || features.tikhonov > 0)
     wrap(parts, std::move(map), features);
-  if (features.noise == 0 && !target && features.tikhonov == 0) return Problem(std::move(parts));
+  if (features.noise == 0 && !target && features.tikhonov == 0 && !is_bound)
+    return Problem(std::move(parts));
   parts.minimum.reset();
   parts.minimum_error = 0;
   Problem featured(std::move(parts));
-  if (is_fitted && least) featured.set_minimum(fitted_loss(featured, featured.truth()->reshaped()));
+  if (!is_fitted || !least) return featured;
+  const Fit fit = fit_from(featured, featured.made_from()->reshaped());
+  featured.set_minimum(fit.loss);
+  if (is_bound) featured.set_x_floor(featured.x_error(fit.x));
   return featured;
 }
 

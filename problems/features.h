@@ -1,6 +1,6 @@
 // Features that any direct problem can have, as options: noise in the data, data of another model,
-// badly scaled or rotated unknowns, few digits, regularization. At their defaults they stand in no
-// spec, no record and no cell.
+// badly scaled or rotated unknowns, few digits, regularization, bounds. At their defaults they
+// stand in no spec, no record and no cell.
 #pragma once
 
 #include <optional>
@@ -18,6 +18,7 @@ struct Features {
   Index digits = 0;
   Real tikhonov = 0;
   Index order = 0;
+  std::string bounds = "none";
 };
 inline void fields(Features& o, auto& field) {
   field("noise", o.noise, between(0, 10),
@@ -31,6 +32,9 @@ inline void fields(Features& o, auto& field) {
   field("tikhonov", o.tikhonov, between(0, 1e12), "α of the penalty ½α‖Dx‖²");
   field("order", o.order, between(0, 1),
         "D of the penalty; 0: identity, 1: differences of neighbours");
+  field("bounds", o.bounds, {"none", "wide", "active"},
+        "a box around x*: wide, or with one upper bound in three below x*, so that the solution "
+        "lies on bounds");
 }
 
 // Without names that the problem itself declares.
@@ -42,9 +46,11 @@ OptionTable feature_table(const OptionTable& own);
 // scale^-½ to scale^½; errors in x are those of x. With noise, or data of another model, no x makes
 // y*: f_L is then the loss of the least-squares fit from x*, and the floor of the error in x that
 // of the best truncated-SVD solution with the Jacobian at x*, from x₀ (Hansen 1998, section 3.2).
-// Both are missing where x* is unknown and above 512 unknowns.
-// UsageError if the problem is learned, if y* = 0 has noise, or for a penalty on another loss than
-// that of least squares.
+// Both are missing where x* is unknown and above 512 unknowns, where only the floor is known of up
+// to 512 observations.
+// With active bounds f_L is the loss of the fit within them, and the floor its distance from x*.
+// UsageError if the problem is learned, if y* = 0 has noise, for a penalty on another loss than
+// that of least squares, or for bounds where x* is unknown.
 Problem with_features(Problem plain, const OptionValues& features, const Draw& draw,
                       const std::optional<Matrix>& target = {});
 

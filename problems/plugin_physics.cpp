@@ -38,6 +38,15 @@ isoline_sizes sizes_of(const PluginInstance& instance) {
   hold("inputs", 1, sizes.inputs);
   hold("outputs", 1, sizes.outputs);
   hold("kept", 0, sizes.kept);
+  if (instance.of().can(ISOLINE_BOUNDS)) {
+    require(sizes.lower != nullptr && sizes.upper != nullptr,
+            [&] { return words + ": dimension() must give lower and upper, got null"; });
+    for (std::uint64_t i = 0; i < sizes.inputs; ++i)
+      require(sizes.lower[i] <= sizes.upper[i], [&] {
+        return fmt::format("{}: dimension() must give lower ≤ upper, got {} and {} for unknown {}",
+                           words, sizes.lower[i], sizes.upper[i], i);
+      });
+  }
   const bool has_inverse = instance.of().can(ISOLINE_INVERSE);
   const bool is_known = sizes.inverse >= ISOLINE_EXACT && sizes.inverse <= ISOLINE_APPROXIMATE;
   require(!has_inverse || is_known, [&] {
@@ -131,10 +140,14 @@ ProblemParts plugin_parts(const PluginComponent& component, const OptionValues& 
   if (instance.table().instance(instance.self(), start.data(), target.data(),
                                 has_truth ? truth.data() : nullptr) != 0)
     throw std::runtime_error(component.words() + ": instance() failed");
-  const Real minimum = physics->sizes().minimum;
+  const isoline_sizes sizes = physics->sizes();  // its arrays are the component's
+  const Real minimum = sizes.minimum;
   ProblemParts parts{
       .physics = std::move(physics), .start = draw.start(start), .target = std::move(target)};
   if (!std::isnan(minimum)) parts.minimum = minimum;
+  if (component.can(ISOLINE_BOUNDS))
+    parts.bounds =
+        Bounds{Eigen::Map<const Vector>(sizes.lower, k), Eigen::Map<const Vector>(sizes.upper, k)};
   if (!has_truth) return parts;
   parts.truth = truth;
   parts.x_error = [truth](BatchRef x, const Batch&) { return (x - truth).norm(); };

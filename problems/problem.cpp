@@ -13,6 +13,15 @@ namespace isoline::problems {
 using networks::Identity;
 
 Problem::Problem(ProblemParts parts) : parts_(std::move(parts)) {
+  if (const auto& bounds = parts_.bounds) {
+    require(!parts_.network && bounds->lower.size() == parts_.start.drawn.size() &&
+                bounds->upper.size() == parts_.start.drawn.size(),
+            "bounds must be those of all unknowns of a direct problem");
+    require((bounds->lower.array() <= bounds->upper.array()).all(),
+            "a lower bound must not be above the upper one");
+    for (Vector* start : {&parts_.start.drawn, &parts_.start.standard})
+      *start = bounds->nearest(*start);
+  }
   if (!parts_.network) parts_.network = std::make_unique<Identity>(parts_.start.drawn);
   if (!parts_.loss) parts_.loss = std::make_unique<HalfSquared>();
   if (is_learned())
@@ -48,6 +57,11 @@ ProblemParts Problem::parts() && {
   return std::move(parts_);
 }
 
+void Problem::set_start(Vector start) {
+  require(!bounds() || bounds()->hold(start), "the start lies outside the bounds of the problem");
+  parts_.start.drawn = std::move(start);
+}
+
 void Problem::set_target(const Matrix& target) {
   batch_.target = target;
   batch_.truth.resize(0, 0);
@@ -55,6 +69,8 @@ void Problem::set_target(const Matrix& target) {
   parts_.minimum = parts_.scale = parts_.x_scale = std::nullopt;
   parts_.minimum_error = 0;
   parts_.truth.reset();
+  parts_.made_from.reset();
+  parts_.noise_level.reset();
   parts_.x_error = nullptr;
   parts_.x_floor = nullptr;
 }

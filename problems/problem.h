@@ -67,6 +67,26 @@ struct Start {
   Vector drawn, standard;  // (n)
 };
 
+// lower ≤ θ ≤ upper, (n) each, infinite where a component has no bound.
+struct Bounds {
+  Vector lower, upper;
+  // False where methods without bounds may run, too: the solution lies inside, and P has no value
+  // outside or nothing else keeps θ there.
+  bool are_needed = true;
+
+  bool hold(VectorRef theta) const {
+    return ((theta.array() >= lower.array()) && (theta.array() <= upper.array())).all();
+  }
+  Vector nearest(VectorRef theta) const {  // Π(θ); NaN is moved to the lower bound
+    const Vector above = (theta.array() > lower.array()).select(theta, lower);
+    return (above.array() < upper.array()).select(above, upper);
+  }
+  // Whether the i-th component of −g points out of the bounds at θ.
+  bool is_active(VectorRef theta, VectorRef g, Index i) const {
+    return (theta[i] <= lower[i] && g[i] > 0) || (theta[i] >= upper[i] && g[i] < 0);
+  }
+};
+
 // The parts of a problem. A direct problem leaves network, input and samples empty. A learning
 // problem leaves target, input, context and truth empty, which `samples` provides.
 struct ProblemParts {
@@ -83,6 +103,11 @@ struct ProblemParts {
   Real minimum_error = 0;            // most that f_L may be off: of a published one, its last digit
   std::optional<Real> scale;         // of L, for targets; found by Problem::loss_scale where empty
   std::optional<Matrix> truth;       // the x* that made y*, (k, B), where there is one
+  // Where the problem itself puts noise into y*, so that x* does not reproduce it: this x*, (k, 1).
+  std::optional<Matrix> made_from;
+  std::optional<Real> noise_level;  // δ, the expected ‖y* − P(x*)‖ of noise in y*
+  Index penalties = 0;              // last rows of y that are no data, but a penalty
+  std::optional<Bounds> bounds;     // on θ = x of a direct problem
   // Distance from x to the nearest solution, the mean over samples, where solutions are known.
   std::function<Real(BatchRef x, const Batch& batch)> x_error;
   std::optional<Real> x_scale;  // ‖x*‖, for targets in x; found by Problem::x_scale where empty
@@ -116,12 +141,24 @@ class Problem {
   Aim aim() const { return parts_.aim; }
   std::optional<Real> minimum() const { return parts_.minimum; }
   void set_minimum(Real loss) { parts_.minimum = loss; }  // the best known, where none is declared
+  void set_x_floor(Real error) {
+    parts_.x_floor = [error](const Batch&) { return error; };
+  }
   // The start and the target of the user, for a direct problem, of the sizes of its own. What is
   // known of the solution for its own target does not hold for another one.
-  void set_start(Vector start) { parts_.start.drawn = std::move(start); }
+  void set_start(Vector start);
   void set_target(const Matrix& target);
   Real minimum_error() const { return parts_.minimum_error; }
   const std::optional<Matrix>& truth() const { return parts_.truth; }  // of a direct problem
+  // The x* from which the data were made, with noise or without.
+  const std::optional<Matrix>& made_from() const {
+    return parts_.made_from ? parts_.made_from : parts_.truth;
+  }
+  std::optional<Real> noise_level() const { return parts_.noise_level; }
+  Real discrepancy(const Point& at) const {  // ‖y − y*‖ of the data
+    return (at.y - at.batch->target).topRows(outputs() - parts_.penalties).norm();
+  }
+  const Bounds* bounds() const { return parts_.bounds ? &*parts_.bounds : nullptr; }
   const auto& window() const { return parts_.window; }
   const auto& y_window() const { return parts_.y_window; }
   const std::string& contour_spacing() const { return parts_.contour_spacing; }

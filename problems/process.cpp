@@ -11,21 +11,6 @@
 namespace isoline::problems {
 namespace {
 
-struct Box {
-  Vector lower, upper;  // (k) each, or empty where x may be anything
-
-  bool is_everything() const { return lower.size() == 0; }
-  bool holds(VectorRef x) const {
-    return is_everything() || ((x.array() >= lower.array()) && (x.array() <= upper.array())).all();
-  }
-  // NaN is moved to the lower bound.
-  Vector nearest(VectorRef x) const {
-    if (is_everything()) return x;
-    const Vector above = (x.array() > lower.array()).select(x, lower);
-    return (above.array() < upper.array()).select(above, upper);
-  }
-};
-
 Inverse inverse_of(const std::string& kind) {
   if (kind == "exact") return Inverse::exact;
   if (kind == "damped") return Inverse::damped;
@@ -64,7 +49,10 @@ Vector vector_of(const std::vector<Real>& numbers) {
   return Eigen::Map<const Vector>(numbers.data(), static_cast<Index>(numbers.size()));
 }
 
-Box box_of(const ProblemHandshake& said) { return {vector_of(said.lower), vector_of(said.upper)}; }
+std::optional<Bounds> bounds_of(const ProblemHandshake& said) {
+  if (said.lower.empty()) return std::nullopt;
+  return Bounds{vector_of(said.lower), vector_of(said.upper), said.has_active_bounds};
+}
 
 std::span<const Real> numbers_of(const Matrix& array) {
   return {array.data(), static_cast<std::size_t>(array.size())};
@@ -86,7 +74,7 @@ class ProcessPhysics final : public ByJacobian {
         asks_pullback_(said.oracles.contains(Oracle::pullback)),
         inverse_(inverse_of(said.inverse)),
         inverse_price_(said.inverse_price),
-        box_(box_of(said)) {}
+        bounds_(bounds_of(said)) {}
 
   Index inputs() const override { return inputs_; }
   Index outputs() const override { return outputs_; }
@@ -98,12 +86,12 @@ class ProcessPhysics final : public ByJacobian {
   // Outside the bounds P has no value; the program computes the nearest x inside.
   void forward(BatchRef x, BatchRef, BatchOut y, Workspace& w) const override {
     OwnPoint& point = point_of(w);
-    if (box_.is_everything()) return ask(Verb::linearize, x, y, point);
+    if (!bounds_) return ask(Verb::linearize, x, y, point);
     point.within.resize(x.rows(), x.cols());
-    for (Index b = 0; b < x.cols(); ++b) point.within.col(b) = box_.nearest(x.col(b));
+    for (Index b = 0; b < x.cols(); ++b) point.within.col(b) = bounds_->nearest(x.col(b));
     ask(Verb::linearize, point.within, y, point);
     for (Index b = 0; b < x.cols(); ++b)
-      if (!box_.holds(x.col(b))) y.col(b).setConstant(std::numeric_limits<Real>::quiet_NaN());
+      if (!bounds_->hold(x.col(b))) y.col(b).setConstant(std::numeric_limits<Real>::quiet_NaN());
   }
   void pushforward(BatchRef v, BatchOut Jv, Workspace& w) const override {
     asks_pushforward_ ? ask(Verb::pushforward, v, Jv, point_of(w))
@@ -163,7 +151,7 @@ class ProcessPhysics final : public ByJacobian {
   bool asks_pushforward_, asks_pullback_;
   Inverse inverse_;
   Index inverse_price_;
-  Box box_;
+  std::optional<Bounds> bounds_;
 };
 
 ProblemParts process_parts(const ProblemHandshake& said, const std::shared_ptr<Session>& session,
@@ -177,8 +165,7 @@ ProblemParts process_parts(const ProblemHandshake& said, const std::shared_ptr<S
                      .aim = said.aim,
                      .minimum = said.minimum};
   if (!said.drawn.empty()) parts.start = Start(vector_of(said.drawn), standard);
-  parts.start.drawn =
-      box_of(said).nearest(parts.start.drawn);  // a sampled start may lie outside the bounds
+  parts.bounds = bounds_of(said);  // a sampled start outside of them is moved to the nearest point
   if (said.x_floor > 0) parts.x_floor = [floor = said.x_floor](const Batch&) { return floor; };
   if (said.has_x_error)
     parts.x_error = [session](BatchRef x, const Batch&) {

@@ -179,6 +179,8 @@ ProblemParts make_wave_packet(const Options& o, const Draw& draw) {
       .x_error = [truth](BatchRef x, const Batch&) { return distance(x.col(0), truth); },
       .x_scale = truth.norm()};
   if (o.noise > 0) {
+    parts.made_from = truth;
+    parts.noise_level = o.noise * std::sqrt(static_cast<Real>(o.samples));
     constexpr int kToConvergence = 100;
     Vector best(4), y(o.samples);
     physics->fit(signal.observed, truth, kToConvergence, best);

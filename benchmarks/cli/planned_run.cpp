@@ -43,6 +43,8 @@ void override_blocks(const RunArguments& given, Suite& suite) {
     if (given.stall >= 0)
       block.budget.stall =
           given.stall == kStallIterations ? std::nullopt : std::optional(given.stall);
+    if (!given.stop.empty())
+      block.budget.discrepancy = read_as("--stop", [&] { return discrepancy_of(given.stop); });
     if (given.threads > 0) block.threads = given.threads;
   }
 }
@@ -75,6 +77,9 @@ void declare_cells(VerbArguments& verb, RunArguments& given) {
   verb.whole_or_never(
       "--stall", given.stall,
       "Number of iterations without progress after which a cell ends (default: 100)");
+  verb.text("--stop", given.stop,
+            "Stopping rule instead of --target: discrepancy[tau=1.1] ends a cell at the first "
+            "iterate with ‖y − y*‖ ≤ τδ, if the problem has noise of the level δ; or none");
   verb.text("--start", given.start,
             "Starting point of every problem: a .npy or .csv file of n numbers");
   verb.text("--target-data", given.target_data,

@@ -35,6 +35,13 @@ std::int64_t amount_in(const Json& json, const char* name, std::int64_t standard
   return static_cast<std::int64_t>(amount);
 }
 
+struct StoppingRule {
+  Real tau = 1.1;
+};
+void fields(StoppingRule& o, auto& field) {
+  field("tau", o.tau, between(1, 100), "factor of the noise level");
+}
+
 Budget budget_from(const Json& json) {
   Budget budget;
   budget.iterations = amount_in(json, "iterations", budget.iterations);
@@ -44,6 +51,7 @@ Budget budget_from(const Json& json) {
   if (json.contains("stall"))
     budget.stall = json["stall"].is_string() ? 0 : amount_in(json, "stall", kStallIterations);
   if (budget.stall == kStallIterations) budget.stall.reset();  // the cell of the standard
+  if (json.contains("stop")) budget.discrepancy = discrepancy_of(json["stop"]);
   return budget;
 }
 
@@ -141,6 +149,18 @@ std::vector<Spec> featured_problems(const Catalog& catalog, const MatrixBlock& b
 }
 
 }  // namespace
+
+Real discrepancy_of(const std::string& stop) {
+  const Spec spec = parse_spec(stop);
+  require(spec.name == "discrepancy" || stop == "none", [&] {
+    return fmt::format("a stopping rule must be discrepancy, discrepancy[tau=1.1] or none, got {}",
+                       stop);
+  });
+  if (stop == "none") return 0;
+  return read_options<StoppingRule>(
+             complete_options(option_table<StoppingRule>(), spec.name, options_of(spec)))
+      .tau;
+}
 
 Component with_rates(const Catalog& catalog, const Spec& spec, const Rates::Row* row) {
   OptionValues options = row ? row->options : OptionValues();

@@ -44,6 +44,9 @@ Suite read_suite(const std::string& name_or_path);
 // UsageError with the file and the place where its JSON violates the schema of that name.
 void require_valid(const Json& json, const std::string& schema, const std::string& origin);
 
+// τ of the stopping rule "discrepancy[tau=1.1]"; 0 of "none".
+Real discrepancy_of(const std::string& stop);
+
 Suite suite_from_json(const Json& json, const std::string& origin);
 
 inline constexpr std::uint64_t kMostCells = 1'000'000;

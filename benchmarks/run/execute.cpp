@@ -140,6 +140,9 @@ Curve curve_of(const Trace& trace) {
   curve.x_error = column_of(trace, &TracePoint::x_error);
   curve.gradient_norm = column_of(trace, &TracePoint::gradient_norm);
   curve.step_norm = column_of(trace, &TracePoint::step_norm);
+  if (trace.is_bounded) curve.kkt_residual = column_of(trace, &TracePoint::kkt_residual);
+  if (std::isfinite(trace.noise_level))
+    curve.discrepancy = column_of(trace, &TracePoint::discrepancy);
   for (std::size_t i = 0; trace.is_learned && i < 2; ++i) {
     const std::int64_t window = TracePoint::kWindows[i];
     curve.batch_loss[window] =
@@ -217,6 +220,7 @@ void add_verdicts(const Trace& trace, Record& record) {
   record.scale = known(trace.scale);
   record.x_scale = known(trace.x_scale);
   record.x_floor = trace.x_floor;
+  record.noise_level = known(trace.noise_level);
   for (const auto& [name, tau] : kVerified) {
     auto &verified = record.verified[name], &found = record.found[name];
     if (record.minimum) verified = meets(trace.last.loss, trace.minimum + tau * trace.scale);

@@ -25,6 +25,7 @@ struct ChooseArguments {
   std::vector<std::string> folders, have = {"forward"};
   int unknowns = 0;
   double noise = 0, tolerance = 1e-6;
+  bool bounds = false;
   std::int64_t budget = kMostAmount;
 };
 
@@ -44,6 +45,7 @@ void declare(VerbArguments& verb, ChooseArguments& given) {
       {.low = 0, .high = 1'000'000'000});
   verb.real("--noise", given.noise, between(0, 10),
             "Noise in the data, relative to the root mean square of the data");
+  verb.flag("--bounds", given.bounds, "The unknowns have bounds");
   verb.whole("--budget", given.budget,
              "Number of forward solves that a run may cost (default: any)");
   verb.real("--tolerance", given.tolerance, between(1e-10, 1),
@@ -52,7 +54,7 @@ void declare(VerbArguments& verb, ChooseArguments& given) {
 }
 
 Means means_of(const ChooseArguments& given) {
-  Means means{.noise = given.noise};
+  Means means{.noise = given.noise, .has_bounds = given.bounds};
   for (const std::string& one : given.have) {
     const auto at = std::ranges::find(results::kDerivativeNames, one);
     if (at == results::kDerivativeNames.end()) means.has_inverse = true;

@@ -428,6 +428,7 @@ def problem(
     drawn=None,
     minimum=None,
     bounds=None,
+    active_bounds=False,
     aim=None,
     name=None,
     note=None,
@@ -448,6 +449,8 @@ def problem(
     truth: the x that produced the target.
     drawn: the starting point for this seed(), instead of one that Isoline samples around `start`.
     bounds=(lower, upper): numbers or lists; Isoline does not call forward outside them.
+    active_bounds=True: the solution may lie on a bound; other methods than those that respect
+        bounds do not apply.
     aim="x": the success criterion is the error in x, not the loss.
     start_scale="own": the unknowns of random starts have a standard deviation of a tenth of |start|,
     instead of a tenth of max(1, |start|).
@@ -494,6 +497,7 @@ def problem(
             "has_x_error": x_error is not None,
             "x_floor": x_floor,
             "bounds": None if bounds is None else [_bound(side, start) for side in bounds],
+            "active_bounds": bool(active_bounds),
             "aim": aim,
         },
     )

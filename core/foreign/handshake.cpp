@@ -295,6 +295,7 @@ ProblemHandshake problem_handshake(const std::string& text, const std::string& s
   problem.target = said.numbers("target", problem.outputs, true);
   problem.truth = said.numbers("truth", problem.inputs, false);
   std::tie(problem.lower, problem.upper) = said.bounds(problem.inputs);
+  problem.has_active_bounds = said.flag("active_bounds");
   const auto require_within = [&](const char* name, const std::vector<Real>& x) {
     require(is_within(x, problem),
             [&] { return fmt::format("{} declares a {} outside its bounds", sender, name); });

@@ -81,6 +81,7 @@ struct ProblemHandshake {
   std::vector<Real> drawn;          // θ₀ of this seed, if the program samples its own
   std::vector<Real> truth;          // x*, where it knows it
   std::vector<Real> lower, upper;   // bounds on x (k), where it has any
+  bool has_active_bounds = false;   // the solution may lie on one
   std::optional<Real> minimum;      // f_L, if known
   Aim aim = Aim::loss;
   bool has_own_scale = false;  // sampled starts differ by a tenth of each unknown

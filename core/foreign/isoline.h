@@ -23,6 +23,7 @@ enum {
   ISOLINE_JACOBIAN = 1 << 3,     // J, (m, k)
   ISOLINE_INVERSE = 1 << 4,      // an x near x0 with P(x) = y
   ISOLINE_TRUTH = 1 << 5,        // only of a problem: the x* that produced the target
+  ISOLINE_BOUNDS = 1 << 6,       // only of a problem: bounds on x, from dimension()
   ISOLINE_STEP = 1 << 8,         // only of an optimizer: step() is one iteration,
   ISOLINE_SOLVE = 1 << 9,        // or the complete solve, which reports each iteration itself
   ISOLINE_COMPARES = 1 << 10     // in addition: it compares losses of different steps
@@ -47,6 +48,9 @@ typedef struct isoline_sizes {
   uint64_t kept;             // doubles that forward() stores for the products at the same x
   double minimum;            // the least attainable loss, if known
   uint32_t inverse;          // ISOLINE_EXACT, …, if there is an inverse
+  // With ISOLINE_BOUNDS: k numbers each, which stay valid until close(); infinite where there is no
+  // bound. Methods that do not respect bounds do not apply.
+  const double *lower, *upper;
 } isoline_sizes;
 
 // The problem as an optimizer sees it: r = (y − y*)/√B over its B samples, J = ∂r/∂θ, and y*. The

@@ -206,6 +206,7 @@ class Invariants {
       check("found", record_.found, [&](Real tau) {
         return summary_.x_error <= x_goal(tau, *record_.x_scale, record_.x_floor);
       });
+    if (record_.status == Status::discrepancy) check_discrepancy();
     if (record_.status != Status::target || !record_.scale) return;
     const Real tau = record_.request.budget.target;
     // Older runs whose criterion is the error in x were stopped at τ² of the loss.
@@ -214,6 +215,16 @@ class Invariants {
     const Real of_loss = record_.aim == Aim::x ? tau * tau : tau;
     hold(is_in_x || (record_.minimum && summary_.best_loss <= goal_at(of_loss) + slack()),
          "its status is target, but its best loss, {}, is above the target", summary_.best_loss);
+  }
+
+  // The first point within the noise is the last.
+  void check_discrepancy() {
+    const std::vector<Real>& all = curve_.discrepancy;
+    const Real most =
+        record_.request.budget.discrepancy * record_.noise_level.value_or(std::nan(""));
+    hold(!all.empty() && all.back() <= most &&
+             std::none_of(all.begin(), all.end() - 1, [&](Real each) { return each <= most; }),
+         "its status is discrepancy, but its last point is not the first within τδ, {}", most);
   }
 
   const Record& record_;

@@ -40,6 +40,8 @@ void require_equal_columns(const Record& record) {
   of_curve(curve.work, curve.counts, curve.wall_seconds, curve.processor_seconds, curve.loss,
            curve.x_error, curve.gradient_norm, curve.step_norm, curve.batch_loss,
            curve.batch_x_error, record.series);
+  if (!curve.kkt_residual.empty()) of_curve(curve.kkt_residual);
+  if (!curve.discrepancy.empty()) of_curve(curve.discrepancy);
   if (record.trajectory) of_curve(record.trajectory->x, record.trajectory->y);
   if (record.fields) require_sound(*record.fields);
   if (record.spectrum)
@@ -87,6 +89,8 @@ void fields(Like<Budget> auto& budget, auto& field) {
   field.optional(
       "stall", budget.stall,
       R"({"minimum": 0, "description": "Iterations without progress, if not 100; 0: any"})");
+  field.optional("discrepancy", budget.discrepancy,
+                 R"({"description": "τ of the discrepancy principle, if it stops the run"})");
 }
 
 void fields(Like<Request> auto& request, auto& field) {
@@ -178,6 +182,10 @@ void fields(Like<Curve> auto& curve, auto& field) {
   field("x_error", curve.x_error);
   field("gradient_norm", curve.gradient_norm);
   field("step_norm", curve.step_norm);
+  field.optional("kkt_residual", curve.kkt_residual,
+                 R"({"description": "‖θ − Π(θ − ∇L)‖ with Π onto the bounds, if there are any"})");
+  field.optional("discrepancy", curve.discrepancy,
+                 R"({"description": "‖y − y*‖ of the data, if their noise level is known"})");
   field.optional("batch_loss", curve.batch_loss);
   field.optional("batch_x_error", curve.batch_x_error);
 }
@@ -283,6 +291,8 @@ void fields(Like<Record> auto& record, auto& field) {
   field("verified", record.verified, kTolerancesLaw);
   field.forgiven("x_scale", record.x_scale);
   field.forgiven("x_floor", record.x_floor);
+  field.optional("noise_level", record.noise_level,
+                 R"({"description": "δ, the expected norm of the noise in the data"})");
   field.forgiven("found", record.found, kTolerancesLaw);
   field.optional("criterion", record.criterion,
                  R"({"pattern": "^[0-9a-f]{16}$",

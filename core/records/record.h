@@ -32,6 +32,7 @@ struct Curve {
   std::vector<std::int64_t> iteration, work;
   std::map<std::string, std::vector<std::int64_t>> counts;  // by oracle, of those that were called
   std::vector<Real> wall_seconds, processor_seconds, loss, x_error, gradient_norm, step_norm;
+  std::vector<Real> kkt_residual, discrepancy;  // empty without bounds, and without known noise
   // For learning problems, by window: the means over the training batches of the last steps.
   std::map<std::int64_t, std::vector<Real>> batch_loss, batch_x_error;
 };
@@ -140,6 +141,7 @@ struct Record {
   // The scales of errors in x, if a solution is known: ‖x*‖, and the floor that the data impose.
   std::optional<Real> x_scale;
   Real x_floor = 0;
+  std::optional<Real> noise_level;  // δ, the expected ‖y* − P(x*)‖, where it is known
   std::map<std::string, std::optional<bool>> found;  // by τ: error in x ≤ max(τ‖x*‖, 1.1 x_floor)
   std::string criterion;  // digest of what success is measured by; older: none
   OracleCounts counts{};

@@ -56,9 +56,10 @@ bool can_run(const Comparison& c, const Cell& cell, const Means& means) {
          });
 }
 
+constexpr Real kNear = 3;  // noise of this factor less or more is of the same size
+
 // Whether its data are as noisy as the reader's.
 bool has_noise(const ProblemAxis& problem, Real noise) {
-  constexpr Real kNear = 3;
   return noise == 0 ? problem.noise == 0
                     : problem.noise >= noise / kNear && problem.noise <= noise * kNear;
 }
@@ -70,7 +71,8 @@ std::vector<std::size_t> settings_of_size(const Comparison& c, const Means& mean
     const ProblemAxis& problem = c.problems[p];
     const Index unknowns = problem.sheet == nullptr ? 0 : problem.sheet->unknowns;
     if (!problem.is_learned && !problem.is_ill_posed() && unknowns >= means.least_unknowns &&
-        unknowns <= means.most_unknowns && has_noise(problem, means.noise))
+        unknowns <= means.most_unknowns && has_noise(problem, means.noise) &&
+        problem.is_bounded == means.has_bounds)
       settings.push_back(p);
   }
   std::set<std::string> physics;
@@ -150,6 +152,19 @@ std::optional<std::size_t> better_on_some(const Trial& trial, std::size_t first)
 }
 
 }  // namespace
+
+std::vector<Means> kinds_of_data(const Comparison& c) {
+  std::vector<Means> kinds = {{}};
+  std::set<Real> levels;
+  for (const ProblemAxis& problem : c.problems)
+    if (problem.noise > 0 && !problem.is_bounded && !problem.is_learned)
+      levels.insert(problem.noise);
+  for (const Real noise : levels)
+    if (noise > kNear * kinds.back().noise) kinds.push_back({.noise = noise});
+  if (std::ranges::any_of(c.problems, &ProblemAxis::is_bounded))
+    kinds.push_back({.has_bounds = true});
+  return kinds;
+}
 
 Advice advise(const Comparison& c, const Means& means) {
   Advice advice{.settings = settings_of_size(c, means), .ranked = {}, .partial = {}};

@@ -523,4 +523,17 @@ Real friedman_p(const std::vector<std::vector<Real>>& values) {
   return Real(reached) / Real(kPermutations);
 }
 
+Real rank_correlation(const std::vector<Real>& a, const std::vector<Real>& b) {
+  const std::vector<std::size_t> ranks_a = doubled_ranks(a), ranks_b = doubled_ranks(b);
+  const Real mean = Real(a.size() + 1);
+  Real product = 0, square_a = 0, square_b = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    const Real from_a = Real(ranks_a[i]) - mean, from_b = Real(ranks_b[i]) - mean;
+    product += from_a * from_b;
+    square_a += from_a * from_a;
+    square_b += from_b * from_b;
+  }
+  return product / std::sqrt(square_a * square_b);
+}
+
 }  // namespace isoline::results

@@ -217,6 +217,10 @@ std::vector<TimeVerdict> judge_times(const std::vector<TimedCell>& cells, Real l
 // noise, and the interval of a cell's ratio already widens with it.
 Real split_noise(const std::vector<TimedCell>& cells);
 
+// Spearman's ρ: the correlation of the ranks, ties at their mean; not-a-number where one side has
+// no order, or of fewer than two.
+Real rank_correlation(const std::vector<Real>& a, const std::vector<Real>& b);
+
 // Do several methods differ at all over the same blocks? Friedman's test by ranks (1937), with
 // permutations within the blocks: all of them in a small design, else random ones.
 Real friedman_p(const std::vector<std::vector<Real>>& values);  // [block][method]

@@ -268,6 +268,7 @@ std::vector<ProblemAxis> problem_axis(const Study& study) {
     if (record.aim == Aim::x && record.x_scale) at->aim = Aim::x;
     at->is_learned = record.request.problem.is_learned;
     at->noise = record.request.problem.options.number("noise", 0);
+    at->is_bounded |= !record.curve.kkt_residual.empty();
     if (at->aim == Aim::x && record.x_scale && could_declare)
       goals[at->spec].emplace(record.request.seed, x_goal(0, 1, record.x_floor / *record.x_scale));
     if (!record.foreign.problem) continue;
@@ -530,6 +531,8 @@ std::string budget_options(const Request& request) {
   if (budget.target != Budget{}.target) options += fmt::format(" --target {}", budget.target);
   if (budget.stall)
     options += " --stall " + (*budget.stall > 0 ? std::to_string(*budget.stall) : "never");
+  if (budget.discrepancy > 0)
+    options += fmt::format(" --stop 'discrepancy[tau={}]'", budget.discrepancy);
   if (request.threads != 1) options += fmt::format(" --threads {}", request.threads);
   return options;
 }

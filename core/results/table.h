@@ -62,7 +62,8 @@ struct ProblemAxis {
   bool is_minimum_known = true;  // otherwise its runs have distances from the best of them alone
   Aim aim = Aim::loss;           // what its user wants, as its records say
   bool is_learned = false;
-  Real noise = 0;  // in its data, over their rms
+  Real noise = 0;           // in its data, over their rms
+  bool is_bounded = false;  // its unknowns have bounds
   // For an aim in x: the least error that counts as solved, 1.1 of the floor, over ‖x*‖; the median
   // over seeds.
   Real least_goal = 0;

@@ -91,7 +91,7 @@ Pairs paired(const std::vector<ComparedCell>& before, const std::vector<Compared
 
 // Two equally bad values may still differ: this is a change without a verdict.
 int badness_of(Status status) {
-  if (status == Status::target || status == Status::converged) return 0;
+  if (status >= Status::converged && status <= Status::discrepancy) return 0;  // target, too
   if (status == Status::budget || status == Status::stalled) return 1;
   return status == Status::diverged ? 2 : 3;
 }

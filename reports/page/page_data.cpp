@@ -236,24 +236,37 @@ std::string script_words(std::string_view prefix) {
   return "{" + joined(all, ",") + "}";
 }
 
-// The advice for every choice of means: [which of them] by derivatives, inverse, size and budget,
-// and each once with its text, its settings and [optimizer, solved, settings, score, median work,
+// The advice for every choice of means by derivatives, inverse, size, budget and kind of data, each
+// with its text, its settings and [optimizer, solved, settings, score, median work,
 // whether in the group] of its methods, one after the other.
 constexpr std::array<std::array<Index, 2>, 4> kSizes = {
     {{0, Means{}.most_unknowns}, kSizeClasses[0], kSizeClasses[1], kSizeClasses[2]}};
 constexpr std::array<Real, 4> kBudgets = {kNever, 10'000, 1'000, 100};
 
+std::string kinds_json(const Comparison& c) {
+  return json_list(kinds_of_data(c), [](const Means& kind) {
+    return json_quoted(kind.has_bounds  ? words("data.bounds")
+                       : kind.noise > 0 ? words("data.noise", 100 * kind.noise)
+                                        : words("data.exact"));
+  });
+}
+
 std::string advice_json(const Comparison& c) {
   if (is_large(c)) return "[]";  // each is a decision of its own
-  constexpr std::size_t kMost = 10, kEach = kSizes.size() * kBudgets.size();
-  std::vector<std::string> all(2 * kDerivativeNames.size() * kEach);
+  const std::vector<Means> kinds = kinds_of_data(c);
+  constexpr std::size_t kMost = 10;
+  const std::size_t budgets = kBudgets.size() * kinds.size(), each = kSizes.size() * budgets;
+  std::vector<std::string> all(2 * kDerivativeNames.size() * each);
   share(all.size(), [&](std::size_t i) {
-    const auto& [least, most] = kSizes[i / kBudgets.size() % kSizes.size()];
-    const Means means{.derivatives = static_cast<Derivatives>(i / (2 * kEach)),
-                      .has_inverse = i / kEach % 2 == 1,
+    const auto& [least, most] = kSizes[i / budgets % kSizes.size()];
+    const Means& kind = kinds[i % kinds.size()];
+    const Means means{.derivatives = static_cast<Derivatives>(i / (2 * each)),
+                      .has_inverse = i / each % 2 == 1,
                       .least_unknowns = least,
                       .most_unknowns = most,
-                      .budget = kBudgets[i % kBudgets.size()]};
+                      .budget = kBudgets[i / kinds.size() % kBudgets.size()],
+                      .noise = kind.noise,
+                      .has_bounds = kind.has_bounds};
     const Advice advice = advise(c, means);
     const std::size_t shown = std::min(kMost, advice.ranked.size());
     all[i] = fmt::format(
@@ -297,15 +310,15 @@ std::string page_data(const Document& document, const AllFields& fields) {
   std::string text = fmt::format(
       "{{\"runs\":{},\"by\":\"{}\",\"allLearned\":{},\"shades\":{},\"measures\":{},\"isTimedTogether\":{},"
       "\"rungs\":{},\"targets\":{},{},\"given\":{},\"ranked\":{},\"common\":{},\"sanity\":{},\"claims\":{},"
-      "\"pinned\":{},\"group\":{},\"advice\":{},\"words\":{},\"terms\":{},\"standings\":{},\"problems\":[",
+      "\"pinned\":{},\"group\":{},\"kinds\":{},\"advice\":{},\"words\":{},\"terms\":{},\"standings\":{},\"problems\":[",
       json_quoted(runs_address(document)), name_of(c.yardstick.by), is_all_learned(c),
       json_list(kShades, exact_figure), measures_json(c), c.is_any_timed_together,
       json_list(c.yardstick.tolerances,
                 [](const Tolerance& tolerance) { return std::to_string(tolerance.rung); }),
       indices(targets_of(c)), axes_json(c), given_json(c), indices(c.order.methods),
       indices(c.order.settings), indices(c.sanity.settings), claims_about(document), pinned_json(c),
-      indices(c.decision ? c.decision->group() : std::vector<std::size_t>()), advice_json(c),
-      script_words("script."), script_words("glossary."), standings_json(c));
+      indices(c.decision ? c.decision->group() : std::vector<std::size_t>()), kinds_json(c),
+      advice_json(c), script_words("script."), script_words("glossary."), standings_json(c));
   for (std::size_t p = 0; p < c.problems.size(); ++p)
     text += (p > 0 ? "," : "") + problem_json(c, p, fields[p]);
   std::string safe;  // no </script and no <!-- can stand in it

@@ -18,6 +18,7 @@ std::string means_text(const Means& means) {
   else if (means.least_unknowns > 0)
     text += words("means.least", means.least_unknowns);
   if (means.noise > 0) text += words("means.noise", 100 * means.noise);
+  if (means.has_bounds) text += words("means.bounds");
   return means.budget < kNever ? text + words("means.budget", means.budget) : text;
 }
 

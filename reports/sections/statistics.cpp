@@ -20,10 +20,12 @@ namespace {
 
 // In the order of a report: what sections.h declares stands in it once it is named here.
 constexpr Table (*kTables[])(const Comparison&) = {
-    profile_table,        leader_table,       choices_table,         variation_table,
-    loss_without_x_table, data_profile_table, simplex_profile_table, restart_table,
-    calls_table,          prices_table,       certified_table};
-constexpr Plots (*kPlots[])(const Comparison&) = {profile_plot, data_profile_plot, runtime_plot};
+    profile_table,        leader_table,          choices_table,      variation_table,
+    loss_without_x_table, features_table,        fixed_budget_table, discrepancy_table,
+    data_profile_table,   simplex_profile_table, restart_table,      calls_table,
+    prices_table,         certified_table};
+constexpr Plots (*kPlots[])(const Comparison&) = {profile_plot, data_profile_plot, runtime_plot,
+                                                  noise_plot};
 
 }  // namespace
 

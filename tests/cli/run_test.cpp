@@ -251,6 +251,29 @@ TEST_F(Run, StallsAfterAsManyIterationsAsAskedAndUsualCellsKeepTheirNames) {
   shell.expect("./isoline validate out mine.json");
 }
 
+TEST_F(Run, StopsAtTheNoiseWhereAskedAndTheRecordSaysSo) {
+  const std::string noisy =
+      "./isoline run --problem 'burgers[N=16,noise=0.01]' --optimizer ceres-lm --out out "
+      "--no-report ";
+  shell.expect(noisy + "--stop 'discrepancy[tau=1.2]'", {.out = {"1 discrepancy"}});
+  ASSERT_EQ(records().size(), 1U);
+  const Json record = records()[0];
+  const Json& all = record.at("curve").at("discrepancy");
+  const double most = 1.2 * record.at("noise_level").get<double>();
+  EXPECT_LE(all.back().get<double>(), most);
+  EXPECT_GT(all.at(all.size() - 2).get<double>(), most);
+  shell.expect(noisy + "--stop none", {.out = {"1 run"}});
+  EXPECT_EQ(records().size(), 2U);
+  shell.expect(noisy + "--stop discrepency", {.exit_code = 1, .err = {"--stop"}});
+  shell.expect(noisy + "--stop 'discrepancy[tau=0.5]'", {.exit_code = 1, .err = {"tau"}});
+  write_text(shell.folder() / "mine.json",
+             R"({"schema": "isoline.suite/1", "name": "mine", "matrix": [
+                 {"problems": ["burgers[N=16]"], "features": ["noise=0.01"],
+                  "optimizers": ["ceres-lm"], "budget": {"stop": "discrepancy[tau=1.2]"}}]})");
+  shell.expect("./isoline run mine.json --out out --no-report", {.out = {"0 run, 1 reused"}});
+  shell.expect("./isoline validate out mine.json");
+}
+
 TEST_F(Run, MoreIterationsAreOtherCellsAndAFinishedCellKeepsNoCheckpoint) {
   shell.expect(kMatrix + "--no-report", {.out = {"3 cells: 3 run"}});
   shell.expect(kMatrix + "--no-report --seeds 2", {.out = {"6 cells: 3 run, 3 reused"}});

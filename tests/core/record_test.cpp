@@ -179,7 +179,7 @@ TEST(Cell, DependsOnAllThatIsAskedAndNothingElse) {
   for (const auto& change : std::vector<std::function<void(Request&)>>{
            [](Request& r) { r.seed = 8; }, [](Request& r) { r.threads = 2; },
            [](Request& r) { r.budget.work = 5; }, [](Request& r) { r.budget.target = 0; },
-           [](Request& r) { r.budget.stall = 0; },
+           [](Request& r) { r.budget.stall = 0; }, [](Request& r) { r.budget.discrepancy = 1.1; },
            [](Request& r) { r.problem.options.set("n", Index{1}); },
            [](Request& r) { r.problem.options.set("watch", std::string("noise")); },
            [](Request& r) { r.optimizer.options.set("rate", 0.2); }}) {

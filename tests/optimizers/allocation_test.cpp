@@ -27,7 +27,7 @@ namespace {
 
 // FFTW allocates inside of a transform what we cannot give it.
 bool transforms(const std::string& problem) {
-  return problem == "heat" || problem == "navier-stokes";
+  return problem == "heat" || problem == "heat-1d" || problem == "navier-stokes";
 }
 
 std::int64_t allocations_of_steps(const Problem& problem, const std::string& spec) {

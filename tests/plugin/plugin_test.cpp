@@ -183,6 +183,8 @@ const Law kLaws[] = {{"version", "version 1 of isoline.h, got 2"},
                      {"2^40 outputs", "outputs from 1 to 134217728, got 1099511627776"},
                      {"2^40 kept", "kept from 0 to 134217728, got 1099511627776"},
                      {"no dimension", "dimension() failed"},
+                     {"crossed bounds", "got 0.5 and 0 for unknown 0"},
+                     {"null bounds", "upper, got null"},
                      {"no instance", "instance() failed"},
                      {"null instance of it", "open() returned null"}};
 
@@ -216,6 +218,23 @@ TEST(PluginLaws, AMethodIsRefusedWhatItDidNotDeclareWhateverItMakesOfThat) {
   EXPECT_NE(message_of_overreach("unknown verdict").find("got 7"), std::string::npos);
   EXPECT_NE(message_of_overreach("failed step").find("trial-overreach: step() failed"),
             std::string::npos);
+}
+
+// The bounds keep x1 from 1, where the solution is.
+TEST(Plugin, AProblemWithBoundsIsSolvedWithinThemByMethodsThatRespectThem) {
+  const Defect here("bounds");
+  const Catalog catalog = catalog_with({"trials.so"});
+  const FinishedMatrix all =
+      run(catalog, {"trial-products"}, {"levenberg-marquardt", "nlopt-lbfgs", "ceres-lbfgs"});
+  ASSERT_EQ(all.records.size(), 3U);
+  for (const Record& record : all.records) {
+    const std::string& name = record.request.optimizer.name;
+    EXPECT_EQ(record.status == Status::inapplicable, name == "ceres-lbfgs") << name;
+    if (record.status == Status::inapplicable) continue;
+    EXPECT_EQ(record.trajectory->x.back()[0], 0.5) << name;
+    EXPECT_LT(record.curve.kkt_residual.back(), 1e-6) << name;
+    EXPECT_GT(record.curve.gradient_norm.back(), 0.1) << name;
+  }
 }
 
 TEST(PluginLaws, AForwardWithoutAnAnswerIsNotANumber) {

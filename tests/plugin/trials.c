@@ -20,6 +20,9 @@ static int dimension(void* self, isoline_sizes* sizes) {
   sizes->kept = is_wrong("2^40 kept") ? 1ULL << 40 : 2;
   sizes->inverse = is_wrong("inverse of unknown kind") ? 9 : ISOLINE_EXACT;
   sizes->minimum = 0;
+  static const double kLower[2] = {0, 0}, kUpper[2] = {0.5, 9};
+  if (is_wrong("bounds")) sizes->lower = kLower, sizes->upper = kUpper;  // as they should be
+  if (is_wrong("crossed bounds")) sizes->lower = kUpper, sizes->upper = kLower;
   return is_wrong("no dimension");
 }
 
@@ -136,6 +139,8 @@ static void spoil(isoline_component* c) {
   if (is_wrong("null inverse") || is_wrong("inverse of unknown kind"))
     c->capabilities |= ISOLINE_INVERSE;
   if (is_wrong("inverse of unknown kind")) c->inverse = no_inverse;
+  if (is_wrong("bounds") || is_wrong("crossed bounds") || is_wrong("null bounds"))
+    c->capabilities |= ISOLINE_BOUNDS;
   if (is_wrong("alien capability")) c->capabilities |= 1ULL << 40;
   if (is_wrong("no capability")) c->capabilities = 0;
   if (is_wrong("null step")) c->capabilities = ISOLINE_STEP;

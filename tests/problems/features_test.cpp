@@ -120,6 +120,32 @@ TEST(Features, APenaltyHasTheClosedFormOfALinearProblem) {
   }
 }
 
+// A problem that has noise of its own knows x*, though no label attains the least loss.
+TEST(Features, FurtherNoiseHasAFloorWhereTheProblemHasNoiseItself) {
+  const Problem plain = make("wave-packet"), noisy = featured("wave-packet", {{"noise", 0.2}});
+  EXPECT_FALSE(noisy.truth());
+  ASSERT_TRUE(noisy.minimum());
+  EXPECT_GT(*noisy.minimum(), *plain.minimum());
+  EXPECT_GT(noisy.x_floor(noisy.batch()), 0);
+  EXPECT_LT(noisy.x_floor(noisy.batch()), 0.2 * noisy.x_scale(noisy.batch()));
+}
+
+// At the least loss within the bounds no step inside them descends.
+TEST(Features, ActiveBoundsHaveTheLeastLossWithinThem) {
+  const Problem plain = make("burgers[N=16]");
+  const Problem bounded = featured("burgers[N=16]", {{"bounds", std::string("active")}});
+  const Bounds& box = *bounded.bounds();
+  EXPECT_TRUE(box.hold(bounded.start()));
+  EXPECT_FALSE(box.hold(plain.truth()->reshaped()));
+  ASSERT_TRUE(bounded.minimum());
+  EXPECT_GT(*bounded.minimum(), 1e-6 * loss_at_start(plain));
+  EXPECT_LT(*bounded.minimum(), loss_at(plain, box.nearest(plain.truth()->reshaped())));
+  EXPECT_GT(bounded.x_floor(bounded.batch()), 0);
+  const Problem wide = featured("burgers[N=16]", {{"bounds", std::string("wide")}});
+  EXPECT_EQ(*wide.minimum(), 0);
+  EXPECT_FALSE(wide.bounds()->are_needed);
+}
+
 TEST(Features, AreForDirectProblemsOfLeastSquares) {
   EXPECT_THROW(featured("sine[mode=learn]", {{"noise", 0.1}}), UsageError);
   EXPECT_THROW(featured("poisson[N=4]", {{"order", Index{1}}}), UsageError);

@@ -261,6 +261,8 @@ TEST(Rerun, TheCommandAsksForTheCell) {
   EXPECT_TRUE(has(rerun_command(request), " --work 500"));
   request.budget.stall = 0;
   EXPECT_TRUE(has(rerun_command(request), " --stall never"));
+  request.budget.discrepancy = 1.5;
+  EXPECT_TRUE(has(rerun_command(request), " --stop 'discrepancy[tau=1.5]'"));
   request.problem.foreign = Foreign{.door = "plugin", .command = "my lib.so"};
   EXPECT_TRUE(has(rerun_command(request), " --plugin 'my lib.so'"));
 }
