@@ -118,7 +118,7 @@ def picture(results):
 def sine_at_equal_work(report):
     """The error in x of adam divided by that of sip, as the tab Overview states it."""
     for sentence in report["verdict"]:
-        match = re.match(r"sine\[.*\bsip\b.*smallest error in x.*; next (?:is )?adam, ([\d.]+)× as large", sentence)
+        match = re.match(r"sine\[.*\bsip\b.*smallest error in x.*; adam is next, with an error ([\d.]+)× as large", sentence)
         if match:
             return float(match[1])
     sys.exit("report.json: no sentence on the error in x of sip and adam on the learned sine; "
@@ -143,25 +143,26 @@ def findings(report):
     starts = max(cell["runs"] for cell in report["cells"] if cell["problem"] in report["ranked"])
     band = sum(place["in_group"] for place in leader["places"])
     methods = len(leader["places"])
-    lead = (f"**Findings** from {report['answered'] - inapplicable:,} runs of `quick`; in {inapplicable} further cases, the method does "
-            f"not apply. {methods} methods are ranked on {leader['settings']} settings of {leader['families']} physics problems "
-            f"({starts} instances each): the more settings solved and the less work, the higher the score.")
+    lead = (f"**Findings** from the suite `quick` ({report['answered'] - inapplicable:,} runs; {inapplicable} more were skipped, because "
+            f"the method does not apply to the problem). {methods} methods are ranked on {leader['settings']} settings of "
+            f"{leader['families']} physics problems ({starts} instances per setting).")
     decision = (f"By work, {first['optimizer']} is significantly ahead of every other method: it"
                 if leader["significant"] else
                 f"By work, no method is significantly ahead. {first['optimizer']}")
     return lead, [
         f"{decision} ranks first (solves {first['solved']} of {leader['settings']} settings), {second['optimizer']} "
-        f"second (solves {second['solved']}; sign-flip test, p = {second['p']:.2f}). {band - 1 or 'None'} of the "
-        f"{methods - 1} others {'is' if band < 3 else 'are'} not significantly worse.",
+        f"second (solves {second['solved']}; sign-flip test, p = {second['p']:.2f}). Of the other {methods - 1} "
+        f"methods, {band - 1 or 'none'} {'is' if band < 3 else 'are'} not significantly worse than the first.",
         f"By wall time, {' and '.join(by_time)} {'ranks' if len(by_time) == 1 else 'rank'} first.",
         f"levenberg-marquardt solves {lm['solved']} settings (median slowdown: {float(lm['typical']):.1f} times the least "
         f"work), gauss-newton {by_name['gauss-newton']['solved']}.",
-        f"With rates tuned on the other problem families (leave-one-family-out), adam solves {by_name['adam']['solved']} "
+        f"With learning rates that are tuned for each problem on all other problems, adam solves {by_name['adam']['solved']} "
         f"settings, hig {by_name['hig']['solved']} and gd {by_name['gd']['solved']}.",
         f"{len(inverse)} of the {leader['settings']} settings provide an inverse P⁻¹. Given P⁻¹ (†), sip solves {len(solved)} "
-        f"of these, each with {works} forward solves. This work includes the calls of P⁻¹, at a cost that each problem states.",
+        f"of these, each with {works} forward solves. This includes calls to P⁻¹, charged at the cost that each problem declares.",
         "Networks were also trained to invert a sine map. At equal work, the median error in x is "
-        f"{sine_at_equal_work(report):.0f} times as large after training with adam as with sip, given {given} (†; {seeds} seeds).",
+        f"{sine_at_equal_work(report):.0f} times as large after training with adam as after training with sip, which is given "
+        f"{given} (†; {seeds} seeds).",
     ]
 
 

@@ -242,7 +242,7 @@ Field field_of(const BurgersFlow& flow, Real time) {
   return {.rows = std::min({flow.steps() + 1, kMostTimes, room}),
           .columns = flow.inputs(),
           .x = {"initial speed"},
-          .y = {"final speed"},
+          .y = {"final velocity"},
           .time = time};
 }
 

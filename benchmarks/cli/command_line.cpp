@@ -109,7 +109,7 @@ std::int64_t read_bytes(const std::string& option, const std::string& text, int 
   const auto value = number_in<double>(amount);
   const double bytes = value ? *value * unit : -1;
   require(bytes >= least && bytes <= most, [&] {
-    return fmt::format("{} must be from {}MB to 1024TB, such as 2GB, got '{}'", option,
+    return fmt::format("{} must be between {}MB and 1024TB, for example 2GB, got '{}'", option,
                        least_megabytes, text);
   });
   return static_cast<std::int64_t>(bytes);

@@ -254,7 +254,7 @@ void require_learnable(const Catalog& catalog, const ProblemEntry& entry) {
   std::string learnable;
   for (const auto& [name, other] : catalog.problems)
     if (can_learn(other)) learnable += (learnable.empty() ? "" : ", ") + name;
-  throw UsageError(fmt::format("{} does not have mode=learn; these problems have it: {}",
+  throw UsageError(fmt::format("{} does not support mode=learn; these problems do: {}",
                                entry.name, learnable));
 }
 

@@ -208,6 +208,14 @@ Suite read_suite(const std::string& name_or_path) {
   return builtin_suite(name_or_path);
 }
 
+// Whether a row of rates sets an option that the text of the optimizer leaves open.
+static bool sets_an_option(const Rates::Row& row, const Spec& spec) {
+  const OptionValues given = options_of(spec);
+  return row.options.empty() || std::ranges::any_of(row.options, [&](const NamedOption& option) {
+           return !given.contains(option.name);
+         });
+}
+
 std::vector<Request> expand(const Catalog& catalog, const Suite& suite, const Rates& rates,
                             std::uint64_t most) {
   const PlanSize size = size_of(catalog, suite);
@@ -230,12 +238,13 @@ std::vector<Request> expand(const Catalog& catalog, const Suite& suite, const Ra
           row->second = rates.find(problem, spec.name, block.rates);
         const auto [optimizer, is_new] = optimizers.try_emplace({&spec, row->second});
         if (is_new) optimizer->second = with_rates(catalog, spec, row->second);
-        Request request{.problem = problem,
-                        .optimizer = optimizer->second,
-                        .budget = block.budget,
-                        .threads = block.threads,
-                        .rates = row->second ? row->second->origin : "",
-                        .hard_seconds = block.hard_seconds};
+        Request request{
+            .problem = problem,
+            .optimizer = optimizer->second,
+            .budget = block.budget,
+            .threads = block.threads,
+            .rates = row->second && sets_an_option(*row->second, spec) ? row->second->origin : "",
+            .hard_seconds = block.hard_seconds};
         const CellNames names(request);
         for (const std::uint64_t seed : block.seeds) {
           request.seed = seed;

@@ -31,8 +31,10 @@ std::string broken_property_of(const Catalog& catalog, const Request& request, T
   };
   for (const problems::Finding& finding : problems::examine(problem, stream, show))
     if (!finding.holds())
-      return fmt::format("'{}' is violated: {:.2e}, at most {:.1e} is allowed ({})",
-                         finding.property, finding.figure, finding.limit, finding.reason);
+      return finding.limit == 0
+                 ? fmt::format("check '{}' failed: {}", finding.property, finding.reason)
+                 : fmt::format("check '{}' failed: {:.2e}, at most {:.1e} is allowed ({})",
+                               finding.property, finding.figure, finding.limit, finding.reason);
   return "";
 }
 
@@ -89,7 +91,7 @@ Certificates require_certified(const Catalog& catalog, std::vector<Request>& req
     require(reason.empty() || options.uncertified, [&] {
       return fmt::format(
           "{} fails its checks and does not run: {}; `isoline check` lists its checks, and "
-          "--uncertified runs it nevertheless",
+          "--uncertified runs it anyway",
           request->problem.spec, reason);
     });
     if (!reason.empty()) uncertified.insert(request->problem.spec);

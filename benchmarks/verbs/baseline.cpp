@@ -54,7 +54,7 @@ int run(const BaselineArguments& given, Session& session) {
   reports::Study study = reports::read_study({given.folders.begin(), given.folders.end()});
   std::erase_if(study.runs, [](const Record& run) { return run.imported.has_value(); });
   require(!study.runs.empty(),
-          "no records in these folders: `isoline run --out FOLDER` writes records");
+          "no records in these folders; `isoline run --out FOLDER` creates some");
   if (!given.out.empty()) require_ours(given.out, reports::kBaselineSchema);
   if (given.perturbations > 0)
     for (const Record& run : study.runs) require_trust(given.trust, run);

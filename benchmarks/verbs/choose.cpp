@@ -74,7 +74,7 @@ Means means_of(const ChooseArguments& given) {
 int run(const ChooseArguments& given, Session&) {
   const results::Study study =
       reports::read_study(given.folders, progress_on_terminal("reading records"));
-  require(!study.runs.empty(), "no records: `isoline run --out FOLDER` writes records");
+  require(!study.runs.empty(), "no records; `isoline run --out FOLDER` creates some");
   const results::Comparison comparison = results::compare_optimizers(
       study, reports::yardstick_at(reports::Measure::work, given.tolerance));
   const Means means = means_of(given);

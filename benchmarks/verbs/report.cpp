@@ -107,7 +107,7 @@ int run(const ReportArguments& given, Session& session) {
         study.unreadable.empty() ? ""
                                  : fmt::format(", and {} that cannot be read",
                                                reports::counted(study.unreadable.size(), "file"));
-    return fmt::format("no records in {}{}: `isoline run --out FOLDER` writes records",
+    return fmt::format("no records in {}{}; `isoline run --out FOLDER` creates some",
                        fmt::join(given.folders, ", "), damaged);
   });
   const reports::Yardstick yardstick = yardstick_of(given);

@@ -102,7 +102,7 @@ void Line::fail(const std::string& what) {
   if (child_) {
     text += fmt::format("; {}", child_->end_in_words());
     const std::string words = child_->last_words();
-    text += words.empty() ? ", and printed nothing" : ", and last printed: " + words;
+    text += words.empty() ? ", and printed nothing" : "; its last output was: " + words;
     if (child_->was_killed()) throw KilledProgram(text);
   }
   throw LineError(text);

@@ -122,6 +122,14 @@ bool holds_beyond(const Json& value) {
   return is_beyond(value);
 }
 
+// valijson's description of an unknown member, in shorter words.
+std::string in_words(const std::string& description) {
+  const std::size_t colon = description.rfind(": '");
+  if (colon == std::string::npos || !description.starts_with("Object contains a property that"))
+    return description;
+  return "unknown member" + description.substr(colon + 1);
+}
+
 // Larger numbers are replaced by the largest that it reads.
 void bring_within(Json& value) {
   if (value.is_structured())
@@ -242,7 +250,8 @@ std::vector<std::string> Schema::violations(const Json& document) const {
   valijson::Validator().validate(parsed_->schema, Adapter(document), &results);
   std::vector<std::string> violations;
   for (valijson::ValidationResults::Error error; results.popError(error);)
-    violations.push_back(fmt::format("{}: {}", fmt::join(error.context, ""), error.description));
+    violations.push_back(
+        fmt::format("{}: {}", fmt::join(error.context, ""), in_words(error.description)));
   return violations;
 }
 

@@ -105,11 +105,12 @@ std::string given_html(const FoundFields& all) {
   if (frames.has_truth())
     pictures += picture(all, frames.truth(), all.x_scale, truth, truth + ": " + quantity_name(all));
   return fmt::format(
-      "<figure class=given><div class=two>{}</div><figcaption><b>The data{}.</b> {}{}; its colour "
-      "scale ends at ±{}.</figcaption></figure>",
+      "<figure class=given><div class=two>{}</div><figcaption><b>The data{}.</b> {}{}; the colour "
+      "scale runs from −{} to {}.</figcaption></figure>",
       pictures, frames.has_truth() ? ", and the true x" : "",
       html_text("y* is the " + quantity_name(all.y)),
-      all.is_history() ? " (top row of its image)" : "", short_figure(all.y_scale));
+      all.is_history() ? " (top row of the image)" : "", short_figure(all.y_scale),
+      short_figure(all.y_scale));
 }
 
 std::string found_html(const Comparison& c, const FoundFields& all, const FoundField& found) {

@@ -492,6 +492,16 @@ TEST(UsedRates, StandBesideThePlanWithTheTableTheyAreFrom) {
   for (const Json& row : table["rows"]) EXPECT_FALSE(row.contains("setting")) << row;
 }
 
+TEST(UsedRates, AreThoseOfNoTableWhereTheTextOfTheOptimizerSetsThem) {
+  const Suite suite{.name = "mine",
+                    .title = "",
+                    .blocks = {{.problems = {"sine"}, .optimizers = {"adam", "adam[rate=0.25]"}}}};
+  const std::vector<Request> cells = expand(catalog(), suite, Rates::builtin());
+  ASSERT_EQ(cells.size(), 2U);
+  EXPECT_NE(cells[0].rates, "");
+  EXPECT_EQ(cells[1].rates, "");
+}
+
 // The rates of the sine are tuned at its defaults.
 TEST(UsedRates, OfAnotherSettingNameTheSettingThatTheyWereTunedOn) {
   const TemporaryFolder folder;
