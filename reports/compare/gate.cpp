@@ -491,7 +491,7 @@ GateResult compare_results(const std::filesystem::path& before, const std::files
   const FolderCells now = read_cells(after, options.listener);
   GateResult result = Gate(options).run(old.cells, now.cells);
   conclude(result, options);
-  if (baseline) result.remarks.push_back("a baseline has no times, so times are not compared");
+  if (baseline) result.remarks.push_back("Baselines do not store times, so times are not compared");
   for (const auto& [found, path] : {std::pair(&std::as_const(old), before), {&now, after}}) {
     if (found->unreadable > 0)
       result.remarks.push_back(fmt::format("{} of {} could not be read",
