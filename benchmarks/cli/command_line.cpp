@@ -35,7 +35,7 @@ constexpr const char* kExamples =
     "  isoline compare results/old results/new    what is worse than before?\n"
     "  isoline claims notebook                do the claims of the notebook hold?\n"
     "  isoline help run                       the options of a command, with examples\n\n"
-    "Exit codes: 0 success, 1 wrong usage, 2 failed cells or a regression, 3 improvements only, "
+    "Exit codes: 0 success, 1 usage error, 2 failed cells or a regression, 3 improvements only, "
     "4 not comparable, 130 interrupted.";
 
 template <class Number>

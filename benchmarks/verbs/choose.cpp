@@ -102,7 +102,7 @@ void register_choose(VerbRegistry& registry) {
        .examples = "  isoline choose results/quick --have forward,gradient --unknowns 50\n"
                    "  isoline choose results/quick --have forward --budget 1000",
        .notes =
-           "The first sentence is also in the report, in the tab 'What do you have?'. Methods marked * are not significantly worse than the first one."},
+           "The first sentence is also in the report, in the tab 'Choose a method'. Methods marked * are not significantly worse than the first one."},
       declare, run));
 }
 
