@@ -120,7 +120,7 @@ std::optional<LimitWatch::Breach> LimitWatch::check(const ProcessGroup::Usage& u
   constexpr double kIdleShare = 0.01;  // of a core
   awake_ += std::min(kLongestLook, seconds_between(last_nanoseconds_, now_nanoseconds));
   last_nanoseconds_ = now_nanoseconds;
-  const Mark now{awake_, usage.processor_seconds / threads_};
+  const Mark now{awake_, usage.processor_seconds / threads_, usage.waiting_seconds};
   if (usage.resident_bytes > limits_.memory_bytes)
     return Breach{Status::memory,
                   fmt::format("killed: it used more than {} MiB; --memory sets another limit",
@@ -138,9 +138,11 @@ std::optional<LimitWatch::Breach> LimitWatch::check(const ProcessGroup::Usage& u
         fmt::format("killed after {} s of wall time, {} times its limit of {} s of processor "
                     "time{}; --time sets another limit",
                     Limits::kWallFactor * most, Limits::kWallFactor, most, until)};
+  active_.waiting = std::min(active_.waiting, now.waiting);  // without those that have ended
   const bool is_active =
       (limits_.waits_for_others && usage.processes > 1) ||
-      (now.processor - active_.processor) * threads_ >= kIdleShare * limits_.idle_seconds;
+      (now.processor - active_.processor) * threads_ + now.waiting - active_.waiting >=
+          kIdleShare * limits_.idle_seconds;
   if (is_active) active_ = now;
   if (now.awake - active_.awake <= limits_.idle_seconds) return std::nullopt;
   return Breach{

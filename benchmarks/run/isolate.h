@@ -79,7 +79,7 @@ class LimitWatch {
 
  private:
   struct Mark {
-    double awake = 0, processor = 0;  // seconds
+    double awake = 0, processor = 0, waiting = 0;  // seconds
   };
 
   Limits limits_;

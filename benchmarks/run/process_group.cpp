@@ -163,8 +163,13 @@ std::optional<ProcessFigures> figures_of(pid_t process) {
   static const std::int64_t page = sysconf(_SC_PAGESIZE);
   const double ticks = static_cast<double>(user) + static_cast<double>(system) +
                        static_cast<double>(children_user) + static_cast<double>(children_system);
+  const std::string schedule = process_text(fmt::format("/proc/{}/schedstat", process));
+  const std::size_t space = schedule.find(' ');  // a kernel may lack these statistics
+  const double waiting =
+      space == std::string::npos ? 0 : 1e-9 * std::strtod(schedule.c_str() + space, nullptr);
   return ProcessFigures{.parent = parent,
                         .processor_seconds = ticks / ticks_a_second,
+                        .waiting_seconds = waiting,
                         .resident_bytes = resident_pages * page,
                         .address_space_bytes = static_cast<std::int64_t>(address_space)};
 }
@@ -282,6 +287,7 @@ ProcessGroup::Usage ProcessGroup::usage(std::int64_t exact_above_bytes) {
     if (!figures) continue;
     usage.processor_seconds += figures->processor_seconds;
     usage.resident_bytes += figures->resident_bytes;
+    usage.waiting_seconds += figures->waiting_seconds;
   }
   if (all.size() > 1 && usage.resident_bytes > exact_above_bytes) {  // what they share counts once
     std::int64_t exact = 0;

@@ -21,6 +21,7 @@ namespace isoline::benchmarks {
 struct ProcessFigures {
   pid_t parent = 0;
   double processor_seconds = 0;  // its own and that of children that it has waited for
+  double waiting_seconds = 0;    // of its first thread, runnable without a processor
   std::int64_t resident_bytes = 0, address_space_bytes = 0;
 };
 std::optional<ProcessFigures> figures_of(pid_t process);  // nothing where it is gone
@@ -43,6 +44,7 @@ class ProcessGroup {
     std::size_t processes = 0;
     double processor_seconds = 0;  // of those that have ended too, once their parent has waited
     std::int64_t resident_bytes = 0;
+    double waiting_seconds = 0;  // for a processor, of the first threads of those that run
   };
 
   ProcessGroup() = default;

@@ -53,7 +53,7 @@ class ForeignCells : public testing::Test {
 
 TEST_F(ForeignCells, FailWithWhatTheOtherDid) {
   expect_failed("closes", "; it is still running");
-  expect_failed("leaves", "code 3, and last printed");
+  expect_failed("leaves", "code 3; its last output");
   expect_failed("half-a-frame", "it exited with code 0");
   expect_failed("a-huge-frame", "9223372036854775808 bytes instead of 16");
   expect_failed("a-huge-complaint", "9223372036854775808 bytes; at most 65536");

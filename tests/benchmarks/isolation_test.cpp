@@ -343,6 +343,9 @@ TEST(Limits, EndWhoIsIdleButNotWhoWaitsForAnotherProcess) {
                     "less than 1 %"))
       << "an examined component waits for no other process";
   EXPECT_EQ(watched(watch, 0.02, 100), "");
+  LimitWatch starved({}, 1, 0);
+  for (int i = 1; i < 100; ++i)  // other programs have the processor
+    EXPECT_FALSE(starved.check({.processes = 1, .waiting_seconds = 0.9 * i}, true, i * kSecond));
   LimitWatch seldom({.idle_seconds = 1000}, 1, 0);
   for (int i = 1; i < 100; ++i)  // stopped for an hour between any two looks
     EXPECT_FALSE(

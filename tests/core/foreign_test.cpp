@@ -148,13 +148,13 @@ std::string failure_of(const std::string& script, double seconds = 20) {
 
 TEST(Programs, HowTheyEndAndWhatTheyPrintedLastIsSaid) {
   const std::string said = failure_of("echo one; echo two >&2; exit 3");
-  EXPECT_NE(said.find("code 3, and last printed: one\ntwo"), std::string::npos) << said;
+  EXPECT_NE(said.find("code 3; its last output was: one\ntwo"), std::string::npos) << said;
   EXPECT_NE(failure_of("kill -9 $$").find("signal 9 (Killed) ended it"), std::string::npos);
 }
 
 TEST(Programs, ThatPrintAGigabyteAreReadToTheEndInLittleMemory) {
   const std::string said = failure_of("head -c 1000000000 /dev/zero; echo; echo the end; exit 5");
-  EXPECT_NE(said.find("code 5, and last printed: "), std::string::npos) << said.substr(0, 200);
+  EXPECT_NE(said.find("code 5; its last output was: "), std::string::npos) << said.substr(0, 200);
   EXPECT_TRUE(said.ends_with("the end")) << said.substr(0, 200);
   EXPECT_LT(said.size(), 4000U);
 }

@@ -187,7 +187,7 @@ TEST(NavierStokes, RefusesBadInputInOneSentence) {
   EXPECT_NE(refusal_of("navier-stokes[viscosity=-1]").find("viscosity must be in"),
             std::string::npos);
   EXPECT_NE(refusal_of("navier-stokes[viscosity=5]").find("explicit step"), std::string::npos);
-  EXPECT_NE(refusal_of("navier-stokes[dt=3]").find("half the domain"), std::string::npos);
+  EXPECT_NE(refusal_of("navier-stokes[dt=3]").find("half of the domain"), std::string::npos);
   EXPECT_NE(refusal_of("navier-stokes[mode=learn,watch=spectrum]").find("a velocity has two"),
             std::string::npos);
 }

@@ -190,7 +190,7 @@ TEST(Comparison, TwoGridsOfOneEquationAreOneProblem) {
                   "1 problem (2 settings), 1 seed"));
   EXPECT_TRUE(has(headline(Compared({record_of({}), record_of({.problem = "heat"}),
                                      record_of({.problem = "heat", .seed = 1})})),
-                  "at most 2 seeds"));
+                  "up to 2 seeds"));
 }
 
 // "sine-x" sorts between "sine" and "sine[xi=32]", which are of one name all the same. On sine the

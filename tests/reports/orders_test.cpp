@@ -192,7 +192,7 @@ TEST(Orders, TheFirstSentenceSaysHowItsRunsDiffer) {
   const Compared c(study);
   ASSERT_TRUE(c.is_any_timed_together);
   const std::string first = verdict(c).at(0);
-  EXPECT_TRUE(has(first, "machine), kin")) << first;
+  EXPECT_TRUE(has(first, "shared), kin")) << first;
   EXPECT_LE(std::ranges::count(first, ' '), 59) << first;
   for (const Record& record : std::vector(study.runs)) {
     study.runs.push_back(record);
@@ -264,7 +264,7 @@ TEST(Labels, WhereTheTunedRateIsTheDefaultTheRunStandsInBothRows) {
   for (std::size_t s = 0; s < 2; ++s)
     for (std::size_t p = 0; p < 2; ++p) EXPECT_EQ(c.cell(p, s).runs.size(), 1U) << p << s;
   EXPECT_EQ(c.statuses.at(Status::target), 3U);
-  EXPECT_TRUE(has(document_of(c).headline, "3 cells")) << document_of(c).headline;
+  EXPECT_TRUE(has(document_of(c).headline, "3 combinations")) << document_of(c).headline;
   const std::string csv = csv_report(document_of(c));
   EXPECT_EQ(std::ranges::count(csv, '\n'), 4) << "the header and a line a run";
 }

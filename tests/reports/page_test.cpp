@@ -529,7 +529,7 @@ TEST_F(ShownFields, StandInTheArticleWithTheirUnitsScaleAndWhatIsMissing) {
   const auto all = found();
   ASSERT_TRUE(all);
   const std::string html = fields_html(c, *all);
-  for (const char* words : {"<h4>Fields</h4>", "source, 1/m²", "±4", "potential", "x − x*",
+  for (const char* words : {"<h4>Fields</h4>", "source, 1/m²", "−4 to 4", "potential", "x − x*",
                             "<output class=at>50</output>", "<output class=apart>= 0.1</output>",
                             "source, 1/m², from 0.9 to 1.8\""})
     EXPECT_NE(html.find(words), std::string::npos) << words << " in " << html;
