@@ -193,7 +193,7 @@ std::string linear_solver_of(const std::string& option, const SparsePattern* pat
   return kept <= kMostDense ? "dense-schur" : "sparse-schur";
 }
 
-// Of `count` unknowns from `first` on, which Ceres has at `place`.
+// The bounds of `count` unknowns from `first` on, which Ceres has at `place`.
 void set_bounds(const Bounds& bounds, Index first, int count, double* place,
                 ceres::Problem& problem) {
   for (int i = 0; i < count; ++i) {

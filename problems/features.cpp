@@ -246,7 +246,8 @@ Bounds box_around(const Vector& truth, const Problem& plain, bool is_active) {
 
 constexpr Index kMostFitted = 512;  // unknowns, and of J the smaller of its sizes
 
-// Of a least-squares fit from x, by Levenberg and Marquardt's method, projected onto the bounds.
+// The result of a least-squares fit from x, by Levenberg and Marquardt's method, projected onto the
+// bounds.
 struct Fit {
   Real loss;
   Matrix x;  // (k, 1)

@@ -321,7 +321,12 @@ fs::path Store::end_path(const fs::path& stem, const Budget& needed) {
 fs::path Store::end_within_budget(const Request& request) const {
   const fs::path stem = end_stem(request);
   Budget latest{.iterations = 0};
-  for (const std::string& name : names_in(folder_ / "checkpoints")) {
+  std::vector<std::string> names;
+  try {
+    names = names_in(folder_ / "checkpoints");
+  } catch (const UsageError&) {  // the cell starts at its beginning
+  }
+  for (const std::string& name : names) {
     Budget needed;
     const std::string pattern = stem.filename().string() + "-%" SCNd64 "-%" SCNd64;
     if (std::sscanf(name.c_str(), pattern.c_str(), &needed.iterations, &needed.work) == 2 &&

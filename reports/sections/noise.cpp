@@ -30,7 +30,7 @@ const OptionValues* options_of(const Comparison& c, std::size_t p) {
   return nullptr;
 }
 
-// What `whole` has beyond `part`, if it has all of that.
+// The part of `whole` beyond `part`, if it has all of that.
 std::optional<OptionValues> rest_of(const OptionValues& whole, const OptionValues& part) {
   OptionValues rest = whole;
   for (const auto& [name, value] : part) {
@@ -137,7 +137,7 @@ std::optional<Stop> stop_of(const Run& run) {
   return stop;
 }
 
-// Of all runs of a method on noisy data that come within the noise.
+// Figures of all runs of a method on noisy data that come within the noise.
 struct Stops {
   std::size_t runs = 0;
   std::vector<Real> work, excess, end;  // the errors over the best of the run

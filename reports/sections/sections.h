@@ -82,7 +82,7 @@ Table leader_table(const Comparison& comparison);
 Table choices_table(const Comparison& comparison);
 Table variation_table(const Comparison& comparison);  // empty where no instances and starts cross
 Table loss_without_x_table(const Comparison& comparison);
-// Of settings with noise, bounds or other features; empty where there are none.
+// Sections on settings with noise, bounds or other features; empty where there are none.
 Table features_table(const Comparison& comparison);
 Table discrepancy_table(const Comparison& comparison);
 Plots noise_plot(const Comparison& comparison);
