@@ -4,19 +4,19 @@ const SIZES = ['any', 'up to 10', '11 to 100', 'more than 100'], BUDGETS = ['any
 const LEVELS = ['forward', 'gradient', 'jacobian', 'hessian'];  // in the order of DATA.advice
 const means = {level: 0, inverse: 0, size: 0, budget: 0, kind: 0};  // kind: of data
 
-const adviceNow = () => DATA.advice[(((2 * means.level + means.inverse) * SIZES.length + means.size) * BUDGETS.length + means.budget) * DATA.kinds.length + means.kind];
+const adviceNow = () => DATA.advice[(((2 * means.level + means.inverse) * SIZES.length + means.size) * BUDGETS.length + means.budget) * DATA.dataKinds.length + means.kind];
 
 function readMeans(asked) {
   const place = (all, key) => Math.max(0, all.indexOf(asked.get(key)));
   const [level, inverse] = (asked.get('have') ?? '').split(' ');
-  Object.assign(means, {level: Math.max(0, LEVELS.indexOf(level)), inverse: inverse === 'inverse' ? 1 : 0, size: place(SIZES, 'unknowns'), budget: place(BUDGETS, 'budget'), kind: place(DATA.kinds, 'data')});
+  Object.assign(means, {level: Math.max(0, LEVELS.indexOf(level)), inverse: inverse === 'inverse' ? 1 : 0, size: place(SIZES, 'unknowns'), budget: place(BUDGETS, 'budget'), kind: place(DATA.dataKinds, 'data')});
 }
 
 function writeMeans(asked) {
   if (means.level + means.inverse > 0) asked.set('have', LEVELS[means.level] + (means.inverse ? ' inverse' : ''));
   if (means.size > 0) asked.set('unknowns', SIZES[means.size]);
   if (means.budget > 0) asked.set('budget', BUDGETS[means.budget]);
-  if (means.kind > 0) asked.set('data', DATA.kinds[means.kind]);
+  if (means.kind > 0) asked.set('data', DATA.dataKinds[means.kind]);
 }
 
 function drawAdvice(place) {
@@ -43,6 +43,6 @@ function liveChoose(place) {
   const choices = (key, caption, names) => newSwitch(caption, Object.fromEntries(names.map((name, i) => [i, name])), String(means[key]), choose(key));
   place.replaceChildren(choices('level', 'Simulator', ['forward only', '+ gradient', '+ Jacobian', '+ Hessian']), choices('inverse', 'Local inverse', ['no', 'yes']),
       choices('size', 'Unknowns', SIZES), choices('budget', 'Forward solves', BUDGETS),
-      ...DATA.kinds.length > 1 ? [choices('kind', 'Data', DATA.kinds)] : [], answer);
+      ...DATA.dataKinds.length > 1 ? [choices('kind', 'Data', DATA.dataKinds)] : [], answer);
   live(answer, draw);
 }

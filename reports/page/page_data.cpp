@@ -310,7 +310,7 @@ std::string page_data(const Document& document, const AllFields& fields) {
   std::string text = fmt::format(
       "{{\"runs\":{},\"by\":\"{}\",\"allLearned\":{},\"shades\":{},\"measures\":{},\"isTimedTogether\":{},"
       "\"rungs\":{},\"targets\":{},{},\"given\":{},\"ranked\":{},\"common\":{},\"sanity\":{},\"claims\":{},"
-      "\"pinned\":{},\"group\":{},\"kinds\":{},\"advice\":{},\"words\":{},\"terms\":{},\"standings\":{},\"problems\":[",
+      "\"pinned\":{},\"group\":{},\"dataKinds\":{},\"advice\":{},\"words\":{},\"terms\":{},\"standings\":{},\"problems\":[",
       json_quoted(runs_address(document)), name_of(c.yardstick.by), is_all_learned(c),
       json_list(kShades, exact_figure), measures_json(c), c.is_any_timed_together,
       json_list(c.yardstick.tolerances,

@@ -236,7 +236,7 @@ class Page(InBrowser):
                          ".find((button) => button.textContent === 'time').click()")
         self.browser.wait("return location.search === '?tau=6.3e-7&by=time'")
         self.browser.wait("return document.querySelector('.reached caption').textContent"
-                          ".includes('wall time to τ = 6.3e-7')")
+                          ".includes('to reach τ = 6.3e-7')")
         self.browser.wait("return document.querySelector('.problem.chosen "
                           ".chart:not([hidden])').dataset.by === 'time'")
 
