@@ -40,7 +40,7 @@ std::vector<Record> records_under(const std::vector<std::string>& folders) {
       if (entry.path().extension() == ".json") records.push_back(read_record(entry.path()));
   }
   require(!records.empty(),
-          "no records in these folders: `isoline run --out FOLDER` writes records");
+          "no records in these folders; `isoline run --out FOLDER` creates some");
   return records;
 }
 

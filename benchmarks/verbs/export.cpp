@@ -45,7 +45,7 @@ int run(const ExportArguments& given, Session&) {
   const reports::Study study =
       reports::read_study(given.folders, progress_on_terminal("reading records"));
   require(!study.runs.empty(), [&] {
-    return fmt::format("no records in {}: `isoline run --out FOLDER` writes records",
+    return fmt::format("no records in {}; `isoline run --out FOLDER` creates some",
                        reports::joined(given.folders));
   });
   const fs::path out = given.out;
