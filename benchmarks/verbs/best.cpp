@@ -39,8 +39,7 @@ std::vector<Record> records_under(const std::vector<std::string>& folders) {
     for (const auto& entry : fs::directory_iterator(folder / "runs"))
       if (entry.path().extension() == ".json") records.push_back(read_record(entry.path()));
   }
-  require(!records.empty(),
-          "no records in these folders; `isoline run --out FOLDER` creates some");
+  require(!records.empty(), "no records in these folders; `isoline run --out FOLDER` creates some");
   return records;
 }
 
