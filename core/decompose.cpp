@@ -128,6 +128,17 @@ bool solve_by_cholesky(const Matrix& L, Matrix& B) {
                                         B.data(), as_int(B.rows())) == 0;
 }
 
+bool cholesky_of_band(Matrix& band) {
+  const lapack_int bands = as_int(band.rows()), n = as_int(band.cols());
+  return is_finite(band) &&
+         LAPACKE_dpbtrf(LAPACK_COL_MAJOR, 'L', n, bands - 1, band.data(), bands) == 0;
+}
+
+bool solve_by_cholesky_of_band(const Matrix& L, VectorOut b) {
+  const lapack_int bands = as_int(L.rows()), n = as_int(L.cols());
+  return LAPACKE_dpbtrs(LAPACK_COL_MAJOR, 'L', n, bands - 1, 1, L.data(), bands, b.data(), n) == 0;
+}
+
 bool solve_square(const Matrix& A, const Vector& b, Vector& x) {
   if (!is_finite(A) || !is_finite(b)) return false;
   Matrix lu = A;

@@ -47,6 +47,10 @@ inline bool solve_positive_definite(Matrix& A, Matrix& B) {
   return cholesky(A) && solve_by_cholesky(A, B);
 }
 
+// The same of a band matrix, its lower half by diagonals: band(d, j) = A(j + d, j), (bands, n).
+bool cholesky_of_band(Matrix& band);
+bool solve_by_cholesky_of_band(const Matrix& L, VectorOut b);
+
 // x = A⁻¹ b by LU with partial pivoting, A (n, n); false when A is exactly singular.
 bool solve_square(const Matrix& A, const Vector& b, Vector& x);
 

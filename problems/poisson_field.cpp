@@ -15,6 +15,7 @@
 // changes nothing, so errors in m are those of m without its mean.
 #include <array>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <numbers>
 
@@ -99,6 +100,7 @@ class CoefficientToPoints final : public Physics {
   struct State {
     Vector kappa, u, field;
     Matrix L;
+    bool is_factored = false;
   };
   struct States final : Scratch {
     std::vector<State> all;
@@ -140,7 +142,7 @@ class CoefficientToPoints final : public Physics {
       couple(r, a, at.kappa[index(t)] / 2, at);
       couple(r, c, at.kappa[index(t)] / 2, at);
     }
-    factor(at.L);
+    at.is_factored = cholesky_of_band(at.L);
     solve_inside(at, at.field);
     at.u = boundary_ + at.field;
   }
@@ -157,33 +159,13 @@ class CoefficientToPoints final : public Physics {
         at.L(high - low, place(low)) -= w;
     }
   }
-  // Cholesky's factor in place of a band matrix; nan where it is not positive definite.
-  static void factor(Matrix& L) {
-    const Index n = L.cols();
-    for (Index v = 0; v < n; ++v) {
-      const Index below = std::min(L.rows(), n - v) - 1;
-      L(0, v) = std::sqrt(L(0, v));
-      L.col(v).segment(1, below) /= L(0, v);
-      for (Index d = 1; d <= below; ++d)
-        L.col(v + d).head(below + 1 - d) -= L(d, v) * L.col(v).segment(d, below + 1 - d);
-    }
-  }
-  // field ← A⁻¹ field inside, 0 where u is given.
+  // field ← A⁻¹ field inside, 0 where u is given; nan where e^m is not finite.
   void solve_inside(const State& at, Vector& field) const {
-    const Matrix& L = at.L;
-    const Index n = unknowns();
     field.head(N_ + 1).setZero();
     field.tail(N_ + 1).setZero();
-    auto x = field.segment(N_ + 1, n);
-    for (Index v = 0; v < n; ++v) {
-      const Index below = std::min(L.rows(), n - v) - 1;
-      x[v] /= L(0, v);
-      x.segment(v + 1, below) -= x[v] * L.col(v).segment(1, below);
-    }
-    for (Index v = n - 1; v >= 0; --v) {
-      const Index below = std::min(L.rows(), n - v) - 1;
-      x[v] = (x[v] - L.col(v).segment(1, below).dot(x.segment(v + 1, below))) / L(0, v);
-    }
+    auto inside = field.segment(N_ + 1, unknowns());
+    if (!at.is_factored || !solve_by_cholesky_of_band(at.L, inside))
+      inside.setConstant(std::numeric_limits<Real>::quiet_NaN());
   }
   void sample(const Vector& u, VectorOut y) const {
     for (std::size_t p = 0; p < observed_.size(); ++p) {

@@ -336,14 +336,6 @@ TEST(Kinks, ArePassedWhereAChoiceDiffers) {
 
 const std::string kValley = process_of(example("rosenbrock.py"));
 
-Matrix jacobian_at(const Problem& problem, VectorRef theta) {
-  Point at;
-  Matrix J;
-  problem.forward(theta, at);
-  problem.jacobian(J, at);
-  return J;
-}
-
 TEST(Process, ComputesTheSameBitsAsTheTree) {
   const Problem theirs = make(valley_of_this_build()), ours = make("rosenbrock");
   EXPECT_EQ(theirs.start(), ours.start());

@@ -40,4 +40,12 @@ inline Vector gradient_at(const Problem& problem, const Vector& theta) {
   return gradient;
 }
 
+inline Matrix jacobian_at(const Problem& problem, const Vector& theta) {
+  Point at;
+  Matrix J;
+  problem.forward(theta, at);
+  problem.jacobian(J, at);
+  return J;
+}
+
 }  // namespace isoline::problems

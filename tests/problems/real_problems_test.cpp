@@ -19,14 +19,6 @@ Matrix image(const Problem& problem, const Vector& x) {
   return at.y;
 }
 
-Matrix jacobian_at(const Problem& problem, const Vector& x) {
-  Point at;
-  Matrix J;
-  problem.forward(x, at);
-  problem.jacobian(J, at);
-  return J;
-}
-
 // A wave on the circle keeps its form; its factor is the transform of the Gaussian, which is again
 // one as long as the circle is much wider.
 TEST(Deconvolution1d, DampsWavesByTheTransformOfAGaussian) {
