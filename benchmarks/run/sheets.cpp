@@ -30,8 +30,9 @@
 namespace isoline::benchmarks {
 namespace {
 
-constexpr double kRoundSeconds = 2e-4;  // of calls, so that a round is many of the short ones
-constexpr double kOracleSeconds = 1e-2, kLongOracleSeconds = 0.15, kProblemSeconds = 1;
+constexpr double kRoundSeconds = 2e-4;  // so that a round is many calls of the short ones
+constexpr double kOracleSeconds = 4e-3, kLongOracleSeconds = 0.15, kProblemSeconds = 1;
+constexpr double kLongestMatrixSeconds = 1e-2;  // of a dense matrix that is measured
 constexpr double kClockSeconds = 2e-5;  // a call this long can afford the clock of the processor
 constexpr std::size_t kMostPairs = 1000, kMostRounds = 31, kFewRounds = 3;
 constexpr Real kTail = 0.1;  // on either side of the middle 80 %
@@ -118,20 +119,20 @@ struct Rounds {
 void add_round(const Problem& problem, const Question& of, Rounds& rounds) {
   Point at;
   Room room(problem);
-  const double wanted = kRoundSeconds / std::max(of.forward, of.expected);
-  const auto pairs = std::clamp(static_cast<std::size_t>(wanted), std::size_t{1}, kMostPairs);
   std::vector<Real> before, asked;
-  for (std::size_t i = 0; i <= pairs; ++i) {
+  double spent = 0;
+  for (std::size_t i = 0; i <= kMostPairs && (i < 2 || spent < kRoundSeconds); ++i) {
     const double solve =
         seconds_of(problem, of.forward, [&] { problem.forward(problem.start(), at); });
     const double call =
         of.call ? seconds_of(problem, of.expected, [&] { of.call(at, room); }) : solve;
     if (i == 0) continue;  // the first allocates
+    spent += solve + call;
     before.push_back(solve);
     asked.push_back(call);
   }
   const Real forward = std::max(at_share(before, 0.5), 1e-9);
-  rounds.calls += pairs;
+  rounds.calls += before.size();
   rounds.forward_seconds.push_back(forward);
   rounds.ratios.push_back(of.call ? at_share(asked, 0.5) / forward : 1);
 }
@@ -419,7 +420,7 @@ MeasuredPrices measure_prices(const Problem& problem, const std::string& build) 
       if (seconds_by(problem.is_elsewhere()) - begin > kProblemSeconds) return measured;
       const std::int64_t declared = problem.prices()[static_cast<std::size_t>(row.kind)];
       const double expected = forward * static_cast<double>(declared);
-      if (is_matrix && expected > kOracleSeconds) continue;
+      if (is_matrix && expected > kLongestMatrixSeconds) continue;
       const auto call = [&](Point& there, Room& room) { found->second(problem, there, room); };
       measured.oracles.push_back(
           price_of(row.name, declared, forward, rounds_of(problem, {forward, expected, call})));
