@@ -35,7 +35,8 @@ void declare(VerbArguments& verb, ChooseArguments& given) {
   offers.emplace_back("inverse");
   verb.texts("DIR", given.folders, kFolders).required();
   verb.texts("--have", given.have,
-             "What your simulator computes; each kind includes the kinds before it")
+             "What your simulator computes: forward, gradient, jacobian or hessian, each of which "
+             "includes the ones before it, and inverse")
       .one_of(offers)
       .between_commas()
       .shown("forward");

@@ -144,7 +144,7 @@ void register_claims(VerbRegistry& registry) {
   registry.add(verb_of(
       {.name = "claims",
        .help_position = 110,
-       .summary = "Judge the claims of papers by runs; runs that are missing are made first",
+       .summary = "Judge the claims of papers by runs, after running the missing cells",
        .examples = R"(  isoline claims --list                        the claims and their sources
   isoline claims exponential                   one group of claims
   isoline claims sip-better-in-x-worse-in-loss     one claim, with its evidence

@@ -73,7 +73,7 @@ void keep_problems(reports::Study& study, const std::string& text) {
   std::erase_if(study.runs, [&](const Record& run) { return is_other(run.request.problem.spec); });
   std::erase_if(study.plan.cells, [&](const PlannedCell& cell) { return is_other(cell.problem); });
   require(!study.runs.empty(), [&] {
-    return fmt::format("--problem {}: these results do not have such a problem", text);
+    return fmt::format("--problem {}: these results do not contain this problem", text);
   });
 }
 

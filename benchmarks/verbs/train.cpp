@@ -36,7 +36,9 @@ void declare(VerbArguments& verb, TrainArguments& given) {
   verb.text("PROBLEM", given.problem, "Problem: 'sine[xi=32]'; mode=learn is implied").required();
   verb.text("--out", given.out, "Output file, JSON").required();
   verb.text("--optimizer", given.optimizer, "Training method").shown();
-  verb.text("--from", given.from, "Network written by `train`, whose parameters are the start");
+  verb.text("--from", given.from,
+            "Network written by `train`; training starts from its "
+            "parameters");
   verb.whole("--iterations", given.iterations, "Number of training steps");
   verb.seed("--seed", given.seed, "Seed of the start and of the samples");
   verb.whole("--threads", given.threads, "Number of threads that libraries use", kThreads);

@@ -67,8 +67,8 @@ void declare(VerbArguments& verb, TuneArguments& given) {
 }
 
 constexpr const char* kScore =
-    "median work to 1e-6 of the success criterion, the loss or the error in x; then the median "
-    "remainder at the end";
+    "median work needed to reach 1e-6, in loss or in x; if it is not reached, the median loss or "
+    "error in x at the end";
 
 constexpr const char* kLeftOutScore =
     "mean over the other families, each the mean over its settings, of 1 - log2(work/least work of "
