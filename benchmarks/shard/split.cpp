@@ -1,5 +1,5 @@
-// Shards by predicted times, which are written and read without a tree of them: plans have cells
-// by the hundred thousand.
+// Divides plans by predicted times. Plans can have hundreds of thousands of cells, so predictions
+// are written and read without a JSON tree.
 #include "benchmarks/shard/split.h"
 
 #include <fmt/format.h>
