@@ -195,7 +195,8 @@ Shard shard_of(const std::string& asked, const Environment& environment) {
   if (is_automatic && own.empty()) {
     require(
         !environment(kVariables[0]).empty(),
-        "--shard auto requires the environment variable ISOLINE_SHARD or SLURM_ARRAY_TASK_ID, and neither is set");
+        "--shard auto requires the environment variable ISOLINE_SHARD or SLURM_ARRAY_TASK_ID, and "
+        "neither is set");
     return shard_of_array(environment);
   }
   const std::string& text = is_automatic ? own : asked;

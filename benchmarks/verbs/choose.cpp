@@ -42,7 +42,8 @@ void declare(VerbArguments& verb, ChooseArguments& given) {
       .shown("forward");
   verb.whole(
       "--unknowns", given.unknowns,
-      "Number of unknowns of your problem. Only problems of the same class are used: up to 10, 11 to 100, more than 100 (default: all problems)",
+      "Number of unknowns of your problem. Only problems of the same class are used: up to 10, 11 "
+      "to 100, more than 100 (default: all problems)",
       {.low = 0, .high = 1'000'000'000});
   verb.real("--noise", given.noise, between(0, 10),
             "Noise in the data, relative to the root mean square of the data");
@@ -102,8 +103,8 @@ void register_choose(VerbRegistry& registry) {
        .summary = "Name the methods that suit your simulator, based on the runs of a study",
        .examples = "  isoline choose results/quick --have forward,gradient --unknowns 50\n"
                    "  isoline choose results/quick --have forward --budget 1000",
-       .notes =
-           "The first sentence is also in the report, in the tab 'Choose a method'. Methods marked * are not significantly worse than the first one."},
+       .notes = "The first sentence is also in the report, in the tab 'Choose a method'. Methods "
+                "marked * are not significantly worse than the first one."},
       declare, run));
 }
 

@@ -130,8 +130,10 @@ void register_report(VerbRegistry& registry) {
                    "  isoline report results/a results/b --out report --by cost --tolerance 1e-3",
        .notes =
            "Results contain 51 tolerances, five per decade from 1 to 1e-10; another tolerance is "
-           "replaced by the next stricter one. Work counts oracle calls at nominal cost, which is equal "
-           "on every machine; cost counts the same calls at measured cost. Times are comparable only in "
+           "replaced by the next stricter one. Work counts oracle calls at nominal cost, which is "
+           "equal "
+           "on every machine; cost counts the same calls at measured cost. Times are comparable "
+           "only in "
            "runs with --exclusive; others are marked ≈."},
       declare, run));
 }

@@ -44,7 +44,8 @@ void declare(VerbArguments& verb, TrainArguments& given) {
   verb.whole("--threads", given.threads, "Number of threads that libraries use", kThreads);
   verb.time(
       "--time", given.seconds,
-      "Time limit of training: 10s, 2m. At this limit, the network is saved as it is; after twice this processor time, the process is killed");
+      "Time limit of training: 10s, 2m. At this limit, the network is saved as it is; after twice "
+      "this processor time, the process is killed");
   verb.memory("--memory", given.memory_bytes, "Memory limit (default: 4GB)");
   verb.flag("--quiet", given.quiet, "Do not show progress");
   verb.plugins();
