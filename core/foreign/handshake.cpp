@@ -1,4 +1,4 @@
-// Commands that are started, and what is known of them before.
+// Starts commands, and validates and caches what they declare in the handshake.
 #include "core/foreign/handshake.h"
 
 #include <fmt/format.h>

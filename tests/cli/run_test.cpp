@@ -535,7 +535,7 @@ TEST_F(Replay, OfAnotherBuildOrAComponentThatIsNotThereIsNotComparable) {
            record["build"] = std::string(16, '0');
            record["build_parts"]["optimizer"] = std::string(16, '1');
          },
-         {.exit_code = 4, .out = {"differs in: optimizer; equal"}});
+         {.exit_code = 4, .out = {"parts differ: optimizer; equal"}});
   replay("gd", [](Json& record) { record["request"]["problem"]["name"] = "sqare"; },
          {.exit_code = 4, .out = {"did you mean 'square'"}});
 }
