@@ -261,12 +261,14 @@ bool is_within(const std::vector<Real>& x, const ProblemHandshake& problem) {
 }
 
 // The answer to our greeting. The caller handles a broken connection, as it handles a wrong
-// argument.
+// argument; but it can ask a program again that was killed.
 std::string answer_to(Line& line, Json greeting, double seconds, const OptionValues& declared) {
   if (!declared.empty()) greeting["options"] = to_json(declared);
   try {
     line.send_text(Verb::hello, 0, json_text(greeting));
     return line.receive_text(Verb::hello, kMostHandshake, seconds);
+  } catch (const KilledProgram&) {
+    throw;
   } catch (const LineError& error) {
     throw UsageError(error.what());
   }
