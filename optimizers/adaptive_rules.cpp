@@ -72,7 +72,9 @@ struct Adadelta {
 void fields(Adadelta& o, auto& field) {
   rate_field(o.rate, field);
   field("rho", o.rho, decay(), "decay ρ of the mean squares");
-  field("epsilon", o.epsilon, above(0), "ε: makes the first steps and floors the scale");
+  field("epsilon", o.epsilon, above(0),
+        "ε, which determines the first steps and bounds the "
+        "scale from below");
 }
 
 struct Adam {

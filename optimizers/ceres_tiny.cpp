@@ -1,5 +1,6 @@
 // The adapter to Ceres' TinySolver, a Levenberg-Marquardt on the normal equations in one header, on
-// r = (y − y*)/√B. Each evaluation is a trial step. It has no call back: it ends by an exception.
+// r = (y − y*)/√B. Each evaluation is a trial step. TinySolver has no callback, so an exception
+// ends it.
 #include <ceres/tiny_solver.h>
 
 #include <limits>

@@ -1,7 +1,7 @@
 // The adapter to gsl_multifit_nlinear of the GNU Scientific Library, on r = (y − y*)/√B: trust
 // regions by QR, with Levenberg-Marquardt, geodesic acceleration (Transtrum, Sethna 2012), doglegs
-// and the plane of steepest descent and Gauss-Newton. An iteration is a step that it accepts; it
-// gives up after fifteen rejected ones. By default its tolerances are zero.
+// and the plane of steepest descent and Gauss-Newton. Each accepted step is an iteration; GSL gives
+// up after fifteen rejected steps. By default its tolerances are zero.
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_multifit_nlinear.h>
 
@@ -115,7 +115,7 @@ void register_gsl(OptimizerRegistry& registry) {
                 .kind = Kind::least_squares,
                 .formula = "θ ← θ − (JᵀJ + μD²)⁻¹ Jᵀ r,  or min ‖r + J d‖² over ‖D d‖ ≤ Δ",
                 .source = "GSL 2.7; Moré (1978), Nielsen (1999), Transtrum, Sethna (2012)",
-                .note = "Geodesic acceleration costs a forward solve more per step.",
+                .note = "Geodesic acceleration costs one additional forward solve per step.",
                 .needs = {Oracle::forward, Oracle::jacobian},
                 .is_input_scale_invariant = true,
                 .needs_same_samples = true,

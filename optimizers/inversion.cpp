@@ -1,4 +1,4 @@
-// The ways to invert a physics: by its own inverse, by Newton's method, by L-BFGS.
+// Three methods that invert a physics: by its own inverse, by Newton's method, by L-BFGS.
 #include "optimizers/inversion.h"
 
 #include <fmt/format.h>

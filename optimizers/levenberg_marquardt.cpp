@@ -396,8 +396,9 @@ void fields(LevenbergMarquardt& o, auto& field) {
         "damping μ at the start, in units of D²; where it is fixed, μ as a share of the mean "
         "diagonal of JJᵀ");
   field("acceleration", o.acceleration, at_least(0),
-        "of damping=adaptive: α of geodesic acceleration, which after a step of gain below 1/4 "
-        "adds to d the a of second order where 2‖D a‖ ≤ α‖D d‖, else rejects the step; 0: none");
+        "for damping=adaptive: α of geodesic acceleration. After a step with a gain below 1/4, "
+        "the second-order correction a is added to d; if 2‖D a‖ > α‖D d‖, the step is rejected. "
+        "0: no acceleration");
   field("damping", o.damping, Choices{"adaptive", "fixed"},
         "by the gain of each step, or always the same");
   field("rate", o.rate, above(0), "of damping=fixed: step length η");
@@ -406,8 +407,8 @@ void fields(LevenbergMarquardt& o, auto& field) {
         "formed layer by layer; or by sparse Cholesky of a sparse J, after elimination of blocks "
         "where the problem declares them, of damping=adaptive; auto: by size and accuracy");
   field("scaling", o.scaling, Choices{"more", "fading", "none", "jacobian"},
-        "of damping=adaptive: D of the largest norms that J's columns have had, as Moré has it; of "
-        "these, halved at each step; 1; or of the norms they have now");
+        "for damping=adaptive, the diagonal of D: more: the largest norm that each column of J "
+        "has had; fading: the same, but halved at each step; none: 1; jacobian: the current norms");
 }
 
 // Levenberg-Marquardt by products, for problems too large for a Jacobian: θ ← θ + d,
@@ -538,13 +539,13 @@ void register_levenberg_marquardt(OptimizerRegistry& registry) {
        .formula = "θ ← θ + argmin ‖J d + r‖² + μ‖D d‖²",
        .source = "Marquardt (1963); Moré (1978); Nielsen (1999); Transtrum, Sethna (2012)",
        .note =
-           "A rejected candidate is an iteration, too. With damping=fixed every step is taken, "
-           "D is 1, and μ a share of the mean diagonal of JJᵀ. On mini-batches the largest norms "
-           "that columns have had may belong to another batch: on coupled-oscillators with tanh "
-           "neurons D = 1 (scaling=none) converges from starts from which Moré's diverges. On a "
-           "problem with bounds, unknowns at a bound that ∇L presses against are left out of a "
-           "step, and the candidate is projected onto the bounds; Bertsekas (1982), Kanzow, "
-           "Yamashita, Fukushima (2004).",
+           "A rejected candidate counts as an iteration. With damping=fixed, every step is "
+           "accepted, D is 1, and μ is a share of the mean diagonal of JJᵀ. On mini-batches, the "
+           "largest norm of a column may come from an earlier batch: on coupled-oscillators with "
+           "tanh neurons, D = 1 (scaling=none) converges from starts from which Moré's scaling "
+           "diverges. On a problem with bounds, unknowns at a bound that ∇L presses against are "
+           "left out of a step, and the candidate is projected onto the bounds; Bertsekas (1982), "
+           "Kanzow, Yamashita, Fukushima (2004).",
        .needs = {Oracle::forward},
        .is_input_scale_invariant = true,
        .keeps_bounds = true,

@@ -189,7 +189,7 @@ const Method kByGradient[] = {
 
 constexpr Index kMostWithoutGradient = 256;
 constexpr const char* kStartNote =
-    "Its first steps are the size of the start's coordinates, and so follow their units.";
+    "Its first steps have the size of the coordinates of the start, so they scale with the units.";
 
 const Method kWithoutGradient[] = {
     {NLOPT_LN_BOBYQA, Kind::derivative_free, "nlopt-bobyqa", "BOBYQA (NLopt)",

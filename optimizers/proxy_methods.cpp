@@ -149,8 +149,8 @@ void fields(SipOptions& o, auto& field) {
   field("proxy", o.proxy, Choices{"l2", "l1"}, "proxy loss: ½‖x − x̃‖² or Σ|x − x̃|");
   field("inner-steps", o.inner_steps, between(1, 1e6), "steps of the inversion per update");
   field("fallback", o.inversion.fallback, Choices{"none", "gradient"},
-        "where the problem's own inverse fails: the sample keeps its x; or it moves as by "
-        "inverse=gradient, and a series of the record counts it");
+        "if the problem's own inverse fails for a sample: the sample keeps its x; or it moves as "
+        "with inverse=gradient, and a series of the record counts it");
   field("network-steps", o.network_steps, between(1, 1e6), "steps of the network toward each x̃");
 }
 
@@ -380,10 +380,10 @@ void register_proxy_methods(OptimizerRegistry& registry) {
        .formula = "x̃ = x + U;  θ ← steps on (1/B) Σ ½‖x − x̃‖² until L ≤ (1 − τ/2) L(x),  "
                   "τ = 1 − L(x + U)/L(x)",
        .source = "Holl, Koltun, Thuerey (2022), theorem 3",
-       .note = "All samples of a batch are stopped together. Traced are τ, K = ‖U‖/(L − L*), the "
-               "length of U as a root mean square over the samples, the network's steps, and the "
-               "share of all U so far that these could not follow. Each check of the loss is a "
-               "forward solve, counted.",
+       .note = "All samples of a batch are stopped together. Records contain τ, K = ‖U‖/(L − L*), "
+               "the length of U as a root mean square over the samples, the network's steps, and "
+               "the share of all U so far that these steps did not achieve. Each check of the "
+               "loss counts as a forward solve.",
        .needs = {Oracle::forward, Oracle::network},
        .is_input_scale_invariant = true,
        .tunable = {.option = "step", .below = 5},
@@ -428,8 +428,9 @@ void register_proxy_methods(OptimizerRegistry& registry) {
        .formula = "x̃ = P⁻¹(y*; x₀);  θ ← one step on (1/B) Σ ½‖x − x̃‖²",
        .source = "Holl, Koltun, Thuerey (2022)",
        .note =
-           "A solver finds the labels from a fixed x₀; they are not the x* that produced y*, which "
-           "`supervised` uses. The solver is one of sip's, and its work counts.",
+           "A solver computes the labels from a fixed x₀. Unlike `supervised`, this method does "
+           "not use the x* that produced y*. The solver is one of those of sip, and its work "
+           "counts.",
        .needs = {Oracle::forward, Oracle::network},
        .is_input_scale_invariant = true,
        .tunable = {.option = "network-optimizer"},

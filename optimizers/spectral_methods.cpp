@@ -119,8 +119,8 @@ OptimizerEntry spectral_entry(OptimizerEntry entry) {
 void fields(GaussNewton& o, auto& field) {
   field("rate", o.rate, above(0), "step length η");
   field("cutoff", o.cutoff, between(0, 1),
-        "pivots, or singular values, up to this share of the first count as zero; at least those "
-        "within rounding do");
+        "pivots or singular values up to this share of the largest one count as zero, and so do "
+        "those within rounding");
   field(
       "factorization", o.factorization, Choices{"orthogonal", "svd", "qr", "gram", "layers"},
       "how J⁺ is applied: by a complete orthogonal factorization with pivots, or by sparse "

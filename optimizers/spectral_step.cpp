@@ -1,5 +1,5 @@
-// Spectral steps: factorizations by name and their needs, by Krylov vectors, by a Gram matrix that
-// is split, and by all factorizations.
+// Spectral steps: the factorizations by name, with their requirements and computations, including
+// Krylov vectors and the split Gram matrix.
 #include "optimizers/spectral_step.h"
 
 #include <fmt/format.h>

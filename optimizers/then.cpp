@@ -1,6 +1,6 @@
-// Two methods in turn: `first` makes so many steps, or stops by itself, and `second` goes on from
-// its θ with a state of its own. Schnell, Holl, Thuerey (2022), published scripts, train by one
-// method a network that another one has trained before.
+// Two methods in succession: `first` takes a given number of steps, or stops by itself. `second`
+// continues from its θ with a new state. Schnell, Holl, Thuerey (2022), published scripts, train by
+// one method a network that another one has trained before.
 #include <memory>
 #include <string>
 #include <utility>

@@ -346,7 +346,8 @@ Problem with_features(Problem plain, const OptionValues& options, const Draw& dr
   require(!is_bounded || (plain.made_from() && !plain.bounds()),
           "bounds requires a problem that has a known x*, and no bounds of its own");
   require(!features.rotate || (!is_bounded && !plain.bounds()),
-          "rotate=true and bounds exclude each other: a rotated box has no bounds on its unknowns");
+          "rotate=true and bounds cannot be combined: after a rotation, the box is not a set of "
+          "bounds on single unknowns");
   const std::optional<Real> least = plain.minimum();
   const Real x_scale = plain.x_scale(plain.batch());
 

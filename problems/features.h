@@ -1,6 +1,6 @@
 // Features that any direct problem can have, as options: noise in the data, data of another model,
-// badly scaled or rotated unknowns, few digits, regularization, bounds. At their defaults they
-// stand in no spec, no record and no cell.
+// badly scaled or rotated unknowns, few digits, regularization, bounds. Options with default values
+// do not appear in specs, records or cells.
 #pragma once
 
 #include <optional>

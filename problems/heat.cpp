@@ -223,13 +223,13 @@ void register_heat(ProblemRegistry& registry) {
        .source = "Holl, Koltun, Thuerey (2022), Fig. 6c",
        .note =
            "x* is a sum of soft rectangles from our own random streams, for seed 0, too: no "
-           "instance is published; its lengths scale with N/64. Seeds from 1 on start with "
-           "noise of 0.1 per cell, most of which the data do not determine: it is a floor under "
-           "the error in x of every method. Published curves sum |x − x*| over cells, and so does "
-           "mode=learn, which gives the network the mean of x*; the error of one instance is "
-           "‖x − x*‖. The damped inverse has the authors' floor for single problems, "
-           "1e-8. The floor under the error in x is that of the best spectral cut-off: modes that "
-           "the rounding of the data hides stay where the iteration starts.",
+           "instance is published; its lengths scale with N/64. The starts of seeds from 1 on "
+           "contain noise of 0.1 per cell. The data do not determine most of this noise, so it "
+           "bounds the error in x of every method from below. Published curves sum |x − x*| over "
+           "cells, and so does mode=learn, which gives the network the mean of x*; the error of "
+           "one instance is ‖x − x*‖. The damped inverse has the authors' floor for single "
+           "problems, 1e-8. The floor under the error in x is that of the best spectral cut-off: "
+           "modes that the rounding of the data hides stay where the iteration starts.",
        .aim = Aim::x,  // P is one to one; how far the data give x back is the floor
        .panels = {{.title = "Fig. 6d: learning curves", .kind = "curve"},
                   {.title = "Fig. 6c: one sample of the validation", .kind = "pictures"},

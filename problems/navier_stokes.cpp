@@ -217,14 +217,14 @@ void register_navier_stokes(ProblemRegistry& registry) {
            "equation has ν∇²v. By default the data are made by the solver itself, so that the "
            "truth is reachable; the published ones use a collocated grid, "
            "ground-truth=collocated. The published loss is loss=amplitude. Their squared loss "
-           "puts a floor of 1e-5 under each w² |F|², which is left out: it would add a constant "
-           "for the modes below it and remove their gradient. The share of cells with marker is "
-           "sampled per sample, in the paper per batch. Where velocity and marker's gradient are "
-           "orthogonal, the data do not determine the velocity, and the low pass hides scales "
-           "below a quarter of the domain: up to 16 × 16 the floor of the error in x is what the "
-           "best cut-off of the spectrum of J(x*) leaves. The error is |v − v*| after the first "
-           "projection, the mean over cells. inverse=generator uses knowledge of how the data "
-           "were made (extra information); inverse=coarse does not.",
+           "bounds each w² |F|² below by 1e-5. Here this bound is omitted, because it would add a "
+           "constant for the modes below it and remove their gradient. The share of cells with "
+           "marker is sampled per sample, in the paper per batch. The data do not determine the "
+           "velocity where it is orthogonal to the gradient of the marker, and the low pass hides "
+           "scales below a quarter of the domain. Up to 16 × 16, the floor of the error in x is "
+           "that of the best cut-off of the spectrum of J(x*). The error is |v − v*| after the "
+           "first projection, the mean over cells. inverse=generator uses knowledge of how the "
+           "data were made (extra information); inverse=coarse does not.",
        .aim = Aim::x,
        .in_all = false,
        .panels = {{.title = "Fig. 7b: learning curves", .kind = "curve"},

@@ -1,4 +1,4 @@
-// The defaults of a physics.
+// The default implementations of the interface Physics.
 #include "problems/physics.h"
 
 namespace isoline::problems {

@@ -1,6 +1,6 @@
-// A physics by the functions of a shared library. Its products get the x that they are at and what
-// forward() kept of it, so that a rejected trial costs no forward pass more. Where it gives the
-// Jacobian, products that it lacks follow from that.
+// A physics by the functions of a shared library. Its products receive their x and the data that
+// forward() kept for it, so a rejected trial does not cost a further forward pass. Products that
+// the library lacks are computed from its Jacobian, if it has one.
 #include <fmt/format.h>
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// Toys of two coordinates, each on its own.
+// Toy problems with two uncoupled coordinates.
 #include <cmath>
 #include <numbers>
 

@@ -1,6 +1,6 @@
-// The audit's problems. The bent physics is P(x) = C (sinh x₁, sinh x₂ + x₁²/2) + d: curved,
-// exactly invertible, its Hessian positive definite along the paths, its singular values near 1, so
-// that every method makes sense on it at its default rate.
+// The audit's problems. The bent physics is P(x) = C (sinh x₁, sinh x₂ + x₁²/2) + d: curved and
+// exactly invertible. Along the paths, its Hessian is positive definite and its singular values are
+// near 1, so every method is applicable at its default rate.
 #include "benchmarks/audit/audit_problems.h"
 
 #include <cmath>

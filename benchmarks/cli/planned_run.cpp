@@ -60,9 +60,9 @@ void declare_cells(VerbArguments& verb, RunArguments& given) {
   const Argument seeds =
       verb.text("--seeds", given.seeds,
                 "Seeds: 5 (seeds 0 to 4), 0..9, =5 (seed 5), or 2:1 (instance 2, start 1)");
-  verb.text(
-          "--instances", given.instances,
-          "Instances (data) of each problem, each run from every start of --starts: 10, 0..9 or =5 (default: =0)")
+  verb.text("--instances", given.instances,
+            "Instances (data) of each problem, each run from every start of --starts: 10, 0..9 or "
+            "=5 (default: =0)")
       .excludes(seeds);
   verb.text("--starts", given.starts,
             "Starts, each used with every instance of --instances: 3, 0..2 or =1 (default: =0)")
@@ -73,7 +73,8 @@ void declare_cells(VerbArguments& verb, RunArguments& given) {
             "Time limit of a cell: 10s, 2m; a cell that uses twice this processor time is killed");
   verb.real(
       "--target", given.target, between(0, 1),
-      "Tolerance at which a cell ends as solved, relative to the scale of the loss or, if the success criterion is x, to the norm of x* (default: 1e-10)");
+      "Tolerance at which a cell ends as solved, relative to the scale of the loss or, if the "
+      "success criterion is x, to the norm of x* (default: 1e-10)");
   verb.whole_or_never(
       "--stall", given.stall,
       "Number of iterations without progress after which a cell ends (default: 100)");
@@ -89,7 +90,8 @@ void declare_cells(VerbArguments& verb, RunArguments& given) {
   verb.text("--rates", given.rates, "Table of tuned rates: builtin, none or a file").shown();
   verb.text(
       "--best", given.best,
-      "Table written by `isoline best`: the lowest known losses of problems that do not declare their least attainable loss f_L");
+      "Table written by `isoline best`: the lowest known losses of problems that do not declare "
+      "their least attainable loss f_L");
   verb.flag("--allow-large", given.allow_large, "Allow more than a million cells");
   verb.plugins();
 }
@@ -117,9 +119,9 @@ void declare_run(VerbArguments& verb, RunArguments& given) {
               "Memory limit of a cell, 256MB or more (default: 4GB)", 256);
   declare_what_is_done(verb, given);
   verb.flag("--no-report", given.no_report, "Do not write a report");
-  verb.flag(
-      "--uncertified", given.uncertified,
-      "Also run problems from other programs that fail their checks; each table marks these problems");
+  verb.flag("--uncertified", given.uncertified,
+            "Also run problems from other programs that fail their checks; each table marks these "
+            "problems");
   verb.flag("--keep-output", given.keeps_output,
             "Keep the output of each cell in its record, up to 64 KiB");
   verb.flag(
@@ -133,7 +135,8 @@ void declare_run(VerbArguments& verb, RunArguments& given) {
             "--work continues there (default: of cells that run for a minute or longer)");
   verb.text(
       "--shard", given.shard,
-      "Run only one shard, such as 3/16; its records are written to shards/3-of-16 in the result folder. auto: take the shard from ISOLINE_SHARD or from the task of the SLURM array");
+      "Run only one shard, such as 3/16; its records are written to shards/3-of-16 in the result "
+      "folder. auto: take the shard from ISOLINE_SHARD or from the task of the SLURM array");
   const Argument dry =
       verb.flag("--dry-run", given.is_dry,
                 "Only print the plan: its cells, their states and the predicted time");

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-# y = x of so many numbers, by the client: what a forward of the adapter costs around the function.
+# The problem y = x of a given size, by the client: measures the overhead of a forward solve in the
+# adapter.
 import sys
 
 import isoline

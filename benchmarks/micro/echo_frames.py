@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-# The same frames sent back as they come, with no client: a head, and as many numbers, in an array
-# of NumPy where that is installed.
+# Sends each frame back unchanged, without the client: a header and its numbers, in a NumPy array if
+# NumPy is installed.
 import os
 import socket
 import sys

@@ -1,7 +1,7 @@
-// Micro-benchmarks: our functions over the bare thing that each stands for, timed in turn, so that
-// the noise of the machine falls on both. Figures are medians over pairs: `ns` a call of ours,
-// `bare_ns`, their `ratio` and difference `extra_ns`. Choose by --benchmark_filter=metering. The
-// bare side calls the libraries without the adapters of the other modules.
+// Micro-benchmarks: each function of ours is timed in turn with the bare computation that it wraps,
+// so noise affects both. Figures are medians over pairs: `ns` a call of ours, `bare_ns`, their
+// `ratio` and difference `extra_ns`. Choose by --benchmark_filter=metering. The bare side calls the
+// libraries without the adapters of the other modules.
 #include <benchmark/benchmark.h>
 #include <ceres/ceres.h>
 #include <fftw3.h>

@@ -1,4 +1,4 @@
-// Verifiers: requests use a socket, and the points themselves shared memory.
+// Verifiers. Requests are sent over a socket; the points are in shared memory.
 #include "benchmarks/run/judge.h"
 
 #include <fcntl.h>

@@ -1,5 +1,5 @@
-// Looks up the cells of a plan in the store, and probes the others. A view of a record extracts
-// only the requested values.
+// Looks up the cells of a plan in the store, and probes those that are not there. A view of a
+// record extracts only the requested values.
 #include "benchmarks/run/preview.h"
 
 #include <fmt/format.h>

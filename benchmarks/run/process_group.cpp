@@ -1,5 +1,5 @@
 // Groups of processes by fork, a process group, a pidfd and inherited marks. /proc is read by plain
-// calls: a limit that is looked at fifty times a second must cost little.
+// system calls, because limits are checked fifty times per second.
 #include "benchmarks/run/process_group.h"
 
 #include <fcntl.h>

@@ -1,8 +1,8 @@
 // A child process and all its descendants, as one group: started, measured, stopped, killed and
 // reaped together. Descendants cannot escape by a session of their own or by outliving their
 // parent: this process is a subreaper, and every descendant carries the mark of its group. Only
-// SIGKILL of this process escapes it (docs/running-a-matrix.md). And the signals that ask this
-// process to end while it has such children.
+// SIGKILL of this process escapes it (docs/running-a-matrix.md). Also handles the signals that ask
+// this process to end while it has such children.
 #pragma once
 
 #include <sys/types.h>

@@ -77,15 +77,15 @@ Certificates require_certified(const Catalog& catalog, std::vector<Request>& req
   Progress progress(options.progress, "certified", static_cast<std::int64_t>(firsts.size()), 0);
   for (const Request* request : firsts) {
     progress.started(request->problem.spec);
-    const auto [broken, failure] =
-        isolated_text([&](Trace& trace) { return broken_property_of(catalog, *request, trace); },
-                      kCertificateSeconds, Limits{}.memory_bytes,
-                      [&](const Trace& trace) {
-                        if (trace.last.work > 0)
-                          progress.started(fmt::format("{}, {} of {} checks", request->problem.spec,
-                                                       trace.last.iteration, trace.last.work));
-                        progress.show();
-                      });
+    const auto [broken, failure] = isolated_text(
+        [&](Trace& trace) { return broken_property_of(catalog, *request, trace); },
+        kCertificateSeconds, Limits{}.memory_bytes,
+        [&](const Trace& trace) {
+          if (trace.last.work > 0)
+            progress.started(fmt::format("{} of {} checks of {}", trace.last.iteration,
+                                         trace.last.work, request->problem.spec));
+          progress.show();
+        });
     if (asked_to_end() != Asked::nothing) return passed;
     const std::string reason = broken.value_or("it cannot be checked: " + failure);
     require(reason.empty() || options.uncertified, [&] {

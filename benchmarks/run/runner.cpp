@@ -39,14 +39,14 @@ void require_trust(bool is_given, const Record& record) {
   if (is_given) return;
   for (const Component* part : {&record.request.problem, &record.request.optimizer})
     for (const NamedOption& option : part->options)
-      require(
-          option.name != "command" &&
-              option_text(option.value).find("command") == std::string::npos,
-          [&] {
-            return fmt::format(
-                "{} contains a command, which would start a program: {}; if you trust the records, add --trust",
-                title_of(record.request), part->spec);
-          });
+      require(option.name != "command" &&
+                  option_text(option.value).find("command") == std::string::npos,
+              [&] {
+                return fmt::format(
+                    "{} contains a command, which would start a program: {}; if you trust the "
+                    "records, add --trust",
+                    title_of(record.request), part->spec);
+              });
 }
 
 std::string title_of(const Request& request) {

@@ -1,8 +1,8 @@
 // Writes component metadata, and measures the costs in them. One measurement is a forward solve at
 // a new point and one call of the oracle after it, timed separately; a round is many such pairs on
-// its own work space. The cost is the ratio of the two medians, so that neither a drift of the
-// machine nor other load matters, and nothing is subtracted. The call includes everything that it
-// has to prepare at a new point.
+// its own work space. The cost is the ratio of the two medians, without any subtraction. Drift and
+// other load of the machine therefore hardly affect it. The call includes everything that it has to
+// prepare at a new point.
 #include "benchmarks/run/sheets.h"
 
 #include <fmt/format.h>

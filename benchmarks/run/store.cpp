@@ -1,5 +1,5 @@
-// The result folder on disk: its files, its locks, which are those of POSIX, owned by the process
-// and not by the open file, and two of its records held against each other.
+// The result folder on disk: its files, its locks, and the comparison of two of its records. A
+// POSIX lock belongs to the process, not to the open file.
 #include "benchmarks/run/store.h"
 
 #include <fcntl.h>

@@ -1,5 +1,5 @@
 // Chooses one option of each pair of problem and optimizer over a grid, with an equal budget for
-// all and on seeds of their own, and keeps the whole grid beside the winner.
+// all, on seeds that are used for tuning only. Keeps all results of the grid.
 #pragma once
 
 #include <cstddef>

@@ -1,5 +1,5 @@
-// Shards by predicted times, which are written and read without a tree of them: plans have cells
-// by the hundred thousand.
+// Divides plans by predicted times. Plans can have hundreds of thousands of cells, so predictions
+// are written and read without a JSON tree.
 #include "benchmarks/shard/split.h"
 
 #include <fmt/format.h>
@@ -195,7 +195,8 @@ Shard shard_of(const std::string& asked, const Environment& environment) {
   if (is_automatic && own.empty()) {
     require(
         !environment(kVariables[0]).empty(),
-        "--shard auto requires the environment variable ISOLINE_SHARD or SLURM_ARRAY_TASK_ID, and neither is set");
+        "--shard auto requires the environment variable ISOLINE_SHARD or SLURM_ARRAY_TASK_ID, and "
+        "neither is set");
     return shard_of_array(environment);
   }
   const std::string& text = is_automatic ? own : asked;

@@ -55,7 +55,8 @@ void register_audit(VerbRegistry& registry) {
       {.name = "audit",
        .help_position = 170,
        .summary =
-           "Measure properties of optimizers: scaling, invariance, order, consistency and oracle calls",
+           "Measure properties of optimizers: scaling, invariance, order, consistency and oracle "
+           "calls",
        .examples = "  isoline audit gd adam sip\n  isoline audit --out results/quick --all"},
       declare, run));
 }

@@ -85,8 +85,13 @@ void register_baseline(VerbRegistry& registry) {
        .examples = "  isoline baseline results/quick --out baseline.json\n"
                    "  isoline compare baseline.json results/quick",
        .notes =
-           "The file has one line per cell (one problem, one optimizer, one seed): its status, a digest of its curve, its final values, and the work needed to reach 1e-1, 1e-3 and 1e-6.\n"
-           "Each cell runs again from starting points that differ in the last bit. A cell is chaotic if its values then change by more than a tenth of the tolerance of `compare`. `compare` judges such cells by their status and by the tolerances 1e-1, 1e-3 and 1e-6 that they reach, so rounding alone is not a regression.\n"
+           "The file has one line per cell (one problem, one optimizer, one seed): its status, a "
+           "digest of its curve, its final values, and the work needed to reach 1e-1, 1e-3 and "
+           "1e-6.\n"
+           "Each cell runs again from starting points that differ in the last bit. A cell is "
+           "chaotic if its values then change by more than a tenth of the tolerance of `compare`. "
+           "`compare` judges such cells by their status and by the tolerances 1e-1, 1e-3 and 1e-6 "
+           "that they reach, so rounding alone is not a regression.\n"
            "Runs of the portable preset (ISOLINE_PRESET=portable) give the same baseline on "
            "every x86-64-v3 machine."},
       declare, run));

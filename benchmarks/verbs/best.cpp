@@ -75,10 +75,12 @@ void register_best(VerbRegistry& registry) {
       {.name = "best",
        .help_position = 100,
        .summary =
-           "Write the lowest losses found, for problems that do not declare a least attainable loss",
+           "Write the lowest losses found, for problems that do not declare a least attainable "
+           "loss",
        .examples = "  isoline best results/quick --out benchmarks/best.json",
-       .notes =
-           "If a problem does not declare its least attainable loss, tolerances refer to the lowest known loss. The table benchmarks/best.json is compiled into the program; `isoline run --best FILE` reads another one."},
+       .notes = "If a problem does not declare its least attainable loss, tolerances refer to the "
+                "lowest known loss. The table benchmarks/best.json is compiled into the program; "
+                "`isoline run --best FILE` reads another one."},
       declare, run));
 }
 

@@ -35,13 +35,15 @@ void declare(VerbArguments& verb, ChooseArguments& given) {
   offers.emplace_back("inverse");
   verb.texts("DIR", given.folders, kFolders).required();
   verb.texts("--have", given.have,
-             "What your simulator computes; each kind includes the kinds before it")
+             "What your simulator computes: forward, gradient, jacobian or hessian, each of which "
+             "includes the ones before it, and inverse")
       .one_of(offers)
       .between_commas()
       .shown("forward");
   verb.whole(
       "--unknowns", given.unknowns,
-      "Number of unknowns of your problem. Only problems of the same class are used: up to 10, 11 to 100, more than 100 (default: all problems)",
+      "Number of unknowns of your problem. Only problems of the same class are used: up to 10, 11 "
+      "to 100, more than 100 (default: all problems)",
       {.low = 0, .high = 1'000'000'000});
   verb.real("--noise", given.noise, between(0, 10),
             "Noise in the data, relative to the root mean square of the data");
@@ -101,8 +103,8 @@ void register_choose(VerbRegistry& registry) {
        .summary = "Name the methods that suit your simulator, based on the runs of a study",
        .examples = "  isoline choose results/quick --have forward,gradient --unknowns 50\n"
                    "  isoline choose results/quick --have forward --budget 1000",
-       .notes =
-           "The first sentence is also in the report, in the tab 'Choose a method'. Methods marked * are not significantly worse than the first one."},
+       .notes = "The first sentence is also in the report, in the tab 'Choose a method'. Methods "
+                "marked * are not significantly worse than the first one."},
       declare, run));
 }
 

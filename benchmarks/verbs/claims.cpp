@@ -98,7 +98,8 @@ std::string terminal_text_of(const std::vector<reports::Judgement>& judgements, 
 std::string papers_page(const std::vector<reports::Judgement>& judgements) {
   return "# What do the papers claim, and what do the runs show?\n\n"
          "`./isoline claims --no-run --papers --out results/papers` writes this page, with one row "
-         "per claim in `benchmarks/claims` and the command that decides it. The runs are those of a "
+         "per claim in `benchmarks/claims` and the command that decides it. The runs are those of "
+         "a "
          "result folder. [Claims](claims.md) explains the verdicts.\n" +
          reports::markdown_section(reports::papers_section(judgements), reports::kAllRows) +
          reports::markdown_section(
@@ -144,16 +145,19 @@ void register_claims(VerbRegistry& registry) {
   registry.add(verb_of(
       {.name = "claims",
        .help_position = 110,
-       .summary = "Judge the claims of papers by runs; runs that are missing are made first",
+       .summary = "Judge the claims of papers by runs, after running the missing cells",
        .examples = R"(  isoline claims --list                        the claims and their sources
   isoline claims exponential                   one group of claims
   isoline claims sip-better-in-x-worse-in-loss     one claim, with its evidence
   isoline claims --no-run --out results/quick      the claims that the runs of a suite decide)",
        .notes =
            "A claim is reproduced if the measured values agree with the published one within its "
-           "uncertainty, and partly reproduced if only the direction holds. With fewer than six seeds, "
+           "uncertainty, and partly reproduced if only the direction holds. With fewer than six "
+           "seeds, "
            "a claim is consistent or at odds.\n"
-           "The program contains records of runs that take hours (benchmarks/published). They are used if the result folder lacks a run, and the evidence states their numbers of iterations and seeds.\n"
+           "The program contains records of runs that take hours (benchmarks/published). They are "
+           "used if the result folder lacks a run, and the evidence states their numbers of "
+           "iterations and seeds.\n"
            "Exit codes: 0 success, 2 a claim is not reproduced or a run failed, 4 not comparable."},
       declare, run));
 }

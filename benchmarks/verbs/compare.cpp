@@ -27,7 +27,7 @@ void declare(VerbArguments& verb, CompareArguments& given) {
   verb.real("--tolerance", given.tolerance, between(0, 1),
             "Relative tolerance of values (default: values must agree bit for bit)");
   verb.real("--noise", given.noise, between(0, 10),
-            "Least relative difference of times that counts (default: 0.1)");
+            "Smallest relative difference of times that counts (default: 0.1)");
   verb.text("--allow", given.allowed,
             "File (isoline.allowed/1) of cells, with reasons, that NEW may lack or whose success "
             "criterion may differ");
@@ -71,14 +71,17 @@ void register_compare(VerbRegistry& registry) {
   isoline compare baseline.json results/quick --tolerance 1e-6 --all
   isoline compare results/old results/new --markdown     for the summary of a job)",
        .notes =
-           "A cell is one problem, one optimizer and one seed. Exit codes: 0 no differences; 2 regressions, or NEW lacks a cell of BASE; 3 improvements and no regressions; 4 not comparable. A cell is not comparable if a time limit ended it, if its record contradicts itself, if the success criterion, f_L, scale, floor or nominal "
-           "costs differ, or if another build computed it and --tolerance is missing.\n"
+           "A cell is one problem, one optimizer and one seed. Exit codes: 0 no differences; 2 "
+           "regressions, or NEW lacks a cell of BASE; 3 improvements and no regressions; 4 not "
+           "comparable. A cell is not comparable if a time limit ended it, if its record "
+           "contradicts itself, if the success criterion, f_L, scale, floor or nominal costs "
+           "differ, or if another build computed it and --tolerance is missing.\n"
            "Cells are paired by problem, optimizer, seed and budget as requested. If the default "
            "of an option has changed, the cells are still compared, and the change is printed.\n"
            "Times are compared for cells with 9 repetitions in both folders (run --repeat 9), "
-           "for at most the 20 slowest cells of BASE. Two times differ if a Mann-Whitney test "
-           "finds it at a false discovery rate of 0.05, and if the whole 95 % interval of their "
-           "ratio lies outside the noise of the repetitions."},
+           "for at most the 20 slowest cells of BASE. Two times count as different if a "
+           "Mann-Whitney test rejects their equality at a false discovery rate of 0.05, and if "
+           "the whole 95 % interval of their ratio lies outside the noise of the repetitions."},
       declare, run));
 }
 

@@ -113,7 +113,7 @@ void print(const NetworkEntry& network, const OptionValues& options, bool as_jso
 
 const char* aim_text(Aim aim) {
   return aim == Aim::x
-             ? "x: the problem is solved if the run finds the true x"
+             ? "x: the problem is solved if the error in x is small"
              : "loss: the problem is solved if the loss is small, whatever the error in x";
 }
 

@@ -76,7 +76,8 @@ void register_export(VerbRegistry& registry) {
            R"(  isoline export results/quick --out curves.csv             one row per stored iteration
   isoline export results/quick --format coco --out exdata   for COCO's post-processing)",
        .notes =
-           "Reading the numbers back gives the same bits. Non-finite values are written as inf, -inf and nan."},
+           "Reading the numbers back gives the same bits. Non-finite values are written as inf, "
+           "-inf and nan."},
       declare, run));
 }
 

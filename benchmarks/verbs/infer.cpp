@@ -22,7 +22,8 @@ void declare(VerbArguments& verb, InferArguments& given) {
   verb.text("NETWORK", given.network, "File of the trained network").required();
   verb.text(
           "--input", given.input,
-          "Observations, one per row: .npy of shape (samples, length of y) or (samples, N, N), or .csv")
+          "Observations, one per row: .npy of shape (samples, length of y) or (samples, N, N), or "
+          ".csv")
       .required();
   verb.text("--output", given.output, "Output file for the inferred x: .npy or .csv").required();
   verb.time("--time", given.seconds, "Time limit: 10s, 2m (default: 10m)");

@@ -34,7 +34,8 @@ int run(const MergeArguments& given, Session&) {
     say(stderr, conflicts_text(outcome.conflicts));
     say(stderr,
         fmt::format(
-            "{} was not written: remove the wrong records, or run their cells again with --force, and merge again\n",
+            "{} was not written: remove the wrong records, or run their cells again with --force, "
+            "and merge again\n",
             given.out));
     return kWorse;
   }
@@ -53,7 +54,10 @@ void register_merge(VerbRegistry& registry) {
        .summary = "Merge result folders into a new one",
        .examples = "  isoline merge results/a results/b --out results/both",
        .notes =
-           "Records of the same cell (one problem, one optimizer, one seed) and build become one record with the times of all of them. If they differ in anything except times and provenance, `merge` does not write anything, lists the cells on standard error, and exits with code 2. Remove the "
+           "Records of the same cell (one problem, one optimizer, one seed) and build become one "
+           "record with the times of all of them. If they differ in anything except times and "
+           "provenance, `merge` does not write anything, lists the cells on standard error, and "
+           "exits with code 2. Remove the "
            "wrong records, or run their cells again with --force, and merge again."},
       declare, run));
 }

@@ -78,7 +78,8 @@ void require_name(const std::string& name, const Catalog& catalog) {
                      name.find("--") == std::string::npos && std::ranges::all_of(name, is_allowed);
   require(holds, [&] {
     return fmt::format(
-        "a name must consist of at most {} lower-case letters, digits and single hyphens, and must begin with a letter, got '{}'",
+        "a name must consist of at most {} lower-case letters, digits and single hyphens, and "
+        "must begin with a letter, got '{}'",
         kMost, name);
   });
   require(!catalog.problems.contains(name) && !catalog.optimizers.contains(name), [&] {
@@ -163,9 +164,9 @@ void register_new(VerbRegistry& registry) {
            "of your own\n"
            "  isoline new optimizer my-method --c          my_method.c, for a library\n"
            "  isoline new problem my-simulator --python    my_simulator.py, for a process",
-       .notes =
-           "The template builds and passes its checks. `new` also writes CMakeLists.txt or isoline.h "
-           "if it is missing, and does not overwrite any file."},
+       .notes = "The template builds and passes its checks. `new` also writes CMakeLists.txt or "
+                "isoline.h "
+                "if it is missing, and does not overwrite any file."},
       declare, run));
 }
 

@@ -30,7 +30,8 @@ void declare(VerbArguments& verb, PlanArguments& given) {
   declare_what_is_done(verb, given.run);
   verb.whole(
       "--shards", given.shards,
-      "Divide the plan into this many shards of about equal time, and write the predictions to predicted.json in the result folder, unless that file exists",
+      "Divide the plan into this many shards of about equal time, and write the predictions to "
+      "predicted.json in the result folder, unless that file exists",
       kShards);
   verb.texts("--from", given.earlier, "Earlier result folders, from which times are predicted")
       .between_commas();
@@ -81,7 +82,8 @@ std::string weights_text(Weights weights, const PlannedRun& all, std::size_t tim
     case Weights::declared:
       break;
   }
-  return "predictions: none, because earlier shards ran without them; the cells are divided by nominal cost";
+  return "predictions: none, because earlier shards ran without them; the cells are divided by "
+         "nominal cost";
 }
 
 void print_shards(const PlannedRun& all, const Preview& shown, const ShardPlan& plan,
@@ -135,7 +137,8 @@ void register_plan(VerbRegistry& registry) {
            "The predicted time of a cell is its time in records of the result folder and of --from "
            "or, without such a record, the time of the same cell with other seeds. Other cells "
            "have no prediction.\n"
-           "`isoline run --shard` divides the plan by predicted.json alone, so all tasks use the same shards, whenever they start."},
+           "`isoline run --shard` divides the plan by predicted.json alone, so all tasks use the "
+           "same shards, whenever they start."},
       declare, run));
 }
 

@@ -42,7 +42,7 @@ void declare(VerbArguments& verb, ReplayArguments& given) {
 // Why the two were not made by the same program on the same platform; empty where they were.
 std::string difference_of_builds(const Record& record, const Request& request) {
   if (record.cell != request.cell)
-    return "this program has other options: the request is another cell";
+    return "with the options of this program, the request identifies another cell";
   if (record.build == build_digest(request)) return "";
   std::string parts;
   for (const auto& [part, digest] : build_parts(request)) {
@@ -50,7 +50,7 @@ std::string difference_of_builds(const Record& record, const Request& request) {
     if (stored != record.build_parts.end() && stored->second == digest) continue;
     parts += (parts.empty() ? "" : ", ") + part;
   }
-  return "another build computed it, which differs in: " + parts;
+  return "another build computed it; these parts differ: " + parts;
 }
 
 std::string comparison_text(const Comparison& found) {

@@ -73,7 +73,7 @@ void keep_problems(reports::Study& study, const std::string& text) {
   std::erase_if(study.runs, [&](const Record& run) { return is_other(run.request.problem.spec); });
   std::erase_if(study.plan.cells, [&](const PlannedCell& cell) { return is_other(cell.problem); });
   require(!study.runs.empty(), [&] {
-    return fmt::format("--problem {}: these results do not have such a problem", text);
+    return fmt::format("--problem {}: these results do not contain this problem", text);
   });
 }
 
@@ -130,8 +130,10 @@ void register_report(VerbRegistry& registry) {
                    "  isoline report results/a results/b --out report --by cost --tolerance 1e-3",
        .notes =
            "Results contain 51 tolerances, five per decade from 1 to 1e-10; another tolerance is "
-           "replaced by the next stricter one. Work counts oracle calls at nominal cost, which is equal "
-           "on every machine; cost counts the same calls at measured cost. Times are comparable only in "
+           "replaced by the next stricter one. Work counts oracle calls at nominal cost, which is "
+           "equal "
+           "on every machine; cost counts the same calls at measured cost. Times are comparable "
+           "only in "
            "runs with --exclusive; others are marked ≈."},
       declare, run));
 }

@@ -134,7 +134,9 @@ void register_run(VerbRegistry& registry) {
   isoline run quick --shard 3/16               one shard; `isoline merge` joins them
   isoline run --problem square --optimizer gd --seeds =3 --in-process     for a debugger)",
        .notes =
-           "A cell is one problem, one optimizer and one seed, with a budget. Each cell runs in its own process, so a crash ends only its own cell (not with --in-process).\nRepeat the command to continue a run that was stopped.\n"
+           "A cell is one problem, one optimizer and one seed, with a budget. Each cell runs in "
+           "its own process, so a crash ends only its own cell (not with --in-process).\nRepeat "
+           "the command to continue a run that was stopped.\n"
            "Exit codes: 0 success, 2 cells failed or records disappeared, 130 interrupted."},
       declare_run, run));
 }

@@ -133,7 +133,8 @@ void register_score(VerbRegistry& registry) {
       {.name = "score",
        .help_position = 15,
        .summary =
-           "Count how many digits an optimizer gets right, next to other optimizers (on NIST's regressions by default)",
+           "Count how many digits an optimizer gets right, next to other optimizers (on NIST's "
+           "regressions by default)",
        .examples = R"(  isoline score --optimizer 'process[command="python3 mine.py"]'
   isoline score --optimizer 'minpack-lmder[ftol=1e-8,xtol=1e-8]' --peers none)",
        .notes = "Finished cells do not run again."},

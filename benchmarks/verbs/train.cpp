@@ -36,13 +36,16 @@ void declare(VerbArguments& verb, TrainArguments& given) {
   verb.text("PROBLEM", given.problem, "Problem: 'sine[xi=32]'; mode=learn is implied").required();
   verb.text("--out", given.out, "Output file, JSON").required();
   verb.text("--optimizer", given.optimizer, "Training method").shown();
-  verb.text("--from", given.from, "Network written by `train`, whose parameters are the start");
+  verb.text("--from", given.from,
+            "Network written by `train`; training starts from its "
+            "parameters");
   verb.whole("--iterations", given.iterations, "Number of training steps");
   verb.seed("--seed", given.seed, "Seed of the start and of the samples");
   verb.whole("--threads", given.threads, "Number of threads that libraries use", kThreads);
   verb.time(
       "--time", given.seconds,
-      "Time limit of training: 10s, 2m. At this limit, the network is saved as it is; after twice this processor time, the process is killed");
+      "Time limit of training: 10s, 2m. At this limit, the network is saved as it is; after twice "
+      "this processor time, the process is killed");
   verb.memory("--memory", given.memory_bytes, "Memory limit (default: 4GB)");
   verb.flag("--quiet", given.quiet, "Do not show progress");
   verb.plugins();

@@ -44,9 +44,9 @@ void declare(VerbArguments& verb, TuneArguments& given) {
   verb.text("--grid", given.grid,
             "Option and its values, low..high x count (default: the method's tunable option "
             "at seven values around its default, and more if the best value is at an edge)");
-  verb.text(
-          "--unit", given.unit,
-          "Unit of the values in --grid: one, cauchy (the problem's Cauchy step) or published (the published rate)")
+  verb.text("--unit", given.unit,
+            "Unit of the values in --grid: one, cauchy (the problem's Cauchy step) or published "
+            "(the published rate)")
       .one_of({"one", "cauchy", "published"})
       .shown();
   verb.flag("--leave-one-out", given.leaves_out,
@@ -67,8 +67,8 @@ void declare(VerbArguments& verb, TuneArguments& given) {
 }
 
 constexpr const char* kScore =
-    "median work to 1e-6 of the success criterion, the loss or the error in x; then the median "
-    "remainder at the end";
+    "median work needed to reach 1e-6, in loss or in x; if it is not reached, the median loss or "
+    "error in x at the end";
 
 constexpr const char* kLeftOutScore =
     "mean over the other families, each the mean over its settings, of 1 - log2(work/least work of "
@@ -254,7 +254,9 @@ std::string tuning_text(const TuningResult& result, bool lists_all) {
       .names = 2};
   table.caption =
       "Grid: one bar per value, from the lowest value to the highest; the tallest bar marks the "
-      "best value, and · marks a value whose runs failed. Work: the median work needed to reach 1e-6 with the best value; ✗: at most half of the runs reached 1e-6. Left: the median final loss, or the median final error in x if success is judged by x.";
+      "best value, and · marks a value whose runs failed. Work: the median work needed to reach "
+      "1e-6 with the best value; ✗: at most half of the runs reached 1e-6. Left: the median final "
+      "loss, or the median final error in x if success is judged by x.";
   for (const TunedOption& tuned : result.tuned) table.rows.push_back(tuning_row(tuned));
   if (!result.left_out_rows->empty()) table = left_out_table(*result.left_out_rows);
   if (!table.rows.empty()) section.tables.push_back(std::move(table));
@@ -292,7 +294,9 @@ void register_tune(VerbRegistry& registry) {
                    "  isoline tune --suite quick --optimizer adam --json\n"
                    "  isoline tune --leave-one-out sine,heat,burgers --table physics.json",
        .notes =
-           "The best value needs the least median work to reach 1e-6. If several values do not reach 1e-6, the least remaining loss or error in x decides. Ties go to the value nearest the default. The output lists ties and best values at an edge of the grid."},
+           "The best value needs the least median work to reach 1e-6. If several values do not "
+           "reach 1e-6, the least remaining loss or error in x decides. Ties go to the value "
+           "nearest the default. The output lists ties and best values at an edge of the grid."},
       declare, run));
 }
 

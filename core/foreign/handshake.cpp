@@ -1,4 +1,4 @@
-// Commands that are started, and what is known of them before.
+// Starts commands, and validates and caches what they declare in the handshake.
 #include "core/foreign/handshake.h"
 
 #include <fmt/format.h>
@@ -261,12 +261,14 @@ bool is_within(const std::vector<Real>& x, const ProblemHandshake& problem) {
 }
 
 // The answer to our greeting. The caller handles a broken connection, as it handles a wrong
-// argument.
+// argument; but it can ask a program again that was killed.
 std::string answer_to(Line& line, Json greeting, double seconds, const OptionValues& declared) {
   if (!declared.empty()) greeting["options"] = to_json(declared);
   try {
     line.send_text(Verb::hello, 0, json_text(greeting));
     return line.receive_text(Verb::hello, kMostHandshake, seconds);
+  } catch (const KilledProgram&) {
+    throw;
   } catch (const LineError& error) {
     throw UsageError(error.what());
   }

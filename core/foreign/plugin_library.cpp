@@ -1,4 +1,4 @@
-// Loads a library once and for all: what it brought may be called until the process ends.
+// Loads a library and never unloads it: its functions stay callable until the process ends.
 #include "core/foreign/plugin_library.h"
 
 #include <dlfcn.h>

@@ -1,4 +1,4 @@
-// The invariants of a record, each with the sentence that names what breaks it.
+// The invariants of a record, each with the message about its violation.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 

@@ -1,5 +1,4 @@
-// Values of JSON as simdjson leaves them on its tape, and schemas by valijson: the only adapter to
-// both.
+// Views of JSON values on the tape of simdjson, and schemas by valijson; the only adapter to both.
 #include "core/records/json_view.h"
 
 #include <fmt/format.h>

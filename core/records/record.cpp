@@ -1,6 +1,6 @@
-// Records, requests and plans: the members that stand in their files, and what follows from them. A
-// new member of a record costs its line in record.h, its line here, the place that fills it, and
-// the schema renewed (tests/core/record_test.cpp).
+// Records, requests and plans: the members of their files, and values that follow from them. A new
+// member of a record costs its line in record.h, its line here, the place that fills it, and the
+// schema renewed (tests/core/record_test.cpp).
 #include "core/records/record.h"
 
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-// Chooses methods by what they need, from the runs of a study.
+// Selects and ranks methods by their requirements, from the runs of a study.
 #include "core/results/advice.h"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
-// Charts as the report drew them. Lines lie in an area of coordinates from 0 to 5,000; to zoom is to
-// change its view, and to read a point is to read the line's own path.
+// Charts as the report drew them. Lines lie in an area with coordinates from 0 to 5,000. Zooming
+// changes the view of this area, and values are read from the path of a line.
 const AREA = 5000;
 
 const axisOf = (chart, key) => {

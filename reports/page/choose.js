@@ -1,5 +1,5 @@
-// What a reader has, and which method suits it: the report has the advice for every choice, and this
-// looks it up.
+// The tab "Choose a method": the report contains the advice for every choice, and this script looks
+// it up.
 const SIZES = ['any', 'up to 10', '11 to 100', 'more than 100'], BUDGETS = ['any', '10000', '1000', '100'];
 const LEVELS = ['forward', 'gradient', 'jacobian', 'hessian'];  // in the order of DATA.advice
 const means = {level: 0, inverse: 0, size: 0, budget: 0, kind: 0};  // kind: of data

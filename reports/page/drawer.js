@@ -1,4 +1,4 @@
-// The evidence of a figure: what is known of a method on a problem, its curve, its records, and the
+// The evidence of a number: the data of a method on a problem, its curve, its records, and the
 // commands that repeat it.
 
 // A row of the table of all cells, packed or not: it has the command.

@@ -1,5 +1,5 @@
-// Fields of a problem on a grid: a byte a cell, painted on a canvas; a slider over the kept steps
-// changes every picture of x.
+// Fields of a problem on a grid, with one byte per cell, painted on a canvas. A slider over the
+// stored iterations changes every image of x.
 const ZERO = 128;  // the byte of the value 0
 const bytesOf = (text) => Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
 const lessTruth = (bytes, truth) => bytes.map((byte, i) => Math.min(255, Math.max(1, ZERO + byte - truth[i])));

@@ -1,4 +1,4 @@
-// What the page does: themes, switches, copying, and what is built when first seen.
+// The behaviour of the page: themes, switches, copying, and parts that are built when first shown.
 function pressable(text, isPressed, onPress) {
   const button = document.createElement('button');
   button.type = 'button';

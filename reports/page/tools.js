@@ -1,4 +1,5 @@
-// What a reader does with a chart: zoom by a drag, linear or logarithmic axes, the chart as a file.
+// The tools of a chart: zoom by dragging, linear or logarithmic axes, and saving the chart as a
+// file.
 
 // Each corner of a path, moved: steps stay steps, since each axis moves for itself.
 function movedPath(path, across, up) {

@@ -1,6 +1,6 @@
 // The selection of the reader: the methods and problems, the tolerance, and the measure. Stored in
-// the address, so that a view can be shared. Any element with data-s or data-p follows, of any
-// script: a filter hides, and changes no number.
+// the address, so that a view can be shared. It applies to every element with data-s or data-p,
+// whichever script made it. A filter hides elements and does not change any number.
 const TARGETS = DATA.targets;  // those there are medians to, of τ = 10^(−j/5)
 const DEFAULT_TARGET = DATA.rungs[DATA.rungs.length - 1];  // the report's own
 const KINDS = {s: {names: DATA.optimizers, address: 'o'}, p: {names: DATA.problems.map((problem) => problem.spec), address: 'p'}};

@@ -1,5 +1,5 @@
-// Collects what decides a claim, figures run by run and curves that are read as the figures are,
-// and judges it.
+// Collects the evidence for a claim, which consists of values per run and curves read in the same
+// way, and judges the claim.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// The error that a fixed number of forward solves buys, beside the cost of a fixed accuracy.
+// The error in x after a fixed number of forward solves.
 #include <array>
 #include <cmath>
 

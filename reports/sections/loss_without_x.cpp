@@ -1,6 +1,6 @@
-// The table of the two kinds of success held against each other: a small loss, and the x that was
-// sought. How far apart they are is a matter of conditioning: J maps errors in x, by its singular
-// values, to errors in y.
+// A table that compares the two kinds of success: a small loss, and a small error in x. Their
+// difference depends on conditioning, because J maps errors in x to errors in y by its singular
+// values.
 #include <fmt/format.h>
 
 #include <algorithm>

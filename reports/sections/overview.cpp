@@ -1,4 +1,4 @@
-// Puts the sections of a report in order; its first sentences, and those that read its charts.
+// Orders the sections of a report, and writes its first sentences and the summaries of its charts.
 #include <algorithm>
 #include <map>
 #include <optional>

@@ -1,4 +1,4 @@
-// The audit of properties: a sentence each, and the table of all that was measured.
+// The audit of properties: one sentence per property, and the table of all measurements.
 #include <fmt/format.h>
 
 #include <algorithm>

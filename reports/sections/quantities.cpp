@@ -1,5 +1,5 @@
-// Figures of runs, columns of their curves and what their paths come to; the quantities made of
-// medians of them; and when these agree with what was published.
+// Values of runs, of their curves and of their paths; quantities computed from medians of these
+// values; and their agreement with published values.
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>

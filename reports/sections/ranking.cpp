@@ -1,5 +1,4 @@
-// Which methods rank where and what that is worth: sentences and tables, all of them derived from
-// one decision.
+// The ranking of methods and its reliability: sentences and tables, all derived from one decision.
 #include <fmt/format.h>
 
 #include <algorithm>

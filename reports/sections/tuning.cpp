@@ -1,5 +1,5 @@
-// Where the rates of methods came from, and what tuning bought: values tried, edges, the best of b
-// of them.
+// The origin of the methods' rates and the effect of tuning: values tried, edges of grids, the best
+// of b values.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <regex>
 
 #include "benchmarks/plan/catalog.h"
 #include "benchmarks/run/process_group.h"
@@ -67,6 +68,29 @@ TEST_F(ForeignCells, WhoseProgramWasKilledAreInterrupted) {
   EXPECT_EQ(record_after("is-killed").status, Status::interrupted);
 }
 
+// The plan starts the first program, the cell the second, and the verifier the third.
+TEST_F(ForeignCells, WhoseProgramWasKilledAtItsStartOrInTheVerifierRunAgain) {
+  const auto script = folder.path() / "mortal.py", log = folder.path() / "programs";
+  write_text(script,
+             "import os, signal, sys, isoline\n"
+             "log = '" +
+                 log.string() +
+                 "'\n"
+                 "open(log, 'a').write('.')\n"
+                 "if os.path.getsize(log) > int(sys.argv[1]):\n"
+                 "    os.kill(os.getpid(), signal.SIGKILL)\n"
+                 "isoline.problem(lambda x: [x[0]], [1.0], jacobian=lambda x: [[1.0]])\n");
+  for (const std::size_t spared : {1U, 2U}) {
+    write_text(log, "");
+    const Request request =
+        request_of(process_of("python3 " + script.string() + " " + std::to_string(spared)), "gd");
+    const Record record = record_of(request);
+    EXPECT_EQ(record.status, Status::interrupted) << record.message;
+    EXPECT_EQ(record.curve.iteration.empty(), spared == 1) << "the cell's own program";
+    EXPECT_EQ(run_all(catalog(), {request}, store, options).run, 1) << "it runs again";
+  }
+}
+
 TEST_F(ForeignCells, OfOneThatPrintsAGigabyteKeepItsBeginning) {
   options.limits.hard_seconds = 60;
   const Record record = record_after("floods");
@@ -122,6 +146,23 @@ TEST_F(ForeignCells, AreRunOnlyWhereTheProblemIsCertified) {
   const Request raises = request_of(process_of(misbehaving("misbehaving.py raises")), "gd");
   EXPECT_NE(record_of(raises).message.find("ValueError: the mesh is tangled"), std::string::npos);
   EXPECT_EQ(complaint("is-sound"), "");
+}
+
+TEST_F(ForeignCells, WaitForACertificateThatSaysHowFarItIs) {
+  const auto script = folder.path() / "slow.py";
+  write_text(script,
+             "import time, isoline\n"
+             "def forward(x):\n"
+             "    time.sleep(0.01)\n"
+             "    return [x[0]]\n"
+             "isoline.problem(forward, start=[1.0], jacobian=lambda x: [[1.0]])\n");
+  const Request request =
+      request_of(process_of("python3 " + script.string()), "gd", {.iterations = 1});
+  options.progress = Progress::Style::live;
+  testing::internal::CaptureStderr();
+  run_plan(catalog(), "trial", {request}, folder.path(), options, {});
+  const std::string shown = testing::internal::GetCapturedStderr();
+  EXPECT_TRUE(std::regex_search(shown, std::regex("[0-9]+ of [0-9]+ checks"))) << shown;
 }
 
 TEST_F(ForeignCells, OfAnUncertifiedProblemAreMarkedInEachTable) {

@@ -434,7 +434,7 @@ TEST_F(HostileCells, ThatContinueDoNotRepeatTheirSteps) {
   options.least_kept_seconds = 0;
   Request request = hostile("count");
   request.budget.target = 0;
-  for (const auto [iterations, counted] : {std::pair{50, 48}, std::pair{60, 48 + 11}}) {
+  for (const auto& [iterations, counted] : {std::pair{50, 48}, std::pair{60, 48 + 11}}) {
     request.budget.iterations = iterations;  // the last step of the first run is taken again
     run_all(catalog, {named(request)}, store, options);
     EXPECT_EQ(store.find(named(request))->summary.iterations, iterations);

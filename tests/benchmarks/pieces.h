@@ -1,5 +1,5 @@
-// Physics by functions; and a run that is stopped after every step and gone on with, until it has
-// ended by itself.
+// Physics given by functions; and a run that is stopped and continued after every step until it
+// ends by itself.
 #pragma once
 
 #include <gtest/gtest.h>

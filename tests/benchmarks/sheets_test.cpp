@@ -1,4 +1,4 @@
-// Sheets of components, plans, and the prices of oracles.
+// Component metadata, plans, and the measured costs of oracles.
 #include "benchmarks/run/sheets.h"
 
 #include <gtest/gtest.h>

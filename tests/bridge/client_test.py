@@ -2,14 +2,20 @@
 started for each cell, is certified, run and ended with it."""
 
 import glob
+import http.server
 import json
 import os
 import pathlib
+import socket
 import subprocess
 import sys
 import tempfile
+import threading
 import time
 import unittest
+
+sys.path.insert(0, str(pathlib.Path(__file__).parents[2] / "clients" / "python"))
+import umbridge  # noqa: E402
 
 SERVER = pathlib.Path(__file__).parent / "model_server.py"
 GIVEN = "--start [-1.2,1] --target [0,0] --truth [1,1] --minimum 0"
@@ -148,6 +154,52 @@ class Client(unittest.TestCase):
         while processes_with(str(SERVER)) and time.monotonic() < deadline:
             time.sleep(0.1)
         self.assertEqual(processes_with(str(SERVER)), [])
+
+
+class Options:
+    """A socket that keeps what it was asked to set."""
+
+    def __init__(self, inner):
+        self.inner, self.told = inner, []
+
+    def setsockopt(self, *given):
+        self.told.append(given)
+        self.inner.setsockopt(*given)
+
+    def __getattr__(self, name):
+        return getattr(self.inner, name)
+
+
+class Answers(http.server.BaseHTTPRequestHandler):
+    protocol_version = "HTTP/1.1"  # the connection stays open
+
+    def do_GET(self):
+        self.send_response(200)
+        self.send_header("Content-Length", "2")
+        self.end_headers()
+        self.wfile.write(b"{}")
+
+    def log_message(self, *_):
+        pass
+
+
+class Connection(unittest.TestCase):
+    @unittest.skipUnless(hasattr(socket, "TCP_QUICKACK"), "the system has no TCP_QUICKACK")
+    def test_no_packet_waits_for_an_acknowledgement(self):
+        server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), Answers)
+        self.addCleanup(server.server_close)
+        self.addCleanup(server.shutdown)
+        threading.Thread(target=server.serve_forever, daemon=True).start()
+        model = umbridge.Model.__new__(umbridge.Model)
+        model.url, model.connection = f"http://127.0.0.1:{server.server_port}", None
+        self.assertEqual(model.exchange("/Info", {}), (200, "{}"))
+        kept = model.connection.sock
+        self.addCleanup(kept.close)
+        self.assertNotEqual(kept.getsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY), 0)
+        model.connection.sock = Options(kept)
+        model.exchange("/Info", {})
+        self.assertIn((socket.IPPROTO_TCP, socket.TCP_QUICKACK, 1), model.connection.sock.told,
+                      "the same connection, for each request")
 
 
 if __name__ == "__main__":

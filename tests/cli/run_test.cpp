@@ -352,7 +352,15 @@ TEST_F(Run, GoesOnWhereAComponentTerminatesItsParent) {
              "import os, signal, isoline\n"
              "os.kill(os.getppid(), signal.SIGTERM)\n"
              "isoline.problem(lambda x: [2 * x[0]], start=[1.0], jacobian=lambda x: [[2]])\n");
-  shell.expect("./isoline describe 'process[command=\"python3 kills.py\"]'");
+  const std::string problem = "'process[command=\"python3 kills.py\"]' ";
+  shell.expect("./isoline describe " + problem);
+  shell.expect("./isoline run --problem " + problem + "--optimizer gd --out out",
+               {.exit_code = 1, .err = {"cannot be checked", "signal 15"}});
+}
+
+TEST_F(Run, EndsWithAMessageWhereNoFileMayGrow) {
+  shell.expect("ulimit -f 1; " + kMatrix + "--no-report",
+               {.exit_code = 2, .err = {"cannot write out/", "File too large"}});
 }
 
 TEST_F(Run, EndsWithAMessageWhereNoFileCanBeOpened) {
@@ -535,7 +543,7 @@ TEST_F(Replay, OfAnotherBuildOrAComponentThatIsNotThereIsNotComparable) {
            record["build"] = std::string(16, '0');
            record["build_parts"]["optimizer"] = std::string(16, '1');
          },
-         {.exit_code = 4, .out = {"differs in: optimizer; equal"}});
+         {.exit_code = 4, .out = {"parts differ: optimizer; equal"}});
   replay("gd", [](Json& record) { record["request"]["problem"]["name"] = "sqare"; },
          {.exit_code = 4, .out = {"did you mean 'square'"}});
 }

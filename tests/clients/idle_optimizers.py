@@ -1,4 +1,4 @@
-"""Optimizers that keep no law, one a word."""
+"""Optimizers that violate the protocol, one per argument."""
 
 import sys
 

@@ -1,4 +1,4 @@
-"""Programs that keep no law, one a word: what the door of child processes must survive."""
+"""Programs that violate the protocol, one per argument, to test the adapter of child processes."""
 
 import os
 import struct

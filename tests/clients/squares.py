@@ -1,4 +1,4 @@
-"""Unknowns of unlike sizes and two solutions, of which any counts as the true x."""
+"""Unknowns of different magnitudes and two solutions, each of which counts as the true x."""
 
 import isoline
 

@@ -1,6 +1,6 @@
-"""One problem through every door: the tree, a child process, UM-Bridge and a C library give the same
-trace, bit for bit, since their arithmetic is the same. Called with the program, the valley in Python,
-and the library of the example in C."""
+"""One problem through every adapter: a built-in component, a child process, UM-Bridge and a C
+library give the same trace, bit for bit, since their arithmetic is the same. Called with the
+program, the valley in Python, and the library of the example in C."""
 
 import glob
 import json

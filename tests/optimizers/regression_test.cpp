@@ -78,11 +78,12 @@ TEST(Regression, StandardDeviationsNeedMoreResidualsThanUnknowns) {
   EXPECT_EQ(flat.trace->uncertainty.unknowns, 0);
 }
 
-// 4,564 evaluations were counted. Steps at the level of rounding still make x more accurate.
+// 4,564 evaluations were counted with kernels for AVX2, 5,168 with those for SSE3: the steps at the
+// level of rounding differ, and still make x more accurate.
 TEST(Regression, LevenbergMarquardtSolvesAllCellsButOne) {
   const Sum sum = sum_over_all("levenberg-marquardt");
   EXPECT_GE(sum.solved, 53);
-  EXPECT_LE(sum.forwards, 4700);  // room for the rounding of other kernels
+  EXPECT_LE(sum.forwards, 6000);  // room for the rounding of other kernels
   EXPECT_GE(sum.digits, 9.9);
 }
 

@@ -18,11 +18,15 @@ using problems::loss_at;
 using problems::loss_at_start;
 using problems::make;
 
+// The optimizer that docs/ shows, unless a reader has saved it in the tree.
+void register_readme_examples(OptimizerRegistry& registry);
+
 // Those that are made by their name alone.
 inline const OptimizerRegistry& optimizers() {
   static const OptimizerRegistry all = [] {
     OptimizerRegistry registry("optimizer");
     register_optimizers(registry);
+    register_readme_examples(registry);
     return registry.ready();
   }();
   return all;

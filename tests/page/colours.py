@@ -1,4 +1,4 @@
-"""How far apart colours are to readers who see fewer of them.
+"""Distances between colours as seen with colour-vision deficiencies.
 
 Simulated at full severity after Machado, Oliveira and Fernandes (2009), table 1; distances are
 Euclidean in CIE Lab (D65).

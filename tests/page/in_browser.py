@@ -1,4 +1,4 @@
-"""Tests of a page in a browser of their own, which complains of nothing and asks the network nothing."""
+"""Base of page tests: each has its own browser, and fails on console errors and network requests."""
 
 import subprocess
 import sys

@@ -368,6 +368,38 @@ TEST(New, AProblemInCBuildsPassesItsChecksAndIsSolved) {
     EXPECT_EQ(read_json(entry.path()).at("verified").at("1e-6"), true) << entry.path();
 }
 
+// Rosenbrock's valley, whose inverse does `deed` first, on one method.
+Finished run_of_valley(const Shell& shell, const std::string& deed) {
+  fs::copy_file(kTree + "/core/foreign/isoline.h", shell.folder() / "isoline.h");
+  std::string text = read_text(kTree + "/clients/c/rosenbrock.c");
+  const std::string begin = "  (void)self, (void)x0;\n";
+  text.insert(text.find(begin) + begin.size(), "  " + deed + ";\n");
+  write_text(shell.folder() / "valley.c",
+             "#define _POSIX_C_SOURCE 200809L\n#include <signal.h>\n#include <stdlib.h>\n"
+             "#include <unistd.h>\n" +
+                 text);
+  EXPECT_EQ(built(shell, "valley"), "");
+  return shell(
+      "./isoline run --problem rosenbrock-c --optimizer newton --plugin ./libvalley.so --out out "
+      "--no-report");
+}
+
+TEST(Library, ThatAbortsInItsCertificateHasNoCells) {
+  const Shell shell;
+  const Finished refused = run_of_valley(shell, "abort()");
+  EXPECT_EQ(refused.exit_code, 1) << refused.out << refused.err;
+  EXPECT_TRUE(contains(refused.err, "rosenbrock-c fails its checks")) << refused.err;
+  EXPECT_TRUE(contains(refused.err, "signal 6")) << refused.err;
+  EXPECT_EQ(count_records(shell.folder() / "out"), 0U);
+}
+
+TEST(Library, ThatTerminatesItsParentInItsCertificateDoesNotEndTheRun) {
+  const Shell shell;
+  const Finished done = run_of_valley(shell, "kill(getppid(), SIGTERM)");
+  EXPECT_EQ(done.exit_code, 0) << done.out << done.err;
+  EXPECT_EQ(count_records(shell.folder() / "out"), 1U);
+}
+
 TEST(Library, ThatAbortsWhenItIsUnloadedCostsNothingThatIsDone) {
   const Shell shell;
   ASSERT_EQ(shell("./isoline new problem last --c").exit_code, 0);

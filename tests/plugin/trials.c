@@ -1,6 +1,7 @@
-// A library of what the examples are not: a problem of both products, one of forward alone, one
-// that crashes, a method that solves in one call and one that asks for what it did not declare. The
-// variable ISOLINE_DEFECT names one thing to be wrong with the first of them.
+// A library of components that the examples do not cover: a problem with both products, one with
+// forward alone, one that crashes, a method that solves in one call, and one that calls an
+// undeclared oracle. The environment variable ISOLINE_DEFECT selects a defect of the first
+// component.
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

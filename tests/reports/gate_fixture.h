@@ -1,4 +1,4 @@
-// Two result folders of which one was edited: what the gate is tried on.
+// Two result folders, one of them edited, for tests of the gate.
 #pragma once
 
 #include <algorithm>

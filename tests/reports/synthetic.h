@@ -1,4 +1,4 @@
-// Result folders of any size from a seed: what the bar of a hundred thousand records is held with.
+// Generates result folders of any size from a seed, to test reports of a hundred thousand records.
 #pragma once
 
 #include <filesystem>

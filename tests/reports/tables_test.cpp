@@ -445,7 +445,7 @@ TEST(Amortized, ANetworkNoNearerThanWhereSolversStartIsSaidToBe) {
   const Shown shown({trained(0, 11, 3), single("newton", 0, 2)});
   EXPECT_EQ(shown.number(0, kSolved), 0);
   EXPECT_EQ(shown.text(0, "break-even"), "never");
-  EXPECT_TRUE(has(shown.section.tables[0].reading, "newton already has"))
+  EXPECT_TRUE(has(shown.section.tables[0].reading, "error of newton is"))
       << shown.section.tables[0].reading;
 }
 

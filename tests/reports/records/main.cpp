@@ -1,5 +1,5 @@
-// isoline_records FOLDER [PROBLEMS [OPTIMIZERS [SEEDS]]]: writes a result folder of invented
-// records, to hold `isoline report` and its like to their bar.
+// isoline_records FOLDER [PROBLEMS [OPTIMIZERS [SEEDS]]]: writes a result folder of synthetic
+// records, to measure the time and memory of `isoline report` and similar commands.
 #include <fmt/format.h>
 
 #include <exception>

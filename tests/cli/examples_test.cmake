@@ -1,0 +1,37 @@
+# Where a reader has saved the examples of README.md and docs/ in the tree, as their pages say, the tests
+# compile them no second time. Run by cmake -DTREE= -DTHERE= -P.
+cmake_minimum_required(VERSION 3.25)
+file(REMOVE_RECURSE ${THERE})
+file(COPY ${TREE}/README.md ${TREE}/docs DESTINATION ${THERE} FILES_MATCHING PATTERN "*.md")
+file(CONFIGURE OUTPUT ${THERE}/CMakeLists.txt CONTENT
+"cmake_minimum_required(VERSION 3.25)
+project(pages NONE)
+include(\"@TREE@/tests/cli/examples.cmake\")
+readme_examples(sources)
+file(WRITE \"@THERE@/sources\" \"\${sources}\")
+" @ONLY)
+
+function(configured)
+  execute_process(COMMAND ${CMAKE_COMMAND} -S ${THERE} -B ${THERE}/build COMMAND_ERROR_IS_FATAL ANY
+                  OUTPUT_QUIET)
+  file(READ ${THERE}/sources sources)
+  list(FILTER sources EXCLUDE REGEX "/readme/(catalog|optimizers)\\.cpp$")
+  set(sources ${sources} PARENT_SCOPE)
+  file(READ ${THERE}/build/readme/catalog.cpp problems)
+  file(READ ${THERE}/build/readme/optimizers.cpp optimizers)
+  string(REGEX MATCHALL "register_[a-z0-9_]+.registry.;" calls "${problems}${optimizers}")
+  set(calls ${calls} PARENT_SCOPE)
+endfunction()
+
+configured()
+if(NOT sources MATCHES "/problems/" OR NOT sources MATCHES "/optimizers/")
+  message(FATAL_ERROR "the pages show no problem or no optimizer: ${sources}")
+endif()
+foreach(source IN LISTS sources)
+  cmake_path(RELATIVE_PATH source BASE_DIRECTORY ${THERE}/build/readme OUTPUT_VARIABLE name)
+  configure_file(${source} ${THERE}/${name} COPYONLY)
+endforeach()
+configured()
+if(sources OR calls)
+  message(FATAL_ERROR "compiled twice: ${sources}; registered twice: ${calls}")
+endif()
