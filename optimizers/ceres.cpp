@@ -10,6 +10,7 @@
 #include <exception>
 #include <limits>
 #include <memory>
+#include <numeric>
 #include <string>
 #include <utility>
 #include <vector>
@@ -49,33 +50,14 @@ struct Evaluation {
   }
 };
 
-// r and its Jacobian as one block of n parameters.
-struct ResidualBlock final : ceres::CostFunction {
-  Evaluation& evaluation;
-  mutable Vector residual;  // (m·B)
-
-  explicit ResidualBlock(Evaluation& shared) : evaluation(shared) {
-    set_num_residuals(static_cast<int>(evaluation.f.residuals()));
-    mutable_parameter_block_sizes()->push_back(static_cast<int>(evaluation.f.unknowns()));
-  }
-  bool Evaluate(double const* const* theta, double* r, double** J) const override {
-    using RowMajor = Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-    return evaluation.at(theta[0], [&](Linearization& at) {
-      at.residual(residual);
-      Map<Vector>(r, residual.size()) = residual;
-      if (!J || !J[0]) return;
-      const Real scale = 1 / std::sqrt(static_cast<Real>(evaluation.f.samples()));
-      Map<RowMajor>(J[0], residual.size(), evaluation.theta.size()) = scale * at.jacobian();
-    });
-  }
-};
-
-// All residual blocks of a sparse Jacobian: one call of the problem at a point fills them.
+// All residual blocks: one call of the problem at a point fills them. Where J is dense, each
+// residual is a block, as in Ceres' own program for NIST's data.
 struct SharedBlocks final : ceres::EvaluationCallback {
   Evaluation& evaluation;
   const Vector& theta;  // (n), where Ceres puts the point before it calls
-  Vector residual;      // (m)
-  const Real* values = nullptr;
+  Vector residual;      // (m·B)
+  Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> dense;  // (m·B, n)
+  const Real* values = nullptr;                                                // J's, by rows
   bool is_evaluated = false;
 
   SharedBlocks(Evaluation& shared, const Vector& parameters)
@@ -83,7 +65,13 @@ struct SharedBlocks final : ceres::EvaluationCallback {
   void PrepareForEvaluation(bool with_jacobian, bool) override {
     is_evaluated = evaluation.at(theta.data(), [&](Linearization& at) {
       at.residual(residual);
-      if (with_jacobian) values = at.sparse_jacobian().data();
+      if (!with_jacobian) return;
+      if (evaluation.f.is_sparse()) {
+        values = at.sparse_jacobian().data();
+      } else {
+        dense = at.jacobian() / std::sqrt(static_cast<Real>(evaluation.f.samples()));
+        values = dense.data();
+      }
     });
   }
 };
@@ -93,17 +81,12 @@ struct SharedBlock final : ceres::CostFunction {
   const SharedBlocks& all;
   int first_row, first_value, width = 0;
 
-  SharedBlock(const SharedBlocks& shared, const SparsePattern& pattern, int block,
-              std::vector<int>& parameters)
-      : all(shared), first_row(pattern.residual_block[static_cast<std::size_t>(block)]) {
-    first_value = pattern.row_start[static_cast<std::size_t>(first_row)];
-    set_num_residuals(pattern.residual_block[static_cast<std::size_t>(block) + 1] - first_row);
-    parameters.clear();
-    pattern.for_each_block(block, [&](int parameter, int) {
-      parameters.push_back(parameter);
-      mutable_parameter_block_sizes()->push_back(pattern.size_of(parameter));
-      width += pattern.size_of(parameter);
-    });
+  SharedBlock(const SharedBlocks& shared, int row, int rows, int value,
+              const std::vector<int>& sizes)
+      : all(shared), first_row(row), first_value(value) {
+    set_num_residuals(rows);
+    *mutable_parameter_block_sizes() = sizes;
+    width = std::accumulate(sizes.begin(), sizes.end(), 0);
   }
   bool Evaluate(double const* const*, double* r, double** J) const override {
     if (!all.is_evaluated) return false;
@@ -203,44 +186,58 @@ void set_bounds(const Bounds& bounds, Index first, int count, double* place,
   }
 }
 
-Status solve_by_blocks(ceres::Solver::Options options, Evaluation& evaluation, Vector& theta) {
+// The blocks of a dense J: a residual each, all of one block of n parameters.
+void add_rows(const SharedBlocks& shared, Evaluation& evaluation, Vector& theta,
+              ceres::Problem& problem) {
+  const int n = static_cast<int>(theta.size());
+  for (int i = 0; i < evaluation.f.residuals(); ++i)
+    problem.AddResidualBlock(new SharedBlock(shared, i, 1, i * n, {n}), nullptr, theta.data());
+  if (const Bounds* bounds = evaluation.f.bounds())
+    set_bounds(*bounds, 0, n, theta.data(), problem);
+}
+
+// Those that the pattern of a sparse J declares.
+void add_blocks(const SharedBlocks& shared, Evaluation& evaluation, Vector& theta,
+                ceres::Problem& problem, ceres::Solver::Options& options) {
   const SparsePattern& pattern = *evaluation.f.sparse_pattern();
   const auto at = [&](int block) {
     return theta.data() + pattern.parameter_block[static_cast<std::size_t>(block)];
   };
-  SharedBlocks shared(evaluation, theta);
-  ceres::Problem::Options calls;
-  calls.evaluation_callback = &shared;
-  ceres::Problem problem(calls);  // owns the blocks
-  std::vector<int> parameters;
+  std::vector<int> sizes;
   std::vector<double*> places;
   for (int i = 0; i < pattern.residual_blocks(); ++i) {
-    auto* const block = new SharedBlock(shared, pattern, i, parameters);
+    sizes.clear();
     places.clear();
-    for (const int j : parameters) places.push_back(at(j));
-    problem.AddResidualBlock(block, nullptr, places);
+    pattern.for_each_block(i, [&](int parameter, int) {
+      sizes.push_back(pattern.size_of(parameter));
+      places.push_back(at(parameter));
+    });
+    const int row = pattern.residual_block[static_cast<std::size_t>(i)];
+    const int rows = pattern.residual_block[static_cast<std::size_t>(i) + 1] - row;
+    const int value = pattern.row_start[static_cast<std::size_t>(row)];
+    problem.AddResidualBlock(new SharedBlock(shared, row, rows, value, sizes), nullptr, places);
   }
   if (const Bounds* bounds = evaluation.f.bounds())
     for (int j = 0; j < pattern.parameter_blocks(); ++j)
       if (problem.HasParameterBlock(at(j)))
         set_bounds(*bounds, at(j) - theta.data(), pattern.size_of(j), at(j), problem);
-  if (pattern.has_eliminated()) {
-    options.linear_solver_ordering = std::make_shared<ceres::ParameterBlockOrdering>();
-    for (int j = 0; j < pattern.parameter_blocks(); ++j)
-      if (problem.HasParameterBlock(at(j)))
-        options.linear_solver_ordering->AddElementToGroup(at(j), j < pattern.first_eliminated);
-  }
-  ceres::Solver::Summary summary;
-  ceres::Solve(options, &problem, &summary);
-  return verdict(evaluation, summary);
+  if (!pattern.has_eliminated()) return;
+  options.linear_solver_ordering = std::make_shared<ceres::ParameterBlockOrdering>();
+  for (int j = 0; j < pattern.parameter_blocks(); ++j)
+    if (problem.HasParameterBlock(at(j)))
+      options.linear_solver_ordering->AddElementToGroup(at(j), j < pattern.first_eliminated);
 }
 
-Status solve(const ceres::Solver::Options& options, Evaluation& evaluation, Vector& theta) {
-  if (evaluation.f.is_sparse()) return solve_by_blocks(options, evaluation, theta);
-  ceres::Problem problem;  // owns the block
-  problem.AddResidualBlock(new ResidualBlock(evaluation), nullptr, theta.data());
-  if (const Bounds* bounds = evaluation.f.bounds())
-    set_bounds(*bounds, 0, static_cast<int>(theta.size()), theta.data(), problem);
+Status solve(ceres::Solver::Options options, Evaluation& evaluation, Vector& theta) {
+  SharedBlocks shared(evaluation, theta);
+  ceres::Problem::Options calls;
+  calls.evaluation_callback = &shared;
+  ceres::Problem problem(calls);  // owns the blocks
+  if (evaluation.f.is_sparse()) {
+    add_blocks(shared, evaluation, theta, problem, options);
+  } else {
+    add_rows(shared, evaluation, theta, problem);
+  }
   ceres::Solver::Summary summary;
   ceres::Solve(options, &problem, &summary);
   return verdict(evaluation, summary);

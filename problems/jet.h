@@ -10,7 +10,7 @@
 namespace isoline::problems {
 
 // With these for Real, a formula reads alike for every scalar.
-using std::atan, std::cos, std::exp, std::log, std::sin, std::sqrt;
+using std::atan, std::cos, std::exp, std::log, std::pow, std::sin, std::sqrt;
 
 template <class T, int N>
 struct Jet {
@@ -39,10 +39,17 @@ struct Jet {
     for (int i = 0; i < N; ++i) c.by[i] += a.value * b.by[i];
     return c;
   }
-  friend Jet operator/(const Jet& a, const Jet& b) { return a * inverse(b); }
-  friend Jet inverse(const Jet& a) {
-    const T f = T(1) / a.value;
-    return {f, -(f * f), a};
+  friend Jet operator/(const Jet& a, const Jet& b) {
+    const T f = a.value / b.value, slope = T(1) / b.value;
+    Jet c(f, slope, a);
+    for (int i = 0; i < N; ++i) c.by[i] += -(f * slope) * b.by[i];
+    return c;
+  }
+  friend Jet pow(const Jet& a, const Jet& b) {  // a > 0
+    const T f = pow(a.value, b.value);
+    Jet c(f, f * b.value / a.value, a);
+    for (int i = 0; i < N; ++i) c.by[i] += f * log(a.value) * b.by[i];
+    return c;
   }
 };
 

@@ -44,12 +44,12 @@ auto wave(const auto& even, const auto& odd, const auto& period, Real x) {
 
 const Model kModels[] = {
     model("b1*(b2+x)^(-1/b3)",
-          [](auto b, const Real* x) { return b[0] * exp(-log(b[1] + x[0]) / b[2]); }),
+          [](auto b, const Real* x) { return b[0] * pow(b[1] + x[0], -1 / b[2]); }),
     model("b1*(1-exp(-b2*x))",
           [](auto b, const Real* x) { return b[0] * (1 - exp(-b[1] * x[0])); }),
     model("exp(-b1*x)/(b2+b3*x)",
           [](auto b, const Real* x) { return exp(-b[0] * x[0]) / (b[1] + b[2] * x[0]); }),
-    model("b1*x^b2", [](auto b, const Real* x) { return b[0] * exp(b[1] * log(x[0])); }),
+    model("b1*x^b2", [](auto b, const Real* x) { return b[0] * pow(x[0], b[1]); }),
     model("b1+b2*cos(2*pi*x/12)+b3*sin(2*pi*x/12)+b5*cos(2*pi*x/b4)+b6*sin(2*pi*x/b4)"
           "+b8*cos(2*pi*x/b7)+b9*sin(2*pi*x/b7)",
           [](auto b, const Real* x) {
@@ -80,7 +80,7 @@ const Model kModels[] = {
           }),
     model("b1*(x^2+x*b2)/(x^2+x*b3+b4)",
           [](auto b, const Real* x) {
-            return b[0] * (x[0] * (x[0] + b[1])) / (x[0] * (x[0] + b[2]) + b[3]);
+            return b[0] * (x[0] * x[0] + x[0] * b[1]) / (x[0] * x[0] + x[0] * b[2] + b[3]);
           }),
     model("b1*exp(b2/(x+b3))",
           [](auto b, const Real* x) { return b[0] * exp(b[1] / (x[0] + b[2])); }),
@@ -89,19 +89,17 @@ const Model kModels[] = {
             return b[0] + b[1] * exp(-x[0] * b[3]) + b[2] * exp(-x[0] * b[4]);
           }),
     model("b1*(1-(1+b2*x/2)^(-2))",
-          [](auto b, const Real* x) { return b[0] * (1 - 1 / square(1 + b[1] * (x[0] / 2))); }),
-    model(
-        "b1*(1-(1+2*b2*x)^(-0.5))",
-        [](auto b, const Real* x) { return b[0] * (1 - exp(-0.5 * log(1 + b[1] * (2 * x[0])))); }),
+          [](auto b, const Real* x) { return b[0] * (1 - 1 / square(1 + b[1] * x[0] / 2)); }),
+    model("b1*(1-(1+2*b2*x)^(-0.5))",
+          [](auto b, const Real* x) { return b[0] * (1 - 1 / sqrt(1 + 2 * b[1] * x[0])); }),
     model("b1*b2*x/(1+b2*x)",
           [](auto b, const Real* x) { return b[0] * b[1] * x[0] / (1 + b[1] * x[0]); }),
     model("log(y) = b1-b2*x1*exp(-b3*x2)",
           [](auto b, const Real* x) { return b[0] - b[1] * x[0] * exp(-b[2] * x[1]); }),
     model("b1/(1+exp(b2-b3*x))",
           [](auto b, const Real* x) { return b[0] / (1 + exp(b[1] - b[2] * x[0])); }),
-    model(
-        "b1/(1+exp(b2-b3*x))^(1/b4)",
-        [](auto b, const Real* x) { return b[0] * exp(-log(1 + exp(b[1] - b[2] * x[0])) / b[3]); }),
+    model("b1/(1+exp(b2-b3*x))^(1/b4)",
+          [](auto b, const Real* x) { return b[0] / pow(1 + exp(b[1] - b[2] * x[0]), 1 / b[3]); }),
     model("b1-b2*x-arctan(b3/(x-b4))/pi",
           [](auto b, const Real* x) {
             return b[0] - b[1] * x[0] - atan(b[2] / (x[0] - b[3])) / std::numbers::pi;
