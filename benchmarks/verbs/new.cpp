@@ -10,6 +10,7 @@
 #include "benchmarks/cli/verb.h"
 #include "benchmarks/plan/catalog.h"
 #include "core/files.h"
+#include "core/shell.h"
 #include "core/text.h"
 
 namespace isoline::benchmarks {
@@ -102,6 +103,17 @@ struct Draft {
   std::string next;  // in the words of a shell
 };
 
+// Configures a program of one's own with the Isoline that runs, which is installed first if this is
+// a build folder.
+std::string configure_command() {
+  std::error_code unknown;
+  const fs::path folder = fs::read_symlink("/proc/self/exe", unknown).parent_path();
+  const std::string configure = "cmake -S . -B build -DCMAKE_PREFIX_PATH=";
+  if (folder.filename() == "bin") return configure + shell_word(folder.parent_path().string());
+  return fmt::format("cmake --install {} --prefix $HOME/isoline && {}$HOME/isoline",
+                     shell_word(folder.string()), configure);
+}
+
 Draft draft_of(const NewArguments& given, const std::string& identifier) {
   const bool is_problem = given.kind == "problem";
   const std::string use = (is_problem ? "check " : "audit ") + given.name;
@@ -122,7 +134,7 @@ Draft draft_of(const NewArguments& given, const std::string& identifier) {
             "",
             fmt::format("isoline {} 'process[command=\"python3 {}.py\"]'",
                         is_problem ? "check" : "run --problem rosenbrock --optimizer", identifier)};
-  const std::string build = "cmake -S . -B build && cmake --build build && build/mine ";
+  const std::string build = configure_command() + " && cmake --build build && build/mine ";
   return {embedded_start_problem_cpp(),
           embedded_start_optimizer_cpp(),
           fs::path(given.kind + "s") / (identifier + ".cpp"),

@@ -275,11 +275,15 @@ std::vector<ProblemAxis> problem_axis(const Study& study) {
     at->is_foreign = true;
     at->label = record.foreign.problem->label;
   }
+  std::map<std::string, int> of_label;
   for (ProblemAxis& problem : axis) {
     std::vector<Real> all;
     for (const auto& [seed, goal] : goals[problem.spec]) all.push_back(goal);
     if (!all.empty()) problem.least_goal = median_of(std::move(all));
+    ++of_label[problem.label];
   }
+  for (ProblemAxis& problem : axis)  // two commands of one script
+    if (of_label[problem.label] > 1) problem.label.clear();
   return axis;
 }
 

@@ -433,6 +433,7 @@ TEST(New, InCppWritesTheFileOfTheRuleAndWhatBuildsIt) {
   EXPECT_EQ(problem.exit_code, 0) << problem.err;
   EXPECT_TRUE(contains(problem.out, "wrote CMakeLists.txt\nwrote problems/batch.cpp\n"));
   EXPECT_TRUE(contains(problem.out, "build/mine check batch\n")) << problem.out;
+  EXPECT_TRUE(contains(problem.out, "next: cmake --install ")) << "of a build folder";
   const Finished method = shell("./isoline new optimizer my-problem-2");
   EXPECT_TRUE(contains(method.out, "wrote optimizers/my_problem_2.cpp\n")) << method.out;
   EXPECT_FALSE(contains(method.out, "CMakeLists.txt\n")) << "which is there: " << method.out;

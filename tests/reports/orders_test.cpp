@@ -357,6 +357,20 @@ TEST(Labels, OfOtherProgramsAreTheirOwnNamesAndMarked) {
     EXPECT_TRUE(has(text, words("marks.foreign")));
 }
 
+// Two commands of one script have one name: their headings are the commands.
+TEST(Labels, OfTwoProblemsOfOneNameAreTheirCommands) {
+  Study study;
+  for (const char* spec : {"process[command=\"decay 1\"]", "process[command=\"decay 2\"]"}) {
+    study.runs.push_back(record_of({.problem = spec}));
+    study.runs.back().foreign.problem =
+        Foreign{.door = "process", .command = spec, .label = "decay"};
+  }
+  const Comparison c = compare_optimizers(study);
+  ASSERT_EQ(c.problems.size(), 2U);
+  EXPECT_NE(problem_name(c.problems[0]), problem_name(c.problems[1]));
+  EXPECT_TRUE(has(problem_name(c.problems[1]), "decay 2"));
+}
+
 TEST(ForeignText, StandsInEveryFormatWithoutControlSequences) {
   const ResultFolder folder;
   folder.add(record_of({}));
