@@ -15,10 +15,12 @@ struct Quantity {
 
 // x and y (rows · columns, samples), the cells column by column. Where `time` is above 0 a row is a
 // state: x (columns, samples) the first one, at 0, and y the last, with evenly spread ones between.
+// `context`, where it is named, is the first rows · columns numbers of a sample's context.
 struct Field {
   Index rows = 0, columns = 0;
   Quantity x, y;
   Real time = 0;
+  std::string context = {};
 
   bool is_history() const { return time > 0; }
 };

@@ -88,22 +88,28 @@ void copy(std::span<const Real> values, float* out) {
 }  // namespace
 
 void open_frames(Trace::Frames& frames, Index rows, Index columns, std::span<const Real> target,
-                 std::span<const Real> truth) {
-  if (rows * columns > Trace::Frames::kCells || !fits(target) || !fits(truth)) return;
+                 std::span<const Real> truth, std::span<const Real> context) {
+  if (rows * columns > Trace::Frames::kCells || !fits(target) || !fits(truth) || !fits(context))
+    return;
   copy(target, frames.target);
   copy(truth, frames.truth);
+  copy(context, frames.context);
   frames.has_truth = !truth.empty();
+  frames.has_context = !context.empty();
   frames.columns = static_cast<int>(columns);
   frames.rows = static_cast<int>(rows);
 }
 
-void keep_frame(Trace::Frames& frames, std::int64_t iteration, std::span<const Real> x) {
-  if (frames.rows == 0 || !fits(x)) return;
+void keep_frame(Trace::Frames& frames, std::int64_t iteration, std::span<const Real> x,
+                std::span<const Real> y) {
+  if (frames.rows == 0 || !fits(x) || !fits(y)) return;
   const std::size_t place = place_for(frames, iteration);
   // If a process is killed within these lines, the place stays free.
   frames.iteration[place] = kFree;
   std::atomic_signal_fence(std::memory_order_seq_cst);
   copy(x, frames.x[place]);
+  copy(y, frames.y);
+  frames.has_y = !y.empty();
   std::atomic_signal_fence(std::memory_order_seq_cst);
   frames.iteration[place] = iteration;
 }

@@ -41,15 +41,16 @@ class Picture {
 
 inline constexpr std::size_t kMostFrames = 6;  // that a record keeps
 
-// Reserves storage for x (rows · columns), and stores y* and, if known, x* of the same size.
-// Stores nothing if the grid has too many cells.
+// Reserves storage for x (rows · columns), and stores y* and, if known, x* and the context of the
+// same size. Stores nothing if the grid has too many cells.
 void open_frames(Trace::Frames& frames, Index rows, Index columns, std::span<const Real> target,
-                 std::span<const Real> truth);
+                 std::span<const Real> truth, std::span<const Real> context = {});
 
 // Stores x of an iteration after the previous one, or replaces the last one. Skips an x that is not
 // finite in single precision. If all places are taken, drops the x whose neighbours, in the
 // logarithm of iterations, are nearest.
-void keep_frame(Trace::Frames& frames, std::int64_t iteration, std::span<const Real> x);
+void keep_frame(Trace::Frames& frames, std::int64_t iteration, std::span<const Real> x,
+                std::span<const Real> y = {});
 
 // The places of at most six frames by iteration: the first, the last, and between them those
 // nearest to an even spread of log(1 + iteration).

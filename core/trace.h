@@ -74,9 +74,10 @@ struct Trace {
     static constexpr std::size_t kPlaces = 12;
     static constexpr int kCells = 128 * 128;  // of the largest grid
     int rows = 0, columns = 0;                // 0: nothing is kept
-    bool has_truth = false;
+    bool has_truth = false, has_context = false, has_y = false;
     std::int64_t iteration[kPlaces];  // −1: nothing there
     float target[kCells], truth[kCells], x[kPlaces][kCells];
+    float y[kCells], context[kCells];  // y of the last x
 
     Frames() { std::fill_n(iteration, kPlaces, -1); }
   };

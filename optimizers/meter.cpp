@@ -157,7 +157,10 @@ Status Meter::begin(VectorRef theta) {
   if (const auto& field = problem_.field()) {
     const Picture target(judging().target, field);
     const Picture truth(judging().truth, field, problem_.history());
-    open_frames(trace_.frames, field->rows, field->columns, target.cells(), truth.cells());
+    const Matrix& context = judging().context;
+    const auto cells = static_cast<std::size_t>(field->rows * field->columns);
+    open_frames(trace_.frames, field->rows, field->columns, target.cells(), truth.cells(),
+                {context.data(), field->context.empty() ? 0 : cells});
   }
   previous_ = theta;
   measure(theta);
@@ -372,9 +375,11 @@ void Meter::keep_point() {
     std::copy_n(judged_.x().data(), judged_.x().size(), trace_.path_x[index]);
     std::copy_n(judged_.y.data(), judged_.y.size(), trace_.path_y[index]);
   }
-  if (problem_.field())
-    keep_frame(trace_.frames, iteration_,
-               Picture(judged_.x(), problem_.field(), problem_.history()).cells());
+  if (const auto& field = problem_.field()) {
+    const Picture x(judged_.x(), field, problem_.history());  // of a history, y is a part
+    keep_frame(trace_.frames, iteration_, x.cells(),
+               field->is_history() ? std::span<const Real>() : Picture(judged_.y, field).cells());
+  }
   trace_.points = index + 1;
   trace_.best_loss = best_loss_;
   next_kept_ = next_kept_after(iteration_);

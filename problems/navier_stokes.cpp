@@ -115,7 +115,8 @@ ProblemParts flow_parts(const Options& o) {
       .field = Field{.rows = o.N,
                      .columns = o.N,
                      .x = {"initial vorticity", "velocity/cell"},
-                     .y = {"final marker, low-pass filtered"}}};
+                     .y = {"final marker, low-pass filtered"},
+                     .context = "initial marker"}};
   if (o.loss == "amplitude") parts.loss = std::make_unique<Amplitudes>(o.N);
   if (o.truth() == Arrangement::collocated)  // x* itself is seen on the faces of another grid
     parts.x_floor = [measure](const Batch& batch) {

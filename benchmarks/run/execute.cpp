@@ -100,6 +100,10 @@ std::optional<FieldFrames> fields_of(const Trace::Frames& kept) {
     frames.iterations.push_back(kept.iteration[place]);
     add(kept.x[place]);
   }
+  if (kept.has_truth && kept.has_y) {
+    add(kept.y);
+    if (kept.has_context) add(kept.context);
+  }
   const auto cells = static_cast<std::size_t>(kept.rows) * static_cast<std::size_t>(kept.columns);
   frames.shape = {static_cast<Index>(frames.numbers.size() / cells), kept.rows, kept.columns};
   frames.digest = digest(field_file(frames));

@@ -457,8 +457,9 @@ void require_sound(const FieldFrames& frames) {
                          frames.iterations.end();
   require(count > 0 && frames.iterations[0] >= 0 && is_rising,
           "the iterations of its fields must increase");
+  constexpr Index kMostOthers = 4;  // y*, x*, y and the context
   require(
-      frames.shape.size() == 3 && (frames.shape[0] == count + 1 || frames.shape[0] == count + 2),
+      frames.shape.size() == 3 && frames.shape[0] > count && frames.shape[0] <= count + kMostOthers,
       "the shape of its fields does not match their iterations");
   require(frames.shape[1] > 0 && frames.shape[2] > 0, "the shape of its fields has no cells");
 }

@@ -57,22 +57,28 @@ struct Exhibit {
 
 // x of a run at some of its kept iterations, where x and y are numbers on one grid of cells. The
 // numbers stand beside the record, in CELL-BUILD.npy: float32 of the shape (planes, rows, columns),
-// which are y*, x* where it is known, and x by iteration.
+// which are y*, x* where it is known, x by iteration and, beside x*, y of the last x and the
+// context.
 struct FieldFrames {
   std::vector<std::int64_t> iterations = {};
   std::vector<Index> shape = {};
   std::string digest;               // of the file
   std::vector<float> numbers = {};  // as the file has them; empty where they are still there
 
-  bool has_truth() const { return shape[0] == static_cast<Index>(iterations.size()) + 2; }
+  bool has_truth() const { return others() > 1; }
+  bool has_y() const { return others() > 2; }
+  bool has_context() const { return others() > 3; }
   std::span<const float> target() const { return plane(0); }  // row by row
   std::span<const float> truth() const { return plane(1); }
   std::span<const float> x(std::size_t i) const { return plane(i + (has_truth() ? 2 : 1)); }
+  std::span<const float> y() const { return plane(iterations.size() + 2); }
+  std::span<const float> context() const { return plane(iterations.size() + 3); }
   bool operator==(const FieldFrames& other) const {  // the digest stands for the numbers
     return iterations == other.iterations && shape == other.shape && digest == other.digest;
   }
 
  private:
+  Index others() const { return shape[0] - static_cast<Index>(iterations.size()); }
   std::span<const float> plane(std::size_t i) const {
     const auto cells = static_cast<std::size_t>(shape[1] * shape[2]);
     return std::span(numbers).subspan(i * cells, cells);

@@ -33,6 +33,7 @@ void fields(Like<Field> auto& grid, auto& field) {
   field("columns", grid.columns, R"({"minimum": 1})");
   field("x", grid.x);
   field("y", grid.y);
+  field.optional("context", grid.context);
   field.optional("time", grid.time, R"({"exclusiveMinimum": 0, "description":
         "If the rows are states: the time of the last one, which is y; that of the first one, x, is 0"})");
 }

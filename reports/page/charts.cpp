@@ -257,11 +257,14 @@ Drawing figure_drawing(const Comparison& c, const Figure& figure) {
   return out;
 }
 
-// y* has its own scale of greys; all that are x share that of x*, which comes last.
+// Of a kind, all have the scale of greys of y*, which comes first, or of x*, which comes last.
 std::string pictures_html(const std::vector<Picture>& pictures) {
   std::string html;
   for (std::size_t i = 0; i < pictures.size(); ++i) {
-    const auto [low, high] = std::ranges::minmax((i == 0 ? pictures[0] : pictures.back()).values);
+    const Picture& like = pictures[i].kind == Picture::Kind::x
+                              ? pictures.back()
+                              : *std::ranges::find(pictures, pictures[i].kind, &Picture::kind);
+    const auto [low, high] = std::ranges::minmax(like.values);
     std::string bytes;
     for (const Real value : pictures[i].values)
       bytes += static_cast<char>(

@@ -172,24 +172,30 @@ Figure decades_figure(const Comparison& c, std::size_t p) {
   return out;
 }
 
-// The observation of a sample, the inferred x of each method, and the truth.
+// The data of a sample, each method's x and the y that follows from it, and the truth.
 Figure picture_figure(const Comparison& c, std::size_t p) {
   Figure out;
   FieldFrames last;
-  const auto add = [&](std::string title, std::span<const float> field) {
-    out.pictures.push_back({std::move(title), last.shape[1], {field.begin(), field.end()}});
+  using enum Picture::Kind;
+  const auto add = [&](Picture::Kind kind, std::string title, std::span<const float> field) {
+    out.pictures.push_back({kind, std::move(title), last.shape[1], {field.begin(), field.end()}});
   };
   for (std::size_t s = 0; s < c.optimizers.size(); ++s)
     for (const std::size_t run : c.cell(p, s).runs) {
       std::optional<FieldFrames> shown = c.study->fields_of(*c.runs[run].record);
       if (!shown || !shown->has_truth() || shown->shape[1] != shown->shape[2]) continue;
       last = std::move(*shown);
-      if (out.pictures.empty()) add("y*", last.target());
-      add(shown_spec(c.optimizers[s].label), last.x(last.iterations.size() - 1));
+      if (out.pictures.empty()) {
+        if (last.has_context()) add(context, c.problems[p].sheet->field->context, last.context());
+        add(y, "y*", last.target());
+      }
+      const std::string method = shown_spec(c.optimizers[s].label);
+      add(x, "x, " + method, last.x(last.iterations.size() - 1));
+      if (last.has_y()) add(y, "y, " + method, last.y());
       break;
     }
   if (out.pictures.empty()) return out;
-  add("x*", last.truth());
+  add(x, "x*", last.truth());
   out.reading = words("figure.pictures");
   return out;
 }

@@ -76,6 +76,8 @@ struct FigureLine {
 
 // A grid as the paper shows it: rows from the top, each of `size` cells.
 struct Picture {
+  enum class Kind { context, y, x };
+  Kind kind = Kind::x;  // those of one kind share a grey scale, of y* or x*
   std::string title;
   Index size = 0;
   std::vector<Real> values;

@@ -138,6 +138,21 @@ TEST(Pictures, OfAVelocityAreItsCurl) {
   }
 }
 
+TEST(Pictures, OfYAreOfTheLastXAndThoseOfTheContextOfTheData) {
+  const Problem problem = make("navier-stokes[N=8]");
+  const Outcome outcome = run(problem, "gauss-newton", {.iterations = 2, .target = 0});
+  const Trace::Frames& frames = outcome.trace->frames;
+  ASSERT_TRUE(frames.has_y && frames.has_context);
+  Point at;
+  problem.forward(outcome.theta, at);
+  const Matrix& markers = problem.batch().context;
+  EXPECT_GT((markers.col(0).head(64) - problem.target().col(0)).norm(), 0.1);
+  for (Index i = 0; i < 64; ++i) {
+    EXPECT_EQ(frames.y[i], static_cast<float>(at.y(i, 0)));
+    EXPECT_EQ(frames.context[i], static_cast<float>(markers(i, 0)));
+  }
+}
+
 // The states are compared with those of simulations of their own, ended where the row is.
 TEST(Pictures, OfBurgersAreTheStatesFromXToY) {
   constexpr Index kN = 16, kSteps = 6;

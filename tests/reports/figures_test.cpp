@@ -101,8 +101,9 @@ TEST(Figures, ScatterAndDecadesReadTheSamples) {
 
 TEST(Figures, PicturesAreReadFromTheFileBesideTheRecord) {
   Record record = learned({.optimizer = "sip"});
-  FieldFrames fields{.iterations = {0, 9}, .shape = {4, 2, 2}};
-  fields.numbers = {1, 3, 2, 4, 9, 11, 10, 12, 0, 0, 0, 0, 5, 7, 6, 8};  // y*, x*, x at 0 and at 9
+  FieldFrames fields{.iterations = {0, 9}, .shape = {5, 2, 2}};
+  fields.numbers = {1, 3, 2, 4, 9, 11, 10, 12, 0, 0, 0, 0, 5, 7, 6, 8,  // y*, x*, x at 0 and at 9
+                    2, 3, 2, 3};                                        // and y at 9
   fields.digest = digest(field_file(fields));
   record.fields = fields;
   record.cell = cell_digest(record.request);
@@ -112,12 +113,14 @@ TEST(Figures, PicturesAreReadFromTheFileBesideTheRecord) {
   write_text(field_path(folder.path() / "runs" / record.file_name()), field_file(fields));
   const auto all = figures(Compared(read_study({folder.path()})));
   ASSERT_EQ(all.size(), 1U);
-  ASSERT_EQ(all[0].pictures.size(), 3U);
+  ASSERT_EQ(all[0].pictures.size(), 4U);
   EXPECT_EQ(all[0].pictures[0].values, (std::vector<Real>{1, 3, 2, 4}));  // rows of the picture
-  EXPECT_EQ(all[0].pictures[1].title, "sip");
+  EXPECT_EQ(all[0].pictures[1].title, "x, sip");
   EXPECT_EQ(all[0].pictures[1].values, (std::vector<Real>{5, 7, 6, 8}))
       << "x at the last iteration";
-  EXPECT_EQ(all[0].pictures[2].values, (std::vector<Real>{9, 11, 10, 12}));
+  EXPECT_EQ(all[0].pictures[2].title, "y, sip");
+  EXPECT_EQ(all[0].pictures[2].values, (std::vector<Real>{2, 3, 2, 3}));
+  EXPECT_EQ(all[0].pictures[3].values, (std::vector<Real>{9, 11, 10, 12}));
 }
 
 TEST(Figures, LearnedTablesNameWhereLossAndErrorRankDifferently) {
