@@ -26,6 +26,7 @@ isoline_library(Isoline::fftw "fftw3" fftw3.h)
 isoline_library(Isoline::onednn "dnnl" oneapi/dnnl/dnnl.hpp)  # its own package requires OpenCL
 isoline_library(Isoline::random123 "" Random123/philox.h)
 isoline_library(Isoline::cminpack "cminpack" cminpack.h cminpack-1)
+isoline_library(Isoline::libdogleg "dogleg" dogleg.h)
 isoline_library(Isoline::gsl "gsl;gslcblas" gsl/gsl_multifit_nlinear.h)
 isoline_library(Isoline::simdjson "simdjson" simdjson.h)
 isoline_library(Isoline::valijson "" valijson/validator.hpp)
@@ -48,6 +49,9 @@ file(STRINGS ${Isoline__gsl_INCLUDE}/gsl/gsl_version.h _lines REGEX "define GSL_
 string(REGEX MATCH "[0-9][0-9.]*" _gsl "${_lines}")
 file(REAL_PATH ${Isoline__cminpack_cminpack} _cminpack)  # only the name of the file has its version
 string(REGEX MATCH "[0-9]+\\.[0-9.]+$" _cminpack ${_cminpack})
+file(REAL_PATH ${Isoline__libdogleg_dogleg} _dogleg)
+string(REGEX MATCH "[0-9]+\\.[0-9]+\\.[0-9]+$" _dogleg ${_dogleg})
 set(ISOLINE_LIBRARIES "Eigen ${Eigen3_VERSION}" "Ceres ${Ceres_VERSION}" "NLopt ${NLopt_VERSION}"
     "nlohmann-json ${nlohmann_json_VERSION}" "fmt ${fmt_VERSION}"
-    "oneDNN ${_onednn}" "OpenBLAS ${_openblas}" "Random123 ${_philox}" "GSL ${_gsl}" "cminpack ${_cminpack}")
+    "oneDNN ${_onednn}" "OpenBLAS ${_openblas}" "Random123 ${_philox}" "GSL ${_gsl}" "cminpack ${_cminpack}"
+    "libdogleg ${_dogleg}")

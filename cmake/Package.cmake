@@ -13,7 +13,7 @@ The program links FFTW and SuiteSparse (GNU General Public License, version 2 or
 Scientific Library (version 3 or later) and oneDNN (Apache License 2.0). It is therefore, as a whole,
 under the GNU General Public License, version 3 or later, whose text is
 /usr/share/common-licenses/GPL-3 on a Debian system.
-It also links cminpack; MINPACK was developed by the University of Chicago, as Operator of Argonne
+It also links libdogleg (GNU Lesser General Public License, version 3) and cminpack; MINPACK was developed by the University of Chicago, as Operator of Argonne
 National Laboratory. The sources of Isoline alone are under the MIT license:
 
 @license@")

@@ -33,11 +33,12 @@ enum class Family {
   nlopt_derivative_free,
   minpack,
   gsl,
+  libdogleg,
   foreign
 };
-inline constexpr std::array<std::string_view, 9> kFamilyNames = {
-    "first-order",           "curvature", "inversion", "ceres",  "nlopt",
-    "nlopt-derivative-free", "minpack",   "gsl",       "foreign"};
+inline constexpr std::array<std::string_view, 10> kFamilyNames = {
+    "first-order",           "curvature", "inversion", "ceres",     "nlopt",
+    "nlopt-derivative-free", "minpack",   "gsl",       "libdogleg", "foreign"};
 inline std::string_view name_of(Family family) {
   return kFamilyNames[static_cast<std::size_t>(family)];
 }

@@ -37,6 +37,11 @@ class ResidualCalls {
              read(residual_, scaled_);
            });
   }
+  // The same of a sparse J: its values by Meter::sparse_pattern().
+  template <class Read>
+  bool sparse_jacobian(const double* theta, Read read) noexcept {
+    return accept() && at(theta, [&] { read(point_.sparse_jacobian()); });
+  }
   // The library has accepted its last trial, where it has made one since the last Jacobian.
   bool accept() noexcept {
     if (has_trial_ && has_point_ && theta_ != last_) return report(theta_);

@@ -82,7 +82,7 @@ TEST(Peers, OnlyGeodesicAccelerationSolvesBoxBodFromItsFirstStart) {
 TEST(Peers, KeepTheirLastIterateWhereTheBudgetEndsWithinAnIteration) {
   const Problem problem = make("rosenbrock");
   for (const char* method : {"minpack-lmder", "minpack-lmdif", "gsl-multifit", "ceres-tiny",
-                             "gsl-multifit[trust-region=lmaccel]"})
+                             "libdogleg", "gsl-multifit[trust-region=lmaccel]"})
     for (std::int64_t work = 20; work < 30; ++work) {
       const Outcome ended = run(problem, method, {.iterations = 1000, .work = work, .target = 0});
       EXPECT_EQ(ended.status, Status::budget) << method << ", work " << work;
@@ -94,7 +94,7 @@ TEST(Peers, KeepTheirLastIterateWhereTheBudgetEndsWithinAnIteration) {
 // Trials are iterations or rejected, each evaluated once; the last Jacobian is the last iterate's.
 TEST(Peers, CountEachTrialAsAnIterationOrAsRejected) {
   const Problem problem = make("rosenbrock");
-  for (const char* method : {"minpack-lmder", "gsl-multifit", "ceres-tiny"}) {
+  for (const char* method : {"minpack-lmder", "gsl-multifit", "ceres-tiny", "libdogleg"}) {
     const Outcome outcome = run(problem, method, {.iterations = 1000, .target = 0});
     const Trace& trace = *outcome.trace;
     EXPECT_GT(trace.rejected_steps, 0) << method;
@@ -104,9 +104,16 @@ TEST(Peers, CountEachTrialAsAnIterationOrAsRejected) {
   }
 }
 
+TEST(Peers, FactorizeASparseJacobian) {
+  const Problem problem = make("broyden-tridiagonal[n=20000]");
+  const Outcome outcome = run(problem, "libdogleg", {.iterations = 100, .target = 1e-20});
+  EXPECT_EQ(outcome.status, Status::target) << outcome.trace->last.loss;
+  EXPECT_LE(outcome.trace->last.iteration, 10);
+}
+
 TEST(Peers, WithoutEnoughResidualsAreInapplicable) {
   const Problem wide = linear(Matrix::Ones(1, 2), Vector::Zero(2), Vector::Ones(1));
-  for (const char* method : {"minpack-lmder", "minpack-lmdif", "gsl-multifit"})
+  for (const char* method : {"minpack-lmder", "minpack-lmdif", "gsl-multifit", "libdogleg"})
     EXPECT_NE(why(method, wide), "") << method;
   EXPECT_EQ(why("ceres-tiny", wide), "");
 }
