@@ -29,7 +29,9 @@ TEST(Bounds, ThatAreNeverActiveChangeNothing) {
   const Problem wide = featured("burgers[N=16]", {{"bounds", kWide}});
   int methods = 0;
   for (const auto& [name, entry] : optimizers()) {
-    if (!entry.keeps_bounds || std::ranges::find(kSensitive, name) != kSensitive.end()) continue;
+    if (!entry.keeps_bounds || !entry.needs_argument.empty() ||
+        std::ranges::find(kSensitive, name) != kSensitive.end())
+      continue;
     const Budget budget{.iterations = 60, .work = 3000};
     const Outcome one = run(plain, name, budget), other = run(wide, name, budget);
     EXPECT_EQ(one.theta, other.theta) << name;
@@ -77,7 +79,7 @@ TEST(Bounds, ASolutionOnThemSatisfiesTheConditionsOfKarushKuhnAndTucker) {
 TEST(Bounds, EveryMethodThatRespectsThemStaysInsideAndDescends) {
   const Problem problem = featured("burgers[N=16]", {{"bounds", kActive}});
   for (const auto& [name, entry] : optimizers()) {
-    if (!entry.keeps_bounds) continue;
+    if (!entry.keeps_bounds || !entry.needs_argument.empty()) continue;
     const Outcome outcome = run(problem, name, {.iterations = 500, .target = 0});
     EXPECT_TRUE(problem.bounds()->hold(outcome.theta)) << name;
     EXPECT_LT(outcome.trace->last.loss, outcome.trace->start_loss) << name;
