@@ -399,6 +399,7 @@ TEST_F(ForeignCells, OfMethodsThatKeepBoundsStayWithinThem) {
   EXPECT_GT(own.curve.gradient_norm.back(), 1e-3);
   const Record native = record_of(request_of(problem, "gd[rate=0.5]", budget));
   EXPECT_NEAR(own.summary.loss, native.summary.loss, 1e-12 * own.summary.start_loss);
+  EXPECT_TRUE(native.is_best_known) << "f_L is the loss of a fit";
   for (const std::string word : {"leaves-its-bounds", "finishes-outside-its-bounds"}) {
     const Record record = record_within(word, {.iterations = 50});
     EXPECT_EQ(record.status, Status::failed) << word << ": " << record.message;

@@ -87,6 +87,14 @@ TEST(Bounds, EveryMethodThatRespectsThemStaysInsideAndDescends) {
   }
 }
 
+// Sequential quadratic programming finds no less than the fit that f_L is from.
+TEST(Bounds, TheLeastLossIsThatOfASolverWithAnActiveSet) {
+  const Problem problem = featured("deconvolution-1d[N=64]", {{"bounds", kActive}});
+  const Outcome outcome = run(problem, "nlopt-slsqp", {.iterations = 3000, .target = 0});
+  EXPECT_GE(outcome.trace->best_loss, *problem.minimum());
+  EXPECT_LE(outcome.trace->best_loss, 3 * *problem.minimum());
+}
+
 TEST(Bounds, ProjectedGradientDescentStaysInside) {
   const Problem problem = featured("poisson[N=4]", {{"bounds", kActive}});
   const Outcome outcome = run(problem, "gd[rate=0.5]", {.iterations = 5000, .target = 0});

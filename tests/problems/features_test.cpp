@@ -48,6 +48,13 @@ TEST(Features, ANoisyProblemHasALeastLossAndAFloor) {
   EXPECT_THROW(featured("rosenbrock", {{"noise", 0.01}}), UsageError) << "y* is 0";
 }
 
+// As many unknowns as data of a one-to-one P, so that some x fits the noise, too.
+TEST(Features, TheLeastLossOfASquareProblemWithNoiseIsZero) {
+  const Problem noisy = featured("burgers[N=64]", {{"noise", 0.01}});
+  ASSERT_TRUE(noisy.minimum());
+  EXPECT_LT(*noisy.minimum(), 1e-20 * loss_at_start(noisy));
+}
+
 // Jᵀ and J agree with differences of the loss; errors in x are those of the plain problem.
 TEST(Features, ScaledAndRotatedUnknownsAreTheSameProblem) {
   const OptionValues mapped{{"scale", 1e3}, {"rotate", true}};
