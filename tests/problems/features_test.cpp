@@ -16,9 +16,14 @@ Problem featured(const std::string& spec, const OptionValues& features, std::uin
 }
 
 TEST(Features, NoneIsThePlainProblem) {
-  const Problem plain = make("burgers[N=32]", 3), same = featured("burgers[N=32]", {}, 3);
-  EXPECT_EQ(plain.target(), same.target());
-  EXPECT_EQ(plain.start(), same.start());
+  const Problem plain = make("burgers[N=32]", 3);
+  for (const OptionValues& none : {OptionValues{}, OptionValues{{"noise", 0.0}}}) {
+    const Problem same = featured("burgers[N=32]", none, 3);
+    EXPECT_EQ(plain.target(), same.target());
+    EXPECT_EQ(plain.start(), same.start());
+    EXPECT_EQ(plain.minimum(), same.minimum());
+    EXPECT_EQ(gradient_at(plain, plain.start()), gradient_at(same, same.start()));
+  }
 }
 
 TEST(Features, NoiseHasItsDeviationAndItsLossAtTheTruth) {
