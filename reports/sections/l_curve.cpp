@@ -19,6 +19,7 @@ struct PenalizedRun {
   Real discrepancy, penalty;  // ‖y − y*‖ and ‖Dx‖
   Real x_error;               // over ‖x*‖; infinite where x* is unknown
   Real noise_level;
+  std::size_t problem, optimizer;
 };
 using Sweep = std::map<Real, PenalizedRun, std::greater<>>;  // by α, the largest first
 // By setting without tikhonov and by seed, which has noise of its own.
@@ -39,7 +40,14 @@ std::optional<PenalizedRun> penalized_run(const Run& run) {
   constexpr Real kLeastShare = 1e-12;  // of the loss: less is mostly rounding
   if (!(d > 0) || !std::isfinite(loss) || !(rest > kLeastShare * loss)) return std::nullopt;
   const Real error = record.x_scale ? record.curve.x_error.back() / *record.x_scale : kNever;
-  return PenalizedRun{alpha, loss, d, std::sqrt(rest / alpha), error, *record.noise_level};
+  return PenalizedRun{.alpha = alpha,
+                      .loss = loss,
+                      .discrepancy = d,
+                      .penalty = std::sqrt(rest / alpha),
+                      .x_error = error,
+                      .noise_level = *record.noise_level,
+                      .problem = run.problem,
+                      .optimizer = run.optimizer};
 }
 
 Sweeps sweeps_of(const Comparison& c) {
@@ -88,8 +96,10 @@ const PenalizedRun* corner_of(const Sweep& sweep) {
 // α and the error in x by each of the three rules, a value per seed.
 struct ByRule {
   std::vector<Real> log_alpha, error;
+  const PenalizedRun* first = nullptr;  // that it chose
 
   void add(const PenalizedRun* run) {
+    if (first == nullptr) first = run;
     log_alpha.push_back(run == nullptr ? kNever : std::log(run->alpha));
     error.push_back(run == nullptr ? kNever : run->x_error);
   }
@@ -102,6 +112,9 @@ struct ByRule {
   void append_to(std::vector<TableCell>& row) const {
     row.push_back({figure(alphas()), {{"alpha", alphas().median}}});
     row.push_back({figure(errors()), {{"error", errors().median}}});
+    if (first == nullptr) return;
+    for (TableCell* each : {&row.back(), &row[row.size() - 2]})
+      each->of = std::pair(first->problem, first->optimizer);
   }
 };
 
@@ -110,7 +123,8 @@ struct ByRule {
 Table l_curve_table(const Comparison& c) {
   Table table = worded_table("l-curve", kNoiseFactor);
   std::vector<std::string> readings;
-  for (const auto& [spec, by_seed] : sweeps_of(c)) {
+  const Sweeps sweeps = sweeps_of(c);
+  for (const auto& [spec, by_seed] : sweeps) {
     ByRule corner, at_noise, best;
     std::size_t values = 0;
     for (const auto& [seed, sweep] : by_seed) {
@@ -126,6 +140,9 @@ Table l_curve_table(const Comparison& c) {
     }
     std::vector<TableCell> row = {shown_spec(spec), count_cell(by_seed.size()), count_cell(values)};
     for (const ByRule* each : {&corner, &at_noise, &best}) each->append_to(row);
+    for (TableCell& cell : row)  // a rule that chooses no α has the run of the best one
+      if (!cell.of) cell.of = row.back().of;
+    row[0].of.reset();
     table.rows.push_back(std::move(row));
     readings.push_back(words("l-curve.reading", shown_spec(spec), corner.alphas().median,
                              corner.errors().median, best.alphas().median, best.errors().median));

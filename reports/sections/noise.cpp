@@ -172,6 +172,8 @@ Table features_table(const Comparison& c) {
                           {ordinal(place), {{"place", Real(place)}}},
                           optimizer_text(c, before.optimizer),
                           number_cell("correlation", move.correlation)});
+    for (TableCell& cell : table.rows.back())
+      cell.of = std::pair(pairs[0].problem, first.optimizer);
     readings.push_back(words(
         "features.move", feature, name_in_sentence(c.optimizers[first.optimizer]), ordinal(place),
         name_in_sentence(c.optimizers[before.optimizer]), move.correlation, pairs.size()));
