@@ -166,8 +166,7 @@ Plots l_curve_plot(const Comparison& c) {
       line.x.push_back(run.discrepancy);
       line.y.push_back(run.penalty);
     }
-    plot.series.push_back(std::move(line));
-    if (const PenalizedRun* corner = corner_of(sweep)) {
+    if (const PenalizedRun* corner = corner_of(sweep)) {  // above the line
       plot.series.push_back({.name = words("plot-l-curve.corner", corner->alpha),
                              .x = {corner->discrepancy},
                              .y = {corner->penalty}});
@@ -176,6 +175,7 @@ Plots l_curve_plot(const Comparison& c) {
             words("plot-l-curve.reading", shown_spec(spec), corner->alpha, corner->discrepancy,
                   corner->discrepancy / corner->noise_level, corner->penalty);
     }
+    plot.series.push_back(std::move(line));
   }
   if (plot.series.empty()) return {};
   return {std::move(plot)};

@@ -127,15 +127,15 @@ TEST(LCurve, IsDrawnFromTheRunsWithTheLeastLoss) {
   const Blur blur;
   const Plots plots = l_curve_plot(Compared(sweep(blur)));
   ASSERT_EQ(plots.size(), 1U);
-  ASSERT_EQ(plots[0].series.size(), 2U);  // and its corner
-  const PlotSeries& line = plots[0].series[0];
+  ASSERT_EQ(plots[0].series.size(), 2U);
+  const PlotSeries &corner = plots[0].series[0], &line = plots[0].series[1];
   ASSERT_EQ(line.x.size(), static_cast<std::size_t>(kLargest - kSmallest + 1));
   for (std::size_t i = 0; i < line.x.size(); ++i) {
     const Real alpha = std::pow(10.0, Real(kLargest - static_cast<int>(i)) / kPerDecade);
     EXPECT_NEAR(line.x[i] / blur.discrepancy(alpha), 1, 1e-12);
     EXPECT_NEAR(line.y[i] / blur.size(alpha), 1, 1e-6);  // a difference of two losses
   }
-  EXPECT_EQ(plots[0].series[1].x.size(), 1U);
+  EXPECT_EQ(corner.x.size(), 1U);
 }
 
 TEST(LCurve, RequiresFiveValuesAndAKnownNoise) {
