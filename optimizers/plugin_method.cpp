@@ -18,6 +18,7 @@ using Eigen::Map;
 // The problem, as presented to the library.
 struct Questions : isoline_oracles {
   Meter& f;
+  const std::string words;  // that name the method
   const bool is_whole_solve;
   bool is_linearized = false;
   Linearization at;
@@ -25,7 +26,7 @@ struct Questions : isoline_oracles {
   Vector theta, wide;  // (n), (m·B): copies of the library's arrays, aligned like ours
   Matrix narrow;       // (m, B)
 
-  Questions(Meter& meter, bool solves);
+  Questions(Meter& meter, const PluginComponent& method);
 
   // r and J are divided by it: √B.
   Real root() const { return std::sqrt(static_cast<Real>(f.samples())); }
@@ -38,7 +39,19 @@ struct Questions : isoline_oracles {
     if (error || f.status() != Status::running) return true;
     return is_whole_solve && f.is_spent();
   }
-  const Vector& moved_to(const double* to) { return theta = Map<const Vector>(to, theta.size()); }
+  const Vector& moved_to(const double* to) {
+    theta = Map<const Vector>(to, theta.size());
+    require_within_bounds(theta);
+    return theta;
+  }
+  void require_within_bounds(const Vector& to) const {
+    for (Index i = 0; lower != nullptr && i < to.size(); ++i)
+      require(!(to[i] < lower[i] || to[i] > upper[i]), [&] {
+        return fmt::format(
+            "{} has ISOLINE_BOUNDS, but component {} of θ is {}, outside its bounds [{}, {}]",
+            words, i, to[i], lower[i], upper[i]);
+      });
+  }
   BatchOut taken(const double* y) {
     const Matrix& like = f.target();
     narrow = Map<const Matrix>(y, like.rows(), like.cols());
@@ -63,8 +76,16 @@ int answer(isoline_oracles* asked, const Answer& of) noexcept {
   }
 }
 
-Questions::Questions(Meter& meter, bool solves)
-    : isoline_oracles{}, f(meter), is_whole_solve(solves), theta(meter.unknowns()) {
+Questions::Questions(Meter& meter, const PluginComponent& method)
+    : isoline_oracles{},
+      f(meter),
+      words(method.words()),
+      is_whole_solve(method.can(ISOLINE_SOLVE)),
+      theta(meter.unknowns()) {
+  if (const Bounds* bounds = f.bounds(); bounds && method.can(ISOLINE_BOUNDS)) {
+    lower = bounds->lower.data();
+    upper = bounds->upper.data();
+  }
   unknowns = static_cast<std::uint64_t>(f.unknowns());
   residuals = static_cast<std::uint64_t>(f.residuals());
   linearize = [](isoline_oracles* asked, const double* to, double* found) {
@@ -132,7 +153,7 @@ class PluginMethod final : public Optimizer {
 
   void start(Meter& f, const Vector& theta) override {
     instance_ = std::make_unique<PluginInstance>(component_, options_, 0);
-    questions_ = std::make_unique<Questions>(f, reports_iterations());
+    questions_ = std::make_unique<Questions>(f, component_);
     if (table().start == nullptr) return;
     refresh(f);
     const int told = table().start(instance_->self(), questions_.get(), theta.data());
@@ -144,6 +165,7 @@ class PluginMethod final : public Optimizer {
     refresh(f);
     const int told = table().step(instance_->self(), questions_.get(), theta.data());
     throw_what_was_kept();
+    questions_->require_within_bounds(theta);
     if (reports_iterations()) {
       if (f.status() != Status::running) return f.status();
       if (f.is_spent()) return Status::budget;
@@ -204,6 +226,7 @@ void add_plugin_method(OptimizerRegistry& registry, const PluginComponent& compo
       .note = component.note,
       .needs = needs_of(component),
       .needs_same_samples = component.can(ISOLINE_COMPARES) || component.can(ISOLINE_SOLVE),
+      .keeps_bounds = component.can(ISOLINE_BOUNDS),
       .options = component.options,
       .tunable = {.option = component.tuned}};
   entry.introduce = [foreign = component.foreign](const OptionValues&) { return foreign; };

@@ -1,6 +1,8 @@
 // An optimizer in another program: process[command="python3 mine.py"]. The program calls the
 // oracles over frames on a private socket (docs/wire-format.md), and the meter counts them. Oracles
 // that its handshake did not declare are refused. Calls at the same θ share one forward.
+#include <fmt/format.h>
+
 #include <array>
 #include <cmath>
 #include <cstring>
@@ -25,6 +27,7 @@ class Service {
       : f_(f),
         line_(line),
         said_(said),
+        bounds_(said.keeps_bounds ? f.bounds() : nullptr),
         theta_(theta),
         room_(std::max({2 * f.unknowns(), f.unknowns() + f.residuals(), kLeastRoom})),
         scale_(1 / std::sqrt(static_cast<Real>(f.samples()))) {}
@@ -33,16 +36,16 @@ class Service {
     for (;;) {
       const FrameHead head = line_.receive({room_.data(), static_cast<std::size_t>(room_.size())});
       const auto verb = static_cast<Verb>(head.verb);
-      if (verb == Verb::finish) return finish(head);
       if (verb == Verb::claim) {
         take_claim(head);
         continue;
       }
-      if (is_over()) {
+      if (verb != Verb::finish && is_over()) {
         open_ = verb;
         break;
       }
       try {
+        if (verb == Verb::finish) return finish(head);
         answer(verb, head);
       } catch (const BudgetSpent&) {
         open_ = verb;
@@ -68,7 +71,17 @@ class Service {
                std::to_string(head.bytes) + " bytes, which must have " +
                std::to_string(static_cast<std::size_t>(numbers) * sizeof(Real)) + " bytes");
   }
-  auto given_theta() const { return room_.head(f_.unknowns()); }
+  Eigen::Map<const Vector> given_theta() const {
+    for (Index i = 0; bounds_ && i < f_.unknowns(); ++i) {
+      const Real low = bounds_->lower[i], high = bounds_->upper[i];
+      require(!(room_[i] < low || room_[i] > high), [&] {
+        return fmt::format(
+            "{} declares keeps_bounds, but component {} of θ is {}, outside its bounds [{}, {}]",
+            line_.sender(), i, room_[i], low, high);
+      });
+    }
+    return {room_.data(), f_.unknowns()};
+  }
   auto behind_theta(Index count) const { return room_.segment(f_.unknowns(), count); }
   void reply(Verb verb, std::span<const Real> numbers) { line_.send(verb, kDone, numbers); }
 
@@ -172,6 +185,7 @@ class Service {
   Meter& f_;
   Line& line_;
   const MethodHandshake& said_;
+  const Bounds* const bounds_;
   Vector& theta_;
   Vector room_;  // the last question
   Real scale_;
@@ -194,7 +208,10 @@ class ProcessMethod final : public Optimizer {
   void start(Meter& f, const Vector& theta) override {
     const std::array<Real, 2> sizes = {static_cast<Real>(f.unknowns()),
                                        static_cast<Real>(f.residuals())};
-    const std::array<std::span<const Real>, 2> told = {sizes, numbers_of(theta)};
+    const Bounds* const bounds = said_.keeps_bounds ? f.bounds() : nullptr;
+    std::vector<std::span<const Real>> told = {sizes, numbers_of(theta)};
+    if (bounds != nullptr)
+      told.insert(told.end(), {numbers_of(bounds->lower), numbers_of(bounds->upper)});
     has_begun_ = true;
     line_.send(Verb::begin, 0, told);
   }
@@ -242,8 +259,13 @@ Foreign introduce(const OptionValues& options) {
 }
 
 std::string objection(const OptionValues& options, const Problem& problem) {
-  if (!introduced(options).is_least_squares || problem.is_least_squares()) return "";
-  return "the loss is not a multiple of ‖y − y*‖², which least squares minimizes";
+  const MethodHandshake& said = introduced(options);
+  if (said.is_least_squares && !problem.is_least_squares())
+    return "the loss is not a multiple of ‖y − y*‖², which least squares minimizes";
+  const bool has_bounds = problem.bounds() && problem.bounds()->are_needed;
+  if (has_bounds && !said.keeps_bounds)
+    return "the problem has bounds on x, and this program does not declare keeps_bounds";
+  return "";
 }
 
 }  // namespace
@@ -256,6 +278,7 @@ void register_process(OptimizerRegistry& registry) {
                 .source = "see the record",
                 .needs = {Oracle::forward},
                 .needs_same_samples = true,
+                .keeps_bounds = true,  // or its handshake says otherwise: an objection
                 .options = option_table<ProcessOptions>(),
                 .in_all = false,
                 .needs_argument = "process[command=…]",

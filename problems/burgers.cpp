@@ -272,8 +272,8 @@ ProblemParts make_burgers(const Options& o, const Draw& draw) {
   if (o.learning.is_on()) return learn_burgers(o, draw);
   RandomStream stream = draw.stream("target");
   const auto shown = std::shared_ptr<const BurgersFlow>(flow_of(o));
-  ProblemParts parts =
-      from_exact_data(flow_of(o), random_state(o.N, stream), field_of(*shown, o.time), draw);
+  ProblemParts parts = from_exact_data(flow_of(o), random_state(o.N, stream), draw);
+  parts.field = field_of(*shown, o.time);
   parts.history = history_of(shown);
   return parts;
 }

@@ -10,7 +10,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "problems/problem.h"
+#include "problems/learning.h"
 
 namespace isoline::problems {
 namespace {
@@ -64,17 +64,8 @@ Vector truth_of(Index N, const Draw& draw) {
 }
 
 ProblemParts make_deconvolution_1d(const Deconvolution1d& o, const Draw& draw) {
-  auto physics = std::make_unique<Convolution>(o.N, o.width);
-  const Vector truth = truth_of(o.N, draw);
-  Matrix target(o.N, 1);
-  physics->apply(truth, target);
-  return {.physics = std::move(physics),
-          .start = draw.start(Vector::Zero(o.N), StartScale::own),
-          .start_scale = StartScale::own,
-          .target = target,
-          .minimum = 0,
-          .truth = truth,
-          .x_error = [truth](BatchRef x, const Batch&) { return (x - truth).norm(); }};
+  return from_exact_data(std::make_unique<Convolution>(o.N, o.width), truth_of(o.N, draw), draw,
+                         StartScale::own);
 }
 
 }  // namespace

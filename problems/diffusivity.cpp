@@ -146,8 +146,7 @@ ProblemParts make_diffusivity(const Diffusivity& o, const Draw& draw) {
     truth[nodes + i] = std::sin(std::numbers::pi * x1) * std::sin(std::numbers::pi * x2);
   }
   ProblemParts parts =
-      from_exact_data(std::make_unique<Diffusion>(static_cast<int>(o.n)), truth, {}, draw);
-  parts.field.reset();
+      from_exact_data(std::make_unique<Diffusion>(static_cast<int>(o.n)), truth, draw);
   Vector start = truth;  // u as observed, and a diffusivity of 1
   start.head(nodes).setZero();
   parts.start = draw.start(start);

@@ -108,8 +108,7 @@ ProblemParts make_exponential(const Options& o, const Draw& draw) {
           .start = draw.start(Vector::Zero(o.n)),
           .target = truth.unaryExpr(kExp),
           .minimum = 0,
-          .truth = truth,
-          .x_error = [truth](BatchRef x, const Batch&) { return (x - truth).norm(); }};
+          .truth = truth};
 }
 
 }  // namespace

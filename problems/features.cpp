@@ -246,14 +246,14 @@ Bounds box_around(const Vector& truth, const Problem& plain, bool is_active) {
 
 constexpr Index kMostFitted = 512;  // unknowns, and of J the smaller of its sizes
 
-// The result of a least-squares fit from x, by Levenberg and Marquardt's method, projected onto the
-// bounds.
+// The result of a least-squares fit from x, by Levenberg and Marquardt's method. Components that a
+// step takes out of the bounds stop there, and the others step again.
 struct Fit {
   Real loss;
   Matrix x;  // (k, 1)
 };
 Fit fit_from(const Problem& problem, Vector x) {
-  constexpr int kMost = 200;
+  constexpr int kMost = 1000;  // a flow with viscosity takes hundreds to fit its noise
   Point at, trial;
   Matrix J;
   Vector r(problem.residuals()), sizes, step, next, gradient;
@@ -278,8 +278,22 @@ Fit fit_from(const Problem& problem, Vector x) {
     stacked << J, (std::sqrt(damping) * sizes).asDiagonal().toDenseMatrix();
     Vector right = Vector::Zero(stacked.rows());
     right.head(r.size()) = -r;
-    if (!least_squares(stacked, right, 0, step)) break;
-    next = x + step;
+    Vector held = Vector::Zero(x.size());
+    bool is_inside = false, is_solved = true;
+    while (!is_inside && (is_solved = least_squares(stacked, right, 0, step))) {
+      is_inside = true;
+      next = x + held + step;
+      for (Index j = 0; bounds && j < x.size(); ++j) {
+        const Real bound = std::clamp(next[j], bounds->lower[j], bounds->upper[j]);
+        auto column = stacked.col(j).head(r.size());
+        if (bound == next[j] || column.isZero(0)) continue;
+        is_inside = false;
+        held[j] = bound - x[j];
+        right.head(r.size()) -= held[j] * column;
+        column.setZero();
+      }
+    }
+    if (!is_solved) break;
     if (bounds) next = bounds->nearest(next);
     problem.forward(next, trial);
     has_moved = trial.loss < at.loss;
@@ -313,6 +327,11 @@ Real truncated_floor(const Problem& problem, const Vector& truth) {
 }
 
 }  // namespace
+
+bool has_fitted_minimum(const OptionValues& options) {
+  return options.number("noise", 0) > 0 || options.number("tikhonov", 0) > 0 ||
+         options.text("bounds") == "active" || !options.text("model").empty();
+}
 
 OptionTable feature_table(const OptionTable& own) {
   OptionTable table = option_table<Features>();

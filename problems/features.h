@@ -37,6 +37,9 @@ inline void fields(Features& o, auto& field) {
         "lies on bounds");
 }
 
+// Whether f_L is the loss of a fit from x*, which a run may better from elsewhere.
+bool has_fitted_minimum(const OptionValues& complete_options);
+
 // Without names that the problem itself declares.
 OptionTable feature_table(const OptionTable& own);
 

@@ -201,8 +201,9 @@ ProblemParts make_heat(const Options& o, const Draw& draw) {
          .field = field});
   }
   RandomStream stream = draw.stream("target");
-  ProblemParts parts = from_exact_data(std::make_unique<Heat>(N, kNoiseFloor),
-                                       soft_rectangles(N, stream), field, draw);
+  ProblemParts parts =
+      from_exact_data(std::make_unique<Heat>(N, kNoiseFloor), soft_rectangles(N, stream), draw);
+  parts.field = field;
   const Vector truth = parts.truth->col(0);
   Vector x(truth.size());
   const Real rounding =

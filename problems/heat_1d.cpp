@@ -14,7 +14,7 @@
 #include <numbers>
 
 #include "core/fourier.h"
-#include "problems/problem.h"
+#include "problems/learning.h"
 
 namespace isoline::problems {
 namespace {
@@ -80,17 +80,10 @@ Vector truth_of(Index N, const Draw& draw) {
 ProblemParts make_heat_1d(const Heat1d& o, const Draw& draw) {
   auto physics = std::make_unique<Rod>(o.N, o.time);
   const Vector truth = truth_of(o.N, draw);
-  Matrix target(o.N, 1);
-  physics->apply(truth, target);
   const Real floor = physics->floor_of(truth);
-  return {.physics = std::move(physics),
-          .start = draw.start(Vector::Zero(o.N), StartScale::own),
-          .start_scale = StartScale::own,
-          .target = target,
-          .minimum = 0,
-          .truth = truth,
-          .x_error = [truth](BatchRef x, const Batch&) { return (x - truth).norm(); },
-          .x_floor = [floor](const Batch&) { return floor; }};
+  ProblemParts parts = from_exact_data(std::move(physics), truth, draw, StartScale::own);
+  parts.x_floor = [floor](const Batch&) { return floor; };
+  return parts;
 }
 
 }  // namespace

@@ -242,17 +242,16 @@ Series spectrum(Index grid) {
 // Learning problems from their options.
 
 ProblemParts from_exact_data(std::unique_ptr<Physics> physics, const Vector& truth,
-                             const Field& field, const Draw& draw) {
+                             const Draw& draw, StartScale scale) {
   Workspace w;
   Matrix target(physics->outputs(), 1);
   physics->forward(truth, Matrix(0, 1), target, w);
   return {.physics = std::move(physics),
-          .start = draw.start(Vector::Zero(truth.size())),
+          .start = draw.start(Vector::Zero(truth.size()), scale),
+          .start_scale = scale,
           .target = target,
           .minimum = 0,
-          .truth = truth,
-          .x_error = [truth](BatchRef x, const Batch&) { return (x - truth).norm(); },
-          .field = field};
+          .truth = truth};
 }
 
 Real summed_error(BatchRef x, const Batch& batch) {

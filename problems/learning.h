@@ -57,9 +57,9 @@ inline void fields(Learning& o, auto& field) {
 }
 
 // Finding an x* (k) again from its exact data, y* = P(x*), of physics that are one to one, with 0
-// as the standard start: the error is ‖x − x*‖. Both x and y are fields.
+// as the standard start.
 ProblemParts from_exact_data(std::unique_ptr<Physics> physics, const Vector& truth,
-                             const Field& field, const Draw& draw);
+                             const Draw& draw, StartScale scale = StartScale::at_least_one);
 
 // The published error of grids: |x − x*| summed over cells, the mean over samples.
 Real summed_error(BatchRef x, const Batch& batch);

@@ -148,9 +148,7 @@ ProblemParts plugin_parts(const PluginComponent& component, const OptionValues& 
   if (component.can(ISOLINE_BOUNDS))
     parts.bounds =
         Bounds{Eigen::Map<const Vector>(sizes.lower, k), Eigen::Map<const Vector>(sizes.upper, k)};
-  if (!has_truth) return parts;
-  parts.truth = truth;
-  parts.x_error = [truth](BatchRef x, const Batch&) { return (x - truth).norm(); };
+  if (has_truth) parts.truth = truth;
   return parts;
 }
 

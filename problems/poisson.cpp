@@ -116,8 +116,10 @@ ProblemParts make_poisson(const Options<solves>& o, const Draw& draw) {
   }
   if (!o.learning.is_on()) {
     RandomStream stream = draw.stream("target");
-    return from_exact_data(std::make_unique<Poisson<solves>>(N), noise<solves>(N, stream), field,
-                           draw);
+    ProblemParts parts =
+        from_exact_data(std::make_unique<Poisson<solves>>(N), noise<solves>(N, stream), draw);
+    parts.field = field;
+    return parts;
   }
   const auto sample = sample_of(std::make_shared<const Poisson<solves>>(N),
                                 [N](RandomStream& stream) { return noise<solves>(N, stream); });

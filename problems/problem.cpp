@@ -22,6 +22,10 @@ Problem::Problem(ProblemParts parts) : parts_(std::move(parts)) {
     for (Vector* start : {&parts_.start.drawn, &parts_.start.standard})
       *start = bounds->nearest(*start);
   }
+  if (parts_.truth && !parts_.x_error)  // the solution is the x* that made y*, and no other
+    parts_.x_error = [truth = Vector(parts_.truth->reshaped())](BatchRef x, const Batch&) {
+      return (x - truth).norm();
+    };
   if (!parts_.network) parts_.network = std::make_unique<Identity>(parts_.start.drawn);
   if (!parts_.loss) parts_.loss = std::make_unique<HalfSquared>();
   if (is_learned())

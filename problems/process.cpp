@@ -175,11 +175,7 @@ ProblemParts process_parts(const ProblemHandshake& said, const std::shared_ptr<S
       session->line.receive_answer(Verb::x_error, {&error, 1});
       return error;
     };
-  if (said.truth.empty()) return parts;
-  const Matrix truth = vector_of(said.truth);
-  parts.truth = truth;
-  if (said.has_x_error) return parts;
-  parts.x_error = [truth](BatchRef x, const Batch&) { return (x - truth).norm(); };
+  if (!said.truth.empty()) parts.truth = vector_of(said.truth);
   return parts;
 }
 

@@ -89,7 +89,6 @@ ProblemParts make_square(const SquareOptions& o, const Draw& draw) {
           .loss = std::make_unique<HalfSquared>(2),
           .minimum = 0,
           .truth = Vector(truth),
-          .x_error = [truth](BatchRef x, const Batch&) { return (x - truth).norm(); },
           .window = {{-0.3, 3.2, -0.1, 3.5}},  // the axes and levels of Fig. 1
           .y_window = {{-0.3, 3.2, -0.1, 9.5}},
           .contour_spacing = "powers of two"};

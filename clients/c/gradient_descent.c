@@ -1,5 +1,5 @@
-// Steepest descent in C: θ ← θ − η ∇L. Cauchy (1847). Gives the same runs as Isoline's
-// `gd`.
+// Steepest descent in C: θ ← θ − η ∇L, projected onto the bounds of a problem. Cauchy (1847). Gives
+// the same runs as Isoline's `gd`.
 #include <stdlib.h>
 
 #include "isoline.h"
@@ -34,6 +34,10 @@ static int step(void* self, isoline_oracles* f, double* theta) {
   double loss;
   if (f->linearize(f, theta, &loss) || f->gradient(f, of->g)) return ISOLINE_FAILED;
   for (uint64_t i = 0; i < f->unknowns; ++i) theta[i] -= of->rate * of->g[i];
+  for (uint64_t i = 0; f->lower != NULL && i < f->unknowns; ++i) {
+    if (theta[i] < f->lower[i]) theta[i] = f->lower[i];
+    if (theta[i] > f->upper[i]) theta[i] = f->upper[i];
+  }
   return ISOLINE_RUNNING;
 }
 
@@ -43,7 +47,7 @@ const isoline_component* isoline_plugin(uint64_t which) {
   static const isoline_component gd = {
       .version = ISOLINE_VERSION,
       .bytes = sizeof(isoline_component),
-      .capabilities = ISOLINE_STEP | ISOLINE_FORWARD | ISOLINE_PULLBACK,
+      .capabilities = ISOLINE_STEP | ISOLINE_FORWARD | ISOLINE_PULLBACK | ISOLINE_BOUNDS,
       .name = "gd-c",
       .title = "Gradient descent, in C",
       .formula = "θ ← θ − η ∇L",

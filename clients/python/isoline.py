@@ -580,19 +580,27 @@ class optimizer:
     least_squares=True: the method minimizes ½‖r‖², so it does not apply to problems with another loss.
     reports=True: the script calls report(x) once per iteration. Otherwise, each new best point counts
     as one iteration.
+    keeps_bounds=True: the method evaluates only points with lower ≤ x ≤ upper; otherwise, it does not
+    apply to problems whose solution may lie on a bound.
     When the run is over, every call raises Stop, which exits the script.
     """
 
     def __init__(
-        self, needs=(), name=None, least_squares=False, reports=False, note=None, source=None
+        self, needs=(), name=None, least_squares=False, reports=False, note=None, source=None,
+        keeps_bounds=False,
     ):
         self._line, greeting = _greeted()
         said = {"name": name, "note": note, "source": source, "needs": list(needs)}
-        said.update(least_squares=least_squares, reports=reports)
+        said.update(least_squares=least_squares, reports=reports, keeps_bounds=keeps_bounds)
         _introduce(self._line, greeting, "optimizer", said)
         verb, _, payload = self._line.receive()  # for a mere description, Isoline closes the socket here
         begun = _vector(payload)
-        self.n, self.residuals, self.x0 = int(begun[0]), int(begun[1]), begun[2:]
+        n = self.n = int(begun[0])
+        self.residuals = int(begun[1])
+        self.x0, bounds = begun[2 : n + 2], begun[n + 2 :]
+        if len(bounds) == 0:  # the problem has none
+            bounds = _vector(array.array("d", [float("-inf")] * n + [float("inf")] * n))
+        self.lower, self.upper = bounds[:n], bounds[n:]
         self._watch_end()
 
     def value(self, x):

@@ -36,8 +36,7 @@ ProblemParts make_my_problem(const MyProblemOptions& o, const Draw& draw) {
           .start = draw.start(Eigen::Vector2d(1, 1)),
           .target = target,
           .minimum = 0,
-          .truth = truth,
-          .x_error = [truth](BatchRef x, const Batch&) { return (x - truth).norm(); }};
+          .truth = truth};
 }
 
 }  // namespace

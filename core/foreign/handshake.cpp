@@ -329,7 +329,8 @@ MethodHandshake method_handshake(const std::string& text, const std::string& sen
           .needs = said.oracles("needs", {Oracle::forward, Oracle::pullback, Oracle::pushforward,
                                           Oracle::jacobian, Oracle::hessian_product}),
           .is_least_squares = said.flag("least_squares"),
-          .reports = said.flag("reports")};
+          .reports = said.flag("reports"),
+          .keeps_bounds = said.flag("keeps_bounds")};
 }
 
 ProblemHandshake greet_problem(Line& line, std::uint64_t seed, double seconds,

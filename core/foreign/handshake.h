@@ -94,6 +94,7 @@ struct MethodHandshake {
   OracleSet needs;                // the oracles that it calls
   bool is_least_squares = false;  // it descends ½‖r‖², whatever the loss
   bool reports = false;           // its iterations; else each new best point counts as one
+  bool keeps_bounds = false;      // it evaluates only points within the bounds of a problem
 };
 
 // From the text that `sender` sent. UsageError, which quotes it, if it is invalid.

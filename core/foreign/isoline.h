@@ -23,7 +23,7 @@ enum {
   ISOLINE_JACOBIAN = 1 << 3,     // J, (m, k)
   ISOLINE_INVERSE = 1 << 4,      // an x near x0 with P(x) = y
   ISOLINE_TRUTH = 1 << 5,        // only of a problem: the x* that produced the target
-  ISOLINE_BOUNDS = 1 << 6,       // only of a problem: bounds on x, from dimension()
+  ISOLINE_BOUNDS = 1 << 6,       // a problem has bounds, by dimension(); an optimizer respects them
   ISOLINE_STEP = 1 << 8,         // only of an optimizer: step() is one iteration,
   ISOLINE_SOLVE = 1 << 9,        // or the complete solve, which reports each iteration itself
   ISOLINE_COMPARES = 1 << 10     // in addition: it compares losses of different steps
@@ -70,6 +70,9 @@ struct isoline_oracles {
   int (*inverse)(isoline_oracles* f, const double* y, double* x);
   int (*report)(isoline_oracles* f,
                 const double* theta);  // for ISOLINE_SOLVE: the end of an iteration
+  // With ISOLINE_BOUNDS: bounds on θ, (n) each, infinite where there is no bound; NULL if the
+  // problem has none. The run fails if θ is outside them in any call or after step().
+  const double *lower, *upper;
 };
 
 // A problem or an optimizer. Functions outside its capabilities may be NULL, and so may `note`,

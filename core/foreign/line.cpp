@@ -44,7 +44,7 @@ constexpr std::array<std::pair<Verb, std::string_view>, 19> kNames{{
 
 // An answer that comes soon is met awake: to be woken takes as long as it does itself.
 constexpr std::int64_t kSpinNanoseconds = 20'000;
-constexpr std::size_t kMostPieces = 4;
+constexpr std::size_t kMostPieces = 5;
 
 double seconds_since(std::int64_t begin) {
   return 1e-9 * static_cast<double>(monotonic_nanoseconds() - begin);

@@ -20,9 +20,9 @@ namespace {
 constexpr std::uint64_t kMostComponents = 1000, kMostOptions = 100;
 constexpr std::size_t kMostName = 64, kMostText = 4096;
 
-constexpr std::uint64_t kOfBoth =
-    ISOLINE_FORWARD | ISOLINE_PUSHFORWARD | ISOLINE_PULLBACK | ISOLINE_JACOBIAN | ISOLINE_INVERSE;
-constexpr std::uint64_t kOfProblems = kOfBoth | ISOLINE_TRUTH | ISOLINE_BOUNDS;
+constexpr std::uint64_t kOfBoth = ISOLINE_FORWARD | ISOLINE_PUSHFORWARD | ISOLINE_PULLBACK |
+                                  ISOLINE_JACOBIAN | ISOLINE_INVERSE | ISOLINE_BOUNDS;
+constexpr std::uint64_t kOfProblems = kOfBoth | ISOLINE_TRUTH;
 constexpr std::uint64_t kOfOptimizers = kOfBoth | ISOLINE_STEP | ISOLINE_SOLVE | ISOLINE_COMPARES;
 
 bool has(std::uint64_t capabilities, std::uint64_t all_of) {

@@ -194,7 +194,7 @@ Json table_json(const Table& table) {
 Json plot_json(const Plot& plot, const Comparison& c) {
   constexpr const char* kKinds[] = {"steps", "lines"};
   const auto series_json = [&](const PlotSeries& one) -> Json {
-    return {{"optimizer", c.optimizers[one.optimizer.value()].label},
+    return {{"optimizer", one.optimizer ? Json(c.optimizers[*one.optimizer].label) : Json()},
             {"name", one.name},
             {"x", json_numbers(one.x)},
             {"y", json_numbers(one.y)},

@@ -97,7 +97,7 @@ function settingsBehind(table, column, s) {
   if (column === 'failed') return all.filter((p) => cellOf(DATA.problems[p], s)?.failed > 0);
   if (table === 'sanity') return DATA.sanity;
   if (table === 'certified') return all.filter((p) => DATA.problems[p].name === 'nist');
-  return ['calls', 'loss-without-x', 'variation', 'rates', 'tuning-choices'].includes(table) ? all : DATA.common;
+  return ['calls', 'discrepancy', 'loss-without-x', 'size', 'variation', 'rates', 'tuning-choices'].includes(table) ? all : DATA.common;
 }
 
 function openEvidence(cell) {

@@ -15,20 +15,12 @@
 namespace isoline::reports {
 namespace {
 
-constexpr Real kTau = 1.1;  // of the discrepancy principle, where a run does not state its own
-
 // A setting that has all options of another one of its problem, and more.
 struct Featured {
   std::size_t problem, plain;
   std::string feature;  // "noise=0.01"
   Real noise = 0;       // where the feature is nothing else
 };
-
-const OptionValues* options_of(const Comparison& c, std::size_t p) {
-  for (const Cell& cell : c.cells[p])
-    if (!cell.runs.empty()) return &c.runs[cell.runs[0]].record->request.problem.options;
-  return nullptr;
-}
 
 // The part of `whole` beyond `part`, if it has all of that.
 std::optional<OptionValues> rest_of(const OptionValues& whole, const OptionValues& part) {
@@ -123,7 +115,7 @@ std::optional<Stop> stop_of(const Run& run) {
   if (!record.noise_level || !record.x_scale || y.empty() || is_failure(record.status))
     return std::nullopt;
   const Real stated = record.request.budget.discrepancy;
-  const Real most = (stated > 0 ? stated : kTau) * *record.noise_level;
+  const Real most = (stated > 0 ? stated : kNoiseFactor) * *record.noise_level;
   const auto finite = [&](std::size_t i) {
     return std::isfinite(x[i]) ? x[i] / *record.x_scale : kNever;
   };
@@ -153,6 +145,12 @@ struct Stops {
 
 }  // namespace
 
+const OptionValues* options_of(const Comparison& c, std::size_t p) {
+  for (const Cell& cell : c.cells[p])
+    if (!cell.runs.empty()) return &c.runs[cell.runs[0]].record->request.problem.options;
+  return nullptr;
+}
+
 Table features_table(const Comparison& c) {
   std::map<std::string, std::vector<Featured>> by_feature;
   for (Featured& each : featured_settings(c))
@@ -174,6 +172,8 @@ Table features_table(const Comparison& c) {
                           {ordinal(place), {{"place", Real(place)}}},
                           optimizer_text(c, before.optimizer),
                           number_cell("correlation", move.correlation)});
+    for (TableCell& cell : table.rows.back())
+      cell.of = std::pair(pairs[0].problem, first.optimizer);
     readings.push_back(words(
         "features.move", feature, name_in_sentence(c.optimizers[first.optimizer]), ordinal(place),
         name_in_sentence(c.optimizers[before.optimizer]), move.correlation, pairs.size()));
@@ -184,7 +184,7 @@ Table features_table(const Comparison& c) {
 }
 
 Table discrepancy_table(const Comparison& c) {
-  Table table = worded_table("discrepancy", kTau);
+  Table table = worded_table("discrepancy", kNoiseFactor);
   Stops all;
   for (std::size_t s = 0; s < c.optimizers.size(); ++s) {
     Stops own;
@@ -206,8 +206,8 @@ Table discrepancy_table(const Comparison& c) {
   }
   if (table.rows.empty()) return {};
   table.reading = all.work.empty() ? words("discrepancy.none")
-                                   : words("discrepancy.reading", all.work.size(), all.runs, kTau,
-                                           median_of(all.excess), median_of(all.end));
+                                   : words("discrepancy.reading", all.work.size(), all.runs,
+                                           kNoiseFactor, median_of(all.excess), median_of(all.end));
   return table;
 }
 
@@ -221,7 +221,7 @@ Plots noise_plot(const Comparison& c) {
       for (const auto& [noise, p] : sweep) levels.insert(noise);
   std::erase_if(sweeps, [&](const auto& sweep) { return sweep.second.size() < levels.size(); });
   if (levels.size() < 2 || sweeps.empty()) return {};
-  Plot plot = worded_plot("plot-noise", sweeps.size(), kTau);
+  Plot plot = worded_plot("plot-noise", sweeps.size(), kNoiseFactor);
   plot.kind = Plot::Kind::lines;
   plot.is_log_x = plot.is_log_y = true;
   for (std::size_t s = 0; s < c.optimizers.size(); ++s) {

@@ -86,6 +86,11 @@ Table loss_without_x_table(const Comparison& comparison);
 Table features_table(const Comparison& comparison);
 Table discrepancy_table(const Comparison& comparison);
 Plots noise_plot(const Comparison& comparison);
+Table l_curve_table(const Comparison& comparison);  // empty where no settings differ in tikhonov
+Plots l_curve_plot(const Comparison& comparison);
+// Work over the number of unknowns; empty where no settings differ in their size alone.
+Table size_table(const Comparison& comparison);
+Plots size_plots(const Comparison& comparison);
 Table fixed_budget_table(const Comparison& comparison);  // empty where no x* is known
 Table data_profile_table(const Comparison& comparison);
 Table simplex_profile_table(const Comparison& comparison);  // of Moré and Wild
@@ -99,7 +104,11 @@ Plots profile_plot(const Comparison& comparison);
 Plots data_profile_plot(const Comparison& comparison);
 Plots runtime_plot(const Comparison& comparison);
 
+// The options of a setting; nullptr where it has no run.
+const OptionValues* options_of(const Comparison& comparison, std::size_t problem);
 // The common parts of their tables.
+inline constexpr Real kNoiseFactor =
+    1.1;  // τ of the discrepancy principle, unless a run has its own
 inline constexpr std::size_t kMostTableRows = 40;  // the best optimizers
 inline constexpr std::size_t kMostLines = 8;       // of a plot, the best optimizers
 // Adds a row of the optimizer, which it names in its first cell and by topic.

@@ -195,6 +195,15 @@ std::string figure(const Spread& spread) {
 
 std::string percent(Real share) { return fmt::format("{:.0f} %", 100 * share); }
 
+std::string spec_without(std::string_view text, std::string_view option) {
+  const Spec spec = parse_spec(text);
+  std::string rest;
+  for (const auto& [name, value] : spec.options)
+    if (name != option)
+      rest += fmt::format("{}{}={}", rest.empty() ? "" : ",", name, quoted(value));
+  return rest.empty() ? spec.name : fmt::format("{}[{}]", spec.name, rest);
+}
+
 std::string shown_spec(std::string_view spec) {
   constexpr std::size_t kLong = 7;  // "0.01389" still stands in full
   std::string out;

@@ -80,6 +80,7 @@ std::string ordinal(std::size_t place);  // "1st", "13th"
 
 // A spec as people read it: "newton[rate=0.3333]", its long numbers cut to four digits.
 std::string shown_spec(std::string_view spec);
+std::string spec_without(std::string_view spec, std::string_view option);
 // The name of an external component, with its mark: "spring ‡".
 std::string problem_name(const ProblemAxis& problem);
 std::string optimizer_name(const OptimizerAxis& optimizer);

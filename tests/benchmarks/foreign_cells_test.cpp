@@ -385,6 +385,52 @@ TEST_F(ForeignCells, OfScipyCountWhatScipyCounts) {
     }
 }
 
+// A program that declares keeps_bounds gets them, and fails where it leaves them.
+TEST_F(ForeignCells, OfMethodsThatKeepBoundsStayWithinThem) {
+  const std::string problem = "poisson[N=4,bounds=active]";
+  const auto record_within = [&](const std::string& word, const Budget& budget) {
+    return record_of(
+        request_of(problem, process_of(misbehaving("idle_optimizers.py " + word)), budget));
+  };
+  const Budget budget{.iterations = 5000, .target = 0};
+  const Record own = record_within("descends-within-bounds", budget);
+  EXPECT_FALSE(is_failure(own.status)) << own.message;
+  EXPECT_LT(own.curve.kkt_residual.back(), 1e-6 * own.curve.gradient_norm.front());
+  EXPECT_GT(own.curve.gradient_norm.back(), 1e-3);
+  const Record native = record_of(request_of(problem, "gd[rate=0.5]", budget));
+  EXPECT_NEAR(own.summary.loss, native.summary.loss, 1e-12 * own.summary.start_loss);
+  EXPECT_TRUE(native.is_best_known) << "f_L is the loss of a fit";
+  for (const std::string word : {"leaves-its-bounds", "finishes-outside-its-bounds"}) {
+    const Record record = record_within(word, {.iterations = 50});
+    EXPECT_EQ(record.status, Status::failed) << word << ": " << record.message;
+    const std::string component = word.starts_with("leaves") ? "component 3" : "component 0";
+    EXPECT_NE(record.message.find(component), std::string::npos) << record.message;
+    EXPECT_NE(record.message.find(word), std::string::npos) << record.message;
+  }
+  const Record ignorant = record_within("talks", {.iterations = 50});
+  EXPECT_EQ(ignorant.status, Status::inapplicable) << ignorant.message;
+  EXPECT_NE(ignorant.message.find("keeps_bounds"), std::string::npos) << ignorant.message;
+}
+
+TEST_F(ForeignCells, OfScipySolveWithinBounds) {
+  const std::string python = python_with("scipy");
+  if (python.empty()) GTEST_SKIP() << "SciPy is not installed";
+  for (const std::string method : {"trf", "dogbox", "l-bfgs-b", "slsqp", "lm"}) {
+    SCOPED_TRACE(method);
+    const std::string tight = method == "l-bfgs-b" ? " ftol=0 gtol=1e-10" : "";
+    const Record record =
+        record_of(request_of("burgers[N=16,bounds=active]",
+                             process_of(example("scipy_optimize.py " + method + tight, python)),
+                             {.iterations = 100'000, .target = 0}));
+    EXPECT_EQ(record.status == Status::inapplicable, method == "lm") << record.message;
+    if (method == "lm") continue;
+    EXPECT_FALSE(is_failure(record.status)) << record.message;
+    // By as much as their own tests of convergence allow.
+    EXPECT_LT(record.summary.loss, 1.01 * *record.minimum);
+    EXPECT_LT(record.curve.kkt_residual.back(), 1e-2 * record.curve.gradient_norm.back());
+  }
+}
+
 TEST_F(ForeignCells, OfTorchReportEachOfItsSteps) {
   const std::string python = python_with("torch");
   if (python.empty()) GTEST_SKIP() << "PyTorch is not installed";

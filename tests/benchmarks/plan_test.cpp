@@ -168,6 +168,19 @@ TEST(Defaults, AreTheCellsOfQuickWithEveryMethodAtItsDefaults) {
   }
 }
 
+// Features of a suite that a problem refuses would end the whole run.
+TEST(Suites, OfRealProblemsCanBeMadeWhole) {
+  std::map<std::string, problems::Problem> made;
+  for (const Request& cell : cells_of("real"))
+    if (const std::string& spec = cell.problem.spec; !made.contains(spec))
+      made.emplace(spec, make_problem(catalog(), cell.problem, cell.seed));
+  EXPECT_GT(made.size(), 30U);
+  for (const auto& [spec, problem] : made) {
+    EXPECT_EQ(spec.find("noise=") != std::string::npos, problem.noise_level().has_value()) << spec;
+    EXPECT_EQ(spec.find("bounds=active") != std::string::npos, problem.bounds() != nullptr) << spec;
+  }
+}
+
 // What would take too long, or lacks an argument, joins the registries and not the suites.
 TEST(Suites, PassOverWhatItsEntryKeepsOutOfAll) {
   Catalog all = builtin_catalog();

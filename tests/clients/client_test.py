@@ -258,6 +258,18 @@ class Optimizers(unittest.TestCase):
             self.assertEqual(self.answer(program, 33, 2, []), [5, 6])
             self.assertEqual(program.process.wait(), 0, "it left as it was meant to")
 
+    def test_is_given_the_bounds_where_it_keeps_them(self):
+        text = "import isoline\np = isoline.optimizer([], keeps_bounds=True)\n" \
+            "p.finish([p.n, *p.x0, *p.lower, *p.upper])"
+        infinity = float("inf")
+        for bounds in ([-1, 0, 3, infinity], []):
+            with Program(text, self.has_numpy) as program:
+                self.assertTrue(json.loads(program.greet("optimizer")[1])["keeps_bounds"])
+                begun = [2, 3, 1, 2] + bounds
+                program.send(16, 0, struct.pack(f"<{len(begun)}d", *begun))
+                expected = [2, 1, 2] + (bounds or [-infinity, -infinity, infinity, infinity])
+                self.assertEqual(self.answer(program, 33, len(expected), []), expected)
+
     def test_leaves_quietly_when_told_to_stop(self):
         with Program(OPTIMIZER, self.has_numpy) as program:
             program.greet("optimizer")

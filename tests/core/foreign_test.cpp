@@ -335,10 +335,13 @@ TEST(Handshakes, OfAnOptimizerSayWhatItAsks) {
   EXPECT_TRUE(said.needs.contains(Oracle::forward) && said.needs.contains(Oracle::jacobian));
   EXPECT_FALSE(said.needs.contains(Oracle::pullback));
   EXPECT_TRUE(said.is_least_squares);
-  EXPECT_FALSE(said.reports);
+  EXPECT_FALSE(said.reports || said.keeps_bounds);
   Json bad = json;
   bad["needs"] = {"truth"};
   EXPECT_THROW(method_handshake(json_text(bad), "`mine`"), UsageError) << "it is a privilege";
+  Json bounded = json;
+  bounded["keeps_bounds"] = true;
+  EXPECT_TRUE(method_handshake(json_text(bounded), "`mine`").keeps_bounds);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/decompose.h"
+#include "problems/features.h"
 #include "tests/optimizers/run.h"
 #include "tests/optimizers/trial_problems.h"
 
@@ -97,6 +98,30 @@ TEST(CeresGaussNewton, TakesTheStepsOfGaussNewton) {
 }
 
 // Candidates that raise the loss are counted as rejected and leave θ where it was.
+// x = Σ σᵢ/(σᵢ² + α) vᵢ uᵢᵀ y* of P(x) = A x with the penalty ½α‖x‖².
+TEST(LeastSquares, FindTikhonovsSolutionOfALinearProblem) {
+  constexpr Real kAlpha = 1e-3;
+  for (const char* spec : {"poisson[N=4]", "deconvolution-1d[N=32]"}) {
+    const Problem plain = make(spec);
+    const Problem penalized =
+        with_features(make(spec), {{"noise", 0.01}, {"tikhonov", kAlpha}}, problems::Draw(0, spec));
+    Point at;
+    Matrix A;
+    plain.forward(plain.start(), at);
+    plain.jacobian(A, at);
+    Svd svd;
+    ASSERT_TRUE(thin_svd(A, svd));
+    const Vector filter = svd.sigma.array() / (svd.sigma.array().square() + kAlpha);
+    const Vector data = penalized.target().topRows(A.rows()).reshaped();
+    const Vector x = svd.Vt.transpose() * (filter.asDiagonal() * (svd.U.transpose() * data));
+    for (const char* method :
+         {"gauss-newton", "levenberg-marquardt", "ceres-gauss-newton", "minpack-lmder"})
+      EXPECT_LE((run(penalized, method, {.iterations = 100, .target = 0}).theta - x).norm(),
+                1e-10 * x.norm())
+          << method << " on " << spec;
+  }
+}
+
 TEST(LevenbergMarquardt, LossNeverRises) {
   const Outcome result = run(far_root(), "levenberg-marquardt", iterations(60));
   Real before = result.trace->start_loss;

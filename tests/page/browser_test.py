@@ -687,6 +687,42 @@ class Whole(InBrowser):
         self.assertGreater(counts["statistics"], 150)
 
 
+class Real(InBrowser):
+    """Problems with noise, bounds and a penalty."""
+
+    @classmethod
+    def made(cls, folder):
+        run("run", "--problem", "burgers[N=8|16|32],burgers[N=8|16|32,bounds=active],"
+            "burgers[N=8,noise=0.05],burgers[N=8,noise=0.05,tikhonov=1e-5|1e-4|1e-3|1e-2|1e-1]",
+            "--optimizer", "gd,ceres-lm,levenberg-marquardt", "--target", "0", "--iterations", "100",
+            "--out", folder, "--quiet")
+        return pathlib.Path(folder, "report", "index.html")
+
+    def test_every_number_on_penalties_sizes_and_noise_opens_its_evidence(self):
+        self.open("#statistics")
+        self.browser.wait("return TASKS.size === 0")
+        _, silent = self.browser.run(SILENT, "statistics")
+        self.assertEqual(silent, [])
+        shown = self.browser.run("return [...document.querySelectorAll('#statistics table')]"
+                                 ".map((one) => one.dataset.table)")
+        for table in ("features", "l-curve", "size", "discrepancy"):
+            self.assertIn(table, shown)
+
+    def test_the_chooser_offers_the_kinds_of_data_of_the_study(self):
+        self.open("#choose")
+        verdict = "return document.querySelector('#means .answer .verdict')?.innerText"
+        self.browser.wait(verdict)
+        kinds, answers = self.browser.run("return DATA.dataKinds"), set()
+        for i, kind in enumerate(kinds):
+            self.browser.click(f"#means .switch:nth-child(5) button:nth-of-type({i + 1})")
+            answers.add(self.browser.run(verdict))
+            asked = self.browser.run("return new URLSearchParams(location.search).get('data')")
+            self.assertEqual(asked, kind if i > 0 else None)
+        self.assertEqual(len(answers), 3, "exact, noisy and bounded data")
+        self.browser.open(self.browser.run("return location.href"))
+        self.assertEqual(self.browser.wait("return means.kind"), 2)
+
+
 class Learned(unittest.TestCase):
     """A report of learned problems alone uses the error in x."""
 

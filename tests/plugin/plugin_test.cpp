@@ -223,18 +223,33 @@ TEST(PluginLaws, AMethodIsRefusedWhatItDidNotDeclareWhateverItMakesOfThat) {
 // The bounds keep x1 from 1, where the solution is.
 TEST(Plugin, AProblemWithBoundsIsSolvedWithinThemByMethodsThatRespectThem) {
   const Defect here("bounds");
-  const Catalog catalog = catalog_with({"trials.so"});
-  const FinishedMatrix all =
-      run(catalog, {"trial-products"}, {"levenberg-marquardt", "nlopt-lbfgs", "ceres-lbfgs"});
-  ASSERT_EQ(all.records.size(), 3U);
+  const Catalog catalog = catalog_with({"trials.so", "gradient_descent.so"});
+  const FinishedMatrix all = run(catalog, {"trial-products"},
+                                 {"levenberg-marquardt", "nlopt-lbfgs", "ceres-lbfgs", "gd-c", "gd",
+                                  "trial-solve", "trial-leaves-bounds"});
+  ASSERT_EQ(all.records.size(), 7U);
+  std::vector<Real> descents;  // final losses of gd in C and of our own
   for (const Record& record : all.records) {
     const std::string& name = record.request.optimizer.name;
-    EXPECT_EQ(record.status == Status::inapplicable, name == "ceres-lbfgs") << name;
+    if (name == "trial-leaves-bounds") {
+      EXPECT_EQ(record.status, Status::failed) << record.message;
+      EXPECT_NE(record.message.find("component 0"), std::string::npos) << record.message;
+      EXPECT_NE(record.message.find(name), std::string::npos) << record.message;
+      continue;
+    }
+    EXPECT_EQ(record.status == Status::inapplicable, name == "ceres-lbfgs" || name == "trial-solve")
+        << name;
     if (record.status == Status::inapplicable) continue;
     EXPECT_EQ(record.trajectory->x.back()[0], 0.5) << name;
+    if (name.starts_with("gd")) {
+      descents.push_back(record.summary.loss);
+      continue;
+    }
     EXPECT_LT(record.curve.kkt_residual.back(), 1e-6) << name;
     EXPECT_GT(record.curve.gradient_norm.back(), 0.1) << name;
   }
+  ASSERT_EQ(descents.size(), 2U);
+  EXPECT_EQ(descents[0], descents[1]);
 }
 
 TEST(PluginLaws, AForwardWithoutAnAnswerIsNotANumber) {

@@ -95,6 +95,15 @@ static int overreach(void* self, isoline_oracles* f, double* theta) {
   return ISOLINE_RUNNING;
 }
 
+// Declares that it respects bounds, and steps across them.
+static int leave_bounds(void* self, isoline_oracles* f, double* theta) {
+  double loss;
+  (void)self;
+  if (f->lower == NULL || f->upper[0] != 0.5 || f->lower[0] != 0) return ISOLINE_FAILED;
+  if (is_wrong("bounds")) theta[0] = f->upper[0] + 1;
+  return f->loss(f, theta, &loss) ? ISOLINE_STALLED : ISOLINE_RUNNING;
+}
+
 static const isoline_component kSound = {
     .version = ISOLINE_VERSION,
     .bytes = sizeof(isoline_component),
@@ -175,6 +184,10 @@ const isoline_component* isoline_plugin(uint64_t which) {
       return &made;
     case 4:
       made = method("trial-overreach", ISOLINE_STEP | ISOLINE_FORWARD, overreach);
+      return &made;
+    case 5:
+      made = method("trial-leaves-bounds", ISOLINE_STEP | ISOLINE_FORWARD | ISOLINE_BOUNDS,
+                    leave_bounds);
       return &made;
     default:
       return NULL;

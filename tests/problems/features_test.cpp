@@ -16,9 +16,14 @@ Problem featured(const std::string& spec, const OptionValues& features, std::uin
 }
 
 TEST(Features, NoneIsThePlainProblem) {
-  const Problem plain = make("burgers[N=32]", 3), same = featured("burgers[N=32]", {}, 3);
-  EXPECT_EQ(plain.target(), same.target());
-  EXPECT_EQ(plain.start(), same.start());
+  const Problem plain = make("burgers[N=32]", 3);
+  for (const OptionValues& none : {OptionValues{}, OptionValues{{"noise", 0.0}}}) {
+    const Problem same = featured("burgers[N=32]", none, 3);
+    EXPECT_EQ(plain.target(), same.target());
+    EXPECT_EQ(plain.start(), same.start());
+    EXPECT_EQ(plain.minimum(), same.minimum());
+    EXPECT_EQ(gradient_at(plain, plain.start()), gradient_at(same, same.start()));
+  }
 }
 
 TEST(Features, NoiseHasItsDeviationAndItsLossAtTheTruth) {
@@ -46,6 +51,13 @@ TEST(Features, ANoisyProblemHasALeastLossAndAFloor) {
   EXPECT_GT(noisy.x_floor(noisy.batch()), 0);
   EXPECT_LT(noisy.x_floor(noisy.batch()), noisy.x_scale(noisy.batch()));
   EXPECT_THROW(featured("rosenbrock", {{"noise", 0.01}}), UsageError) << "y* is 0";
+}
+
+// As many unknowns as data of a one-to-one P, so that some x fits the noise, too.
+TEST(Features, TheLeastLossOfASquareProblemWithNoiseIsZero) {
+  const Problem noisy = featured("burgers[N=64]", {{"noise", 0.01}});
+  ASSERT_TRUE(noisy.minimum());
+  EXPECT_LT(*noisy.minimum(), 1e-20 * loss_at_start(noisy));
 }
 
 // Jᵀ and J agree with differences of the loss; errors in x are those of the plain problem.

@@ -1,22 +1,27 @@
 """A method of scipy.optimize: python3 scipy_optimize.py lm, or trf, bfgs, l-bfgs-b …
 
 Tolerances follow the method: python3 scipy_optimize.py lm ftol=1e-8 xtol=1e-8 gtol=1e-8
+trf, dogbox, l-bfgs-b and slsqp respect the bounds of a problem; tnc leaves them by a rounding.
 """
 import sys
 
-from scipy.optimize import least_squares, minimize
+from scipy.optimize import Bounds, least_squares, minimize
 
 import isoline
 
 method, *given = sys.argv[1:]
 options = {name: float(value) for name, value in (each.split("=") for each in given)}
 label = f"scipy-{' '.join([method, *given])}"
+keeps_bounds = method.lower() in ("trf", "dogbox", "l-bfgs-b", "slsqp")
 if method in ("lm", "trf", "dogbox"):
     tight = {"ftol": 1e-15, "xtol": 1e-15, "gtol": 1e-15, "max_nfev": 10**9}
-    p = isoline.optimizer(["jacobian"], label, least_squares=True)
-    found = least_squares(p.residual, p.x0, p.jacobian, method=method, **{**tight, **options})
+    p = isoline.optimizer(["jacobian"], label, least_squares=True, keeps_bounds=keeps_bounds)
+    bounds = {"bounds": (p.lower, p.upper)} if keeps_bounds else {}
+    found = least_squares(p.residual, p.x0, p.jacobian, method=method, **bounds,
+                          **{**tight, **options})
 else:
-    p = isoline.optimizer(["pullback"], label, reports=True)
-    found = minimize(p.value, p.x0, jac=p.gradient, method=method, callback=p.report,
+    p = isoline.optimizer(["pullback"], label, reports=True, keeps_bounds=keeps_bounds)
+    bounds = {"bounds": Bounds(p.lower, p.upper)} if keeps_bounds else {}
+    found = minimize(p.value, p.x0, jac=p.gradient, method=method, callback=p.report, **bounds,
                      options=options)
 p.finish(found.x, f"{found.message} nfev={found.nfev} njev={found.get('njev')}")
