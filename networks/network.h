@@ -24,11 +24,13 @@ struct Block {
   Kind kind;
 };
 
-// One dense layer z = W a + b under a cotangent: the gradient of W is G Aᵀ and that of b is G 1.
+// One dense layer z = W a + b under a cotangent: the gradient of W is G Aᵀ and that of b is G 1. A
+// network that carries derivatives along with its values has several lanes per sample, first the
+// values of all samples, then B columns for each further lane, to which b is not added.
 struct LayerFactor {
   Index weight, bias;  // the blocks of layout() that hold W and b
-  Matrix inputs;       // A, (columns of W, B)
-  Matrix cotangents;   // G, (rows of W, B)
+  Matrix inputs;       // A, (columns of W, lanes·B)
+  Matrix cotangents;   // G, (rows of W, lanes·B)
 };
 
 // The moments of one convolution under a cotangent, at all places t of its grid: with ā = (a, 1)

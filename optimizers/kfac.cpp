@@ -6,7 +6,9 @@
 // places were uncorrelated and alike; where the physics correlates them the curvature is larger, by
 // up to the number of places, and the rate must be smaller. g is that of √(∂²ℓ/∂yᵢ²) eᵢ, ℓ a
 // sample's loss, for each output i in turn, so that G is exact; of a convolution, or of more than
-// 64 outputs, that of all outputs at once with random signs, one sample per step. Of the loss's
+// 64 outputs, that of all outputs at once with random signs, one sample per step. Of a network that
+// carries derivatives in lanes, A is the mean and G the sum over the lanes of a sample; Dangel,
+// Müller, Zeinhofer (2024), arXiv 2405.15603. Of the loss's
 // curvature the diagonal is used, which for ½‖y − y*‖² is all of it. Batch norm's γ and β have no
 // such form: each steps along its gradient, over λ and the mean of its curvature's diagonal under
 // the same signs. Running means as the paper's; its rescaling by the exact Gauss-Newton matrix,
@@ -29,7 +31,7 @@ class KroneckerBlock {
   Matrix A, G;  // (columns + 1)² and (rows)² of [W b], lower halves
 
   // Shrinks the running means by `kept`, to which are then added: of a dense layer, its inputs a,
-  // (columns, B), as ā āᵀ, or outer products made elsewhere.
+  // (columns, B) or (columns, lanes·B), as ā āᵀ, or outer products made elsewhere.
   void fade(Real kept, Index inputs, Index outputs) {
     if (A.size() == 0) {
       A.setZero(inputs, inputs);
@@ -38,9 +40,10 @@ class KroneckerBlock {
     A *= kept;
     G *= kept;
   }
-  void add_inputs(const Matrix& a, Real share) {
-    a_.setOnes(a.rows() + 1, a.cols());
+  void add_inputs(const Matrix& a, Index samples, Real share) {
+    a_.setZero(a.rows() + 1, a.cols());
     a_.topRows(a.rows()) = a;
+    a_.bottomRows<1>().head(samples).setOnes();
     A.selfadjointView<Eigen::Lower>().rankUpdate(a_, share);
   }
 
@@ -176,7 +179,7 @@ struct Kfac {
         const Matrix &inputs = s.factors[l].inputs, &cotangents = s.factors[l].cotangents;
         if (i == 0) {
           layer.fade(kept, inputs.rows() + 1, cotangents.rows());
-          layer.add_inputs(inputs, share);
+          layer.add_inputs(inputs, s.unit.cols(), (1 - kept) / static_cast<Real>(inputs.cols()));
         }
         layer.G.selfadjointView<Eigen::Lower>().rankUpdate(cotangents, share);
       }

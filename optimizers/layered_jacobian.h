@@ -1,7 +1,7 @@
 // The Jacobian J of a network of dense layers, (m·B, n), by the factors of its layers and never
 // formed: with A the inputs of a layer, a 1 below each for the bias, and G = ∂y/∂z its
 // sensitivities, one row for each number of y, a row of J is for each layer the outer product of a
-// row of G with the input of its sample.
+// row of G with the input of its sample, or the sum of those of all lanes of its sample.
 #pragma once
 
 #include <algorithm>
@@ -27,15 +27,16 @@ class LayeredJacobian {
       layers_.resize(factors_.size());
       for (std::size_t l = 0; l < factors_.size(); ++l) {
         const Matrix& cotangents = factors_[l].cotangents;
-        layers_[l].G.resize(cotangents.rows(), m_ * samples_);
-        for (Index b = 0; b < samples_; ++b) layers_[l].G.col(b * m_ + i) = cotangents.col(b);
+        layers_[l].G.resize(cotangents.rows(), m_ * cotangents.cols());
+        for (Index c = 0; c < cotangents.cols(); ++c)
+          layers_[l].G.col(c * m_ + i) = cotangents.col(c);
       }
     }
     for (std::size_t l = 0; l < factors_.size(); ++l) {
       const Matrix& inputs = factors_[l].inputs;
-      layers_[l].A.resize(inputs.rows() + 1, samples_);
+      layers_[l].A.setZero(inputs.rows() + 1, inputs.cols());
       layers_[l].A.topRows(inputs.rows()) = inputs;
-      layers_[l].A.bottomRows<1>().setOnes();
+      layers_[l].A.bottomRows<1>().head(samples_).setOnes();
       layers_[l].weight = factors_[l].weight;
       layers_[l].bias = factors_[l].bias;
     }
@@ -48,6 +49,13 @@ class LayeredJacobian {
     GG_.resize(rows(), rows());
     for (const Layer& layer : layers_) {
       const Matrix &A = layer.A, &G = layer.G;
+      if (lanes() > 1) {
+        for_rows(layer, [&](Index, const Matrix& rows) {
+          lower_gram(rows, GG_);
+          K += GG_;
+        });
+        continue;
+      }
       product(Form::AH_B, A, A, likeness_);
       lower_gram(G, GG_);
       for (Index column = 0; column < rows(); ++column) {
@@ -66,6 +74,14 @@ class LayeredJacobian {
     for (const Layer& layer : layers_) {
       const Matrix &A = layer.A, &G = layer.G;
       const auto W = w.segment(offset, layer.parameters()).reshaped(G.rows(), A.rows());
+      if (lanes() > 1) {
+        for_rows(layer, [&](Index first, const Matrix& rows) {
+          weighed_ = rows.array().colwise() * w.segment(offset + first, rows.rows()).array();
+          product(Form::AH_B, weighed_, rows, K, 1);
+        });
+        offset += layer.parameters();
+        continue;
+      }
       for (Index t = 0; t < samples_; ++t) {
         const Index count = samples_ - t, first = t * m_;
         pairs_ = A.rightCols(count).array().colwise() * A.col(t).array();
@@ -87,6 +103,13 @@ class LayeredJacobian {
     Index offset = 0;
     for (const Layer& layer : layers_) {
       const Matrix &A = layer.A, &G = layer.G;
+      if (lanes() > 1) {
+        for_rows(layer, [&](Index first, const Matrix& rows) {
+          out.segment(offset + first, rows.rows()) = rows.rowwise().squaredNorm();
+        });
+        offset += layer.parameters();
+        continue;
+      }
       shares_.resize(G.rows(), samples_);
       for (Index b = 0; b < samples_; ++b)
         shares_.col(b) = G.middleCols(b * m_, m_).rowwise().squaredNorm();
@@ -106,10 +129,10 @@ class LayeredJacobian {
       const Index outputs = G.rows();
       for (Index first = 0; first < Y.cols(); first += kTogether) {
         const Index p = std::min(kTogether, Y.cols() - first);
-        cotangents_.resize(outputs * p, samples_);
-        for (Index b = 0; b < samples_; ++b)
-          product(Form::A_B, G.middleCols(b * m_, m_), Y.block(b * m_, first, m_, p),
-                  cotangents_.col(b).reshaped(outputs, p));
+        cotangents_.resize(outputs * p, A.cols());
+        for (Index c = 0; c < A.cols(); ++c)
+          product(Form::A_B, G.middleCols(c * m_, m_), Y.block(c % samples_ * m_, first, m_, p),
+                  cotangents_.col(c).reshaped(outputs, p));
         outer_.resize(outputs * p, A.rows());
         product(Form::A_BH, cotangents_, A, outer_);
         for (Index j = 0; j < p; ++j)
@@ -131,11 +154,11 @@ class LayeredJacobian {
         for (Index j = 0; j < p; ++j)
           outer_.middleRows(j * outputs, outputs) =
               Z.col(first + j).segment(offset, layer.parameters()).reshaped(outputs, A.rows());
-        cotangents_.resize(outputs * p, samples_);
+        cotangents_.resize(outputs * p, A.cols());
         product(Form::A_B, outer_, A, cotangents_);
-        for (Index b = 0; b < samples_; ++b)
-          product(Form::AH_B, G.middleCols(b * m_, m_), cotangents_.col(b).reshaped(outputs, p),
-                  Y.block(b * m_, first, m_, p), 1);
+        for (Index c = 0; c < A.cols(); ++c)
+          product(Form::AH_B, G.middleCols(c * m_, m_), cotangents_.col(c).reshaped(outputs, p),
+                  Y.block(c % samples_ * m_, first, m_, p), 1);
       }
       offset += layer.parameters();
     }
@@ -166,18 +189,40 @@ class LayeredJacobian {
     return sum;
   }
   struct Layer {
-    Matrix A, G;         // (inputs + 1, B), and transposed, (outputs, m·B)
+    Matrix A, G;         // (inputs + 1, lanes·B), and transposed, (outputs, m·lanes·B)
     Index weight, bias;  // in the layout
 
     Index parameters() const { return A.rows() * G.rows(); }
   };
+
+  Index lanes() const { return layers_.front().A.cols() / samples_; }
+  // The rows of J in this layer for some of its inputs at a time, so that a block stays in the
+  // cache: use(first, rows), rows (parameters of the block, m·B) from the parameter `first` on.
+  template <class Use>
+  void for_rows(const Layer& layer, const Use& use) {
+    using Lanes = Eigen::Map<const Matrix, Eigen::Unaligned, Eigen::OuterStride<>>;
+    const Matrix &A = layer.A, &G = layer.G;
+    const Index outputs = G.rows();
+    for (Index first = 0; first < A.rows(); first += kTogether) {
+      const Index inputs = std::min(kTogether, A.rows() - first);
+      rows_.resize(outputs * inputs, rows());
+      for (Index row = 0; row < rows(); ++row)
+        product(
+            Form::A_BH, Lanes(&G(0, row), outputs, lanes(), Eigen::OuterStride<>(outputs * rows())),
+            Lanes(&A(first, row / m_), inputs, lanes(), Eigen::OuterStride<>(A.rows() * samples_)),
+            rows_.col(row).reshaped(outputs, inputs));
+      use(first * outputs, rows_);
+    }
+  }
 
   std::vector<Layer> layers_;
   std::vector<LayerFactor> factors_;
   Index m_ = 0, samples_ = 0;
   Matrix unit_, likeness_, GG_;      // (m, B), Aᵀ A (B, B), G Gᵀ (m·B, m·B)
   Matrix shares_, pairs_, weighed_;  // of one sample with others: Σ w a a, a a, G by those
-  Matrix cotangents_, outer_;  // of a few columns: (outputs · p, B), (outputs · p, inputs + 1)
+  Matrix cotangents_,
+      outer_;    // of a few columns: (outputs · p, lanes·B), (outputs · p, inputs + 1)
+  Matrix rows_;  // of a few inputs: (outputs · inputs, m·B)
 };
 
 }  // namespace isoline::optimizers

@@ -17,7 +17,7 @@ Matrix hidden_values(const Problem& problem, Point& at) {
   problem.network().layer_factors(Matrix::Zero(problem.inputs(), at.y.cols()), layers, at.network);
   Matrix values(0, at.y.cols());
   for (std::size_t l = 1; l < layers.size(); ++l) {
-    const Matrix& layer = layers[l].inputs;
+    const auto layer = layers[l].inputs.leftCols(at.y.cols());
     values.conservativeResize(values.rows() + layer.rows(), values.cols());
     values.bottomRows(layer.rows()) = layer;
   }

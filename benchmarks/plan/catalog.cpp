@@ -244,8 +244,7 @@ Problem made_without_best(const Catalog& catalog, const Component& problem, std:
 }
 
 bool can_learn(const ProblemEntry& entry) {
-  return std::ranges::find(entry.options, kNetworkOption, &OptionField::name) !=
-         entry.options.end();
+  return std::ranges::find(entry.options, kModeOption, &OptionField::name) != entry.options.end();
 }
 
 // Without this check, a request to learn would end as an unknown option.
@@ -306,8 +305,12 @@ Component complete_problem(const Catalog& catalog, const std::string& name,
   Component problem = complete(entry, given);
   if (can_learn(entry) && !problem.is_learned) require_no_learning(entry, problem.options);
   if (problem.is_learned) {
-    const std::string network = parse_spec(problem.options.text(kNetworkOption)).name;
-    problem.learning_sources = source_digest(networks::network_registry().at(network).file);
+    const std::string network = problem.options.text(kNetworkOption);
+    // A problem without this option has a network of its own.
+    const std::string file = network.empty()
+                                 ? entry.file
+                                 : networks::network_registry().at(parse_spec(network).name).file;
+    problem.learning_sources = source_digest(file);
   }
   const std::string best = BestLosses::known().losses_text(problem);
   if (!best.empty()) problem.sources = digest(problem.sources + best);

@@ -34,7 +34,9 @@ std::vector<std::string> specs() {
       "quantum-dipole[mode=learn,batch=9,epoch=0,loss=residual]", "box3d[m=3]", "brown-dennis[m=4]",
       "linear-chain[steps=96]", "coupled-oscillators[steps=48]", "wave-packet[samples=256]",
       "wave-packet[sigma=0]", "quantum-dipole[steps=96]", "quantum-dipole[steps=192,loss=residual]",
-      "broyden-tridiagonal[n=3]", "variably-dimensioned[n=1]"};
+      "broyden-tridiagonal[n=3]", "variably-dimensioned[n=1]",
+      "pinn-poisson[dimension=5,layers=7-6,interior=9,boundary=5]",
+      "pinn-poisson[dimension=10,layers=4-3-5,interior=6,boundary=4,points=fixed]"};
   for (const auto& [name, entry] : all_problems().ready()) {
     const bool is_grid = std::ranges::any_of(
         entry.options, [](const OptionField& field) { return field.name == "N"; });
