@@ -159,6 +159,9 @@ std::string defect_of(const Trace& trace) {
     return "spectra of an invalid size or at invalid iterations";
   if (!is_within(trace.uncertainty.unknowns, Trace::Uncertainty::kUnknowns))
     return "standard deviations of an invalid size";
+  if (!is_within(trace.answer.unknowns, Trace::Answer::kUnknowns) ||
+      !is_flag(trace.answer.has_best) || !is_flag(trace.answer.has_returned))
+    return "an answer of an invalid size";
   if (!are_texts_sound(trace)) return "an unterminated text";
   if (!are_series_sound(trace)) return "more series than the trace has room for";
   if (!are_amounts(trace.prices) || !is_amount(trace.rejected_steps)) return "invalid counts";

@@ -125,6 +125,16 @@ struct Trace {
   char message[kText] = "";
   char privileges[kText] = "";  // what the method saw that others do not, a line each
   char claimed[kText] = "";     // what the method says of its own success, in its words
+  // θ = x of a direct problem: where the loss was least of all that was evaluated, and as it was
+  // returned, with ‖y − y*‖ there.
+  struct Answer {
+    static constexpr int kUnknowns = 128 * 128;
+    int unknowns = 0;  // 0: nothing is kept
+    bool has_best = false, has_returned = false;
+    double residual_norm;
+    double best[kUnknowns], returned[kUnknowns];
+  };
+  Answer answer;
 };
 
 // The part that fits, cut at a character.

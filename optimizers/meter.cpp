@@ -48,6 +48,9 @@ Meter::Meter(const Problem& problem, const Budget& budget, OracleSet granted, Tr
   if (budget.discrepancy > 0 && !problem.noise_level())
     set_text(trace_.message,
              "the discrepancy principle has no effect: the problem states no level of noise");
+  const bool is_kept = problem.has_identity_network() && !problem.is_learned() &&
+                       problem.unknowns() <= Trace::Answer::kUnknowns;
+  trace_.answer.unknowns = is_kept ? static_cast<int>(problem.unknowns()) : 0;
   const bool is_small = problem.inputs() <= Trace::kInputs &&
                         problem.residuals() <= Trace::kOutputs && problem.samples() == 1;
   trace_.path_inputs = is_small ? static_cast<int>(problem.inputs()) : 0;
@@ -60,7 +63,7 @@ void Meter::linearize(VectorRef theta, Linearization& at) {
   at.problem_ = &problem_;
   at.has_jacobian_ = at.has_hessian_ = at.has_sparse_ = false;
   problem_.forward(theta, *samples_, at.point_);
-  see(at.point_.loss);
+  see(at.point_.loss, theta);
   if (problem_.is_learned() && !has_seen_batch_) note_batch(at.point_);
 }
 
@@ -80,7 +83,7 @@ const Matrix& Meter::truth() {
 Real Meter::loss(VectorRef theta) {
   charge_forward(theta);
   problem_.forward(theta, *samples_, point_);
-  see(point_.loss);
+  see(point_.loss, theta);
   return point_.loss;
 }
 
@@ -168,7 +171,7 @@ Status Meter::begin(VectorRef theta) {
   trace_.start_loss = judged_.loss;
   trace_.start_x_error = trace_.last.x_error;
   set_scales();
-  observe(judged_.loss);
+  observe(judged_.loss, judged_theta_);
   keep_point();
   status_ = judge(theta);
   watch_.resume();
@@ -278,6 +281,7 @@ Vector Meter::finish(VectorRef theta, Status verdict) {
   keep_point();
   keep_spectrum(true);
   keep_uncertainty();
+  keep_returned();
   if (problem_.is_learned() && !problem_.field()) show();
   if (verdict == Status::running) verdict = Status::converged;
   if (is_target_met()) verdict = Status::target;
@@ -295,7 +299,7 @@ bool Meter::look_at(VectorRef theta) {
     return false;
   }
   accepted_ = judged_theta_;
-  observe(judged_.loss);
+  observe(judged_.loss, judged_theta_);
   return true;
 }
 
@@ -428,6 +432,14 @@ void Meter::keep_spectrum(bool is_last) {
   std::copy_n(sigma.data(), sigma.size(), kept.sigma[kept.taken]);
   kept.iteration[kept.taken] = iteration_;
   ++kept.taken;
+}
+
+void Meter::keep_returned() {
+  Trace::Answer& kept = trace_.answer;
+  if (kept.unknowns == 0) return;
+  std::copy_n(judged_theta_.data(), kept.unknowns, kept.returned);
+  kept.residual_norm = (judged_.y - problem_.target()).norm();
+  kept.has_returned = true;
 }
 
 // At the returned point, where x is the unknown. By the singular values of A = J D⁻¹, D the norms

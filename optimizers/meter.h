@@ -197,15 +197,25 @@ class Meter {
     return is_exhausted_ || work_ + prices_[static_cast<std::size_t>(Oracle::forward)] > most_work_;
   }
   // A learning problem is judged by its validation samples, not by the batch of a step.
-  void see(Real loss) {
+  void see(Real loss, VectorRef theta) {
     if (problem_.is_learned()) return;
     paid_loss_ = loss;
-    observe(loss);
+    observe(loss, theta);
   }
-  void observe(Real loss) {
-    if (loss < best_loss_) best_loss_ = loss;
+  void observe(Real loss, VectorRef theta) {
+    if (loss < best_loss_) {
+      best_loss_ = loss;
+      keep_best(theta);
+    }
     if (loss <= next_target_) reach(loss);
   }
+  void keep_best(VectorRef theta) {
+    Trace::Answer& kept = trace_.answer;
+    if (kept.unknowns == 0 || theta.size() != kept.unknowns) return;
+    std::copy_n(theta.data(), kept.unknowns, kept.best);
+    kept.has_best = true;
+  }
+  void keep_returned();
   void reach(Real loss);          // records the targets that `loss` meets
   void measure(VectorRef theta);  // fills trace_.last, off the clock
   void keep_point();

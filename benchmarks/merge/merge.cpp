@@ -93,6 +93,18 @@ std::string unite_records(Json& record, const Json& other) {
   return "";
 }
 
+std::string answer_violation(const Json& record, const std::filesystem::path& file) {
+  if (!record.contains("answer") || !record.at("answer").contains("digest")) return "";
+  try {
+    if (record.at("answer").at("digest") == digest(read_text(answer_path(file), kMostRecordBytes)))
+      return "";
+    return fmt::format("{} is not the file of the answer that the record states",
+                       answer_path(file).filename().string());
+  } catch (const UsageError& error) {
+    return fmt::format("the file of its answer cannot be read: {}", error.what());
+  }
+}
+
 std::string fields_violation(const Json& record, const std::filesystem::path& file) {
   if (!record.contains("fields")) return "";
   try {

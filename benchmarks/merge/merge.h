@@ -48,5 +48,7 @@ std::string unite_records(Json& record, const Json& other);
 
 // The error in the file of fields of a record; empty if the file is valid.
 std::string fields_violation(const Json& record, const std::filesystem::path& file);
+// Likewise of its answer.
+std::string answer_violation(const Json& record, const std::filesystem::path& file);
 
 }  // namespace isoline::benchmarks

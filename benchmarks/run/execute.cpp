@@ -135,6 +135,27 @@ std::optional<Uncertainty> uncertainty_of(const Trace::Uncertainty& kept) {
   return known;
 }
 
+// Points that are not finite answer nothing. Where the returned one is not the best, both are kept.
+std::optional<AnswerPoints> answer_of(const Trace& trace) {
+  const Trace::Answer& kept = trace.answer;
+  AnswerPoints answer{.unknowns = kept.unknowns};
+  const auto add = [&](const char* name, const double* values) {
+    std::vector<Real> x(values, values + kept.unknowns);
+    if (!std::ranges::all_of(x, [](Real value) { return std::isfinite(value); })) return;
+    answer.points.emplace_back(name);
+    answer.x.push_back(std::move(x));
+  };
+  if (kept.has_returned) {
+    add(kReturned, kept.returned);
+    answer.residual_norm = kept.residual_norm;
+  }
+  const bool is_returned_best = kept.has_returned && trace.last.loss <= trace.best_loss;
+  if (kept.has_best && !is_returned_best) add(kBest, kept.best);
+  if (kept.unknowns == 0 || answer.points.empty()) return std::nullopt;
+  if (answer.x[0].size() > AnswerPoints::kInline) answer.digest = digest(answer_file(answer));
+  return answer;
+}
+
 Curve curve_of(const Trace& trace) {
   Curve curve;
   curve.iteration = column_of(trace, &TracePoint::iteration);
@@ -440,6 +461,7 @@ Record record_of(const Request& request, const Trace& trace) {
   record.fields = fields_of(trace.frames);
   if (trace.spectra.are_wanted) record.spectrum = spectrum_of(trace.spectra);
   record.uncertainty = uncertainty_of(trace.uncertainty);
+  record.answer = answer_of(trace);
   record.privileges = lines_of(trace.privileges);
   record.foreign = {request.problem.foreign, request.optimizer.foreign};
   record.is_nondeterministic = trace.stopped_by_clock || record.status == Status::timeout ||

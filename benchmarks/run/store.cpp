@@ -280,6 +280,10 @@ void Store::write(Record record, const std::optional<Record>& earlier) {
       clear_way(fields);
       write_text(fields, field_file(*record.fields));
     }
+    if (record.answer && record.answer->is_in_file() && !record.answer->x.empty()) {
+      clear_way(answer_path(path));
+      write_text(answer_path(path), answer_file(*record.answer));
+    }
     clear_way(path);
     write_text(path, file_text(record));
     std::error_code unknown;

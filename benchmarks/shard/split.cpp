@@ -258,8 +258,8 @@ void adopt_records(const std::vector<Request>& requests, const fs::path& whole,
       if (!std::ranges::binary_search(there, name) || store.has(request)) continue;
       const fs::path from = other / "runs" / name, to = shard / "runs" / name;
       try {
-        if (const fs::path fields = field_path(from); is_there(fields))
-          write_text(field_path(to), read_text(fields));
+        for (const auto& beside : {field_path, answer_path})
+          if (is_there(beside(from))) write_text(beside(to), read_text(beside(from)));
         write_text(to, read_text(from));
       } catch (const UsageError&) {  // it is missing or not a record: then the cell runs
       }

@@ -69,6 +69,8 @@ Examined examined_record(const Json& record, const std::string& path) {
   Examined examined{.violations = {}, .identity = {{path, record.at("cell"), record.at("build")}}};
   if (std::string violation = fields_violation(record, path); !violation.empty())
     examined.violations.push_back(std::move(violation));
+  if (std::string violation = answer_violation(record, path); !violation.empty())
+    examined.violations.push_back(std::move(violation));
   return examined;
 }
 

@@ -263,8 +263,12 @@ std::string npy_bytes(const std::vector<Index>& shape, const std::vector<float>&
   return bytes_of("<f4", shape, values);
 }
 
+std::string npy_bytes(const NumberArray& array) {
+  return bytes_of("<f8", array.shape, array.values);
+}
+
 void write_npy(const std::filesystem::path& path, const NumberArray& array) {
-  write_text(path, bytes_of("<f8", array.shape, array.values));
+  write_text(path, npy_bytes(array));
 }
 
 // Numbers as text, and the choice of the format by the file's ending.

@@ -27,7 +27,8 @@ NumberArray read_npy(const std::filesystem::path& path);
 // The bytes of a float32 file. The number of values must fit the shape.
 std::string npy_bytes(const std::vector<Index>& shape, const std::vector<float>& values);
 
-// As float64; whole or not at all.
+// As float64: the bytes of a file, or a file, whole or not at all.
+std::string npy_bytes(const NumberArray& array);
 void write_npy(const std::filesystem::path& path, const NumberArray& array);
 
 // Arrays of numbers in a user's file: `.npy`, or `.csv` with one row per line.

@@ -44,6 +44,7 @@ void require_equal_columns(const Record& record) {
   if (!curve.discrepancy.empty()) of_curve(curve.discrepancy);
   if (record.trajectory) of_curve(record.trajectory->x, record.trajectory->y);
   if (record.fields) require_sound(*record.fields);
+  if (record.answer) require_sound(*record.answer);
   if (record.spectrum)
     require(record.spectrum->iterations.size() == record.spectrum->sigma.size(),
             "the numbers of its spectra and of their iterations differ");
@@ -231,6 +232,21 @@ void fields(Like<FieldFrames> auto& frames, auto& field) {
   field("digest", frames.digest, kDigestLaw);
 }
 
+void fields(Like<AnswerPoints> auto& answer, auto& field) {
+  field("unknowns", answer.unknowns, kCountLaw);
+  field("points", answer.points, R"({"items": {"enum": ["returned", "best"]}})");
+  field.optional("digest", answer.digest,
+                 R"({"pattern": "^[0-9a-f]{16}$", "description": "Of the file with the numbers"})");
+  using Field = std::remove_cvref_t<decltype(field)>;
+  if (std::is_same_v<Field, FieldWriter> && answer.is_in_file()) {
+    field.optional("residual_norm", answer.residual_norm);
+    return;
+  }
+  field.optional("x", answer.x, R"({"description": "A list for each of the points"})");
+  field.optional("residual_norm", answer.residual_norm,
+                 R"({"description": "‖y − y*‖ at the returned point"})");
+}
+
 void fields(Like<Spectrum> auto& spectrum, auto& field) {
   field("iterations", spectrum.iterations);
   field("sigma", spectrum.sigma);
@@ -311,6 +327,8 @@ void fields(Like<Record> auto& record, auto& field) {
                  R"({"description": "Singular values of J, if --spectrum was set"})");
   field.optional("uncertainty", record.uncertainty,
                  R"({"description": "Of a least-squares solution: x and its covariance"})");
+  field.optional("answer", record.answer,
+                 R"({"description": "θ = x of a direct problem, as returned and of least loss"})");
   field("privileges", record.privileges);
   field.optional("foreign", record.foreign,
                  R"({"description": "Components that other programs computed"})");
@@ -476,6 +494,50 @@ void read_field_numbers(FieldFrames& frames, const std::filesystem::path& path) 
     const NumberArray array = npy_from_bytes(bytes);
     require(array.shape == frames.shape, "its shape differs from the one in its record");
     frames.numbers = {array.values.begin(), array.values.end()};
+  } catch (const UsageError& error) {
+    throw UsageError(fmt::format("{}: {}", path.string(), error.what()));
+  }
+}
+
+// The answer in its record or in the file beside it.
+
+void require_sound(const AnswerPoints& answer) {
+  const bool are_named =
+      !answer.points.empty() && answer.points.size() <= 2 &&
+      std::ranges::all_of(answer.points,
+                          [](const auto& name) { return name == kReturned || name == kBest; }) &&
+      (answer.points.size() == 1 || answer.points[0] != answer.points[1]);
+  require(answer.unknowns > 0 && are_named, "its answer has no unknowns or unknown points");
+  if (answer.is_in_file()) return;
+  const bool are_all_there =
+      answer.x.size() == answer.points.size() && std::ranges::all_of(answer.x, [&](const auto& x) {
+        return static_cast<Index>(x.size()) == answer.unknowns;
+      });
+  require(are_all_there, "the points of its answer differ in length");
+}
+
+std::string answer_file(const AnswerPoints& answer) {
+  NumberArray array{{static_cast<Index>(answer.points.size()), answer.unknowns}, {}};
+  for (const std::vector<Real>& x : answer.x)
+    array.values.insert(array.values.end(), x.begin(), x.end());
+  return npy_bytes(array);
+}
+
+void read_answer_numbers(AnswerPoints& answer, const std::filesystem::path& path) {
+  if (!answer.is_in_file()) return;
+  const std::string bytes = read_text(path);
+  require(digest(bytes) == answer.digest,
+          [&] { return fmt::format("{} is not the file that its record names", path.string()); });
+  try {
+    const NumberArray array = npy_from_bytes(bytes);
+    const auto points = static_cast<Index>(answer.points.size());
+    require(array.shape == std::vector<Index>{points, answer.unknowns},
+            "its shape differs from the one in its record");
+    answer.x.clear();
+    for (Index i = 0; i < points; ++i) {
+      const auto first = array.values.begin() + i * answer.unknowns;
+      answer.x.emplace_back(first, first + answer.unknowns);
+    }
   } catch (const UsageError& error) {
     throw UsageError(fmt::format("{}: {}", path.string(), error.what()));
   }

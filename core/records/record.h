@@ -112,6 +112,35 @@ struct Uncertainty {
   Real condition = 0;                   // number of J, its columns scaled to norm 1
 };
 
+// θ = x of a direct problem, which is what its user wants: as the run returned it, and the point of
+// least loss where that is another one. Beyond kInline unknowns, the numbers stand beside the
+// record in CELL-BUILD.x.npy: float64 of the shape (points, unknowns).
+struct AnswerPoints {
+  static constexpr std::size_t kInline = 1000;
+  Index unknowns = 0;
+  std::vector<std::string> points = {};    // kReturned, kBest or both
+  std::vector<std::vector<Real>> x = {};   // (points, unknowns); empty where the file has them
+  std::optional<Real> residual_norm = {};  // ‖y − y*‖ at the returned point
+  std::string digest = {};                 // of the file, if there is one
+
+  // The numbers of that point; nothing where it is not kept, or where they are not read.
+  std::span<const Real> point(const char* name) const {
+    for (std::size_t i = 0; i < x.size(); ++i)
+      if (points[i] == name) return x[i];
+    return {};
+  }
+  bool is_in_file() const { return !digest.empty(); }
+};
+inline constexpr const char *kReturned = "returned", *kBest = "best";
+void require_sound(const AnswerPoints& answer);       // UsageError where sizes or names disagree
+std::string answer_file(const AnswerPoints& answer);  // the file's bytes
+inline std::filesystem::path answer_path(std::filesystem::path record) {
+  return record.replace_extension(".x.npy");
+}
+// The numbers out of the file, if there is one; UsageError, naming it, where it is missing, is
+// damaged or is another run's.
+void read_answer_numbers(AnswerPoints& answer, const std::filesystem::path& path);
+
 // The parts of a run that other programs computed.
 struct ForeignParts {
   std::optional<Foreign> problem = {}, optimizer = {};
@@ -166,7 +195,8 @@ struct Record {
   bool is_nondeterministic = false;       // ended by a clock or a kill
   std::vector<Real> repeat_wall_seconds;  // one a run of this very cell and build, sorted
   Provenance provenance;
-  std::optional<Imported> imported;  // of a run that others made: its figures are their claims
+  std::optional<Imported> imported;    // of a run that others made: its figures are their claims
+  std::optional<AnswerPoints> answer;  // of a direct problem
 
   std::string file_name() const { return record_file_name(cell, build); }
 };

@@ -7,6 +7,7 @@
 
 #include "core/files.h"
 #include "core/json.h"
+#include "core/records/npy.h"
 #include "core/records/record.h"
 #include "core/status.h"
 #include "tests/cli/shell.h"
@@ -297,6 +298,86 @@ TEST_F(Report, AToleranceBetweenTwoIsTheNextStricterOneAndSaysSo) {
 TEST(ValidateVerb, AcceptsEveryFileOfTheTreeThatResultsAreReadFrom) {
   const Shell shell;
   shell.expect("./isoline validate " ISOLINE_SOURCE_DIR "/benchmarks");
+}
+
+// --- the x that runs found
+
+TEST(SolutionVerb, PrintsValuesAndDeviationsOfTheRunOfLeastLoss) {
+  const Shell shell;
+  shell.expect(
+      "./isoline run --problem 'nist[dataset=Misra1a],rosenbrock' --optimizer "
+      "gd,levenberg-marquardt --rates none --iterations 200 --quiet --no-report --out out");
+  shell.expect("./isoline solution out",
+               {.out = {"nist × ", "rosenbrock", "x1", "x2", "returned", "standard deviation",
+                        "./isoline run --problem "}});
+  shell.expect("./isoline solution out --problem nist --format json --out x.json");
+  const Json found = read_json(shell.folder() / "x.json").at(0);
+  EXPECT_EQ(found.at("unknowns"), (Json{"x1", "x2"}));
+  // Certified values and standard deviations of NIST's Misra1a.
+  constexpr Real kB1 = 2.3894212918e2, kB2 = 5.5015643181e-4, kSd1 = 2.7070075241;
+  EXPECT_NEAR(found.at("returned")[0].get<Real>(), kB1, 1e-6 * kB1);
+  EXPECT_NEAR(found.at("returned")[1].get<Real>(), kB2, 1e-6 * kB2);
+  EXPECT_NEAR(found.at("standard_deviation")[0].get<Real>(), kSd1, 1e-5 * kSd1);
+  EXPECT_TRUE(contains(found.at("optimizer").get<std::string>(), "levenberg-marquardt"));
+  // The command repeats the run, bit for bit.
+  shell.expect(found.at("command").get<std::string>() + " --quiet --no-report --out again");
+  shell.expect("./isoline solution again --format json --out again.json");
+  EXPECT_EQ(read_json(shell.folder() / "again.json").at(0).at("returned"), found.at("returned"));
+  const std::string csv = shell.expect("./isoline solution out --format csv --optimizer gd").out;
+  EXPECT_EQ(std::ranges::count(csv, '\n'), 5) << csv;  // the header, and two unknowns of each
+  EXPECT_FALSE(contains(csv, "levenberg")) << csv;
+  shell.expect(
+      "./isoline run --problem 'rosenbrock[bounds=active]' --optimizer nlopt-lbfgs --rates none "
+      "--iterations 200 --quiet --no-report --out bounded");
+  shell.expect("./isoline solution bounded", {.out = {"active bound", "upper"}});
+  shell.expect("./isoline solution out --problem heat", {.exit_code = 1, .err = {"heat"}});
+}
+
+TEST(SolutionVerb, ReadsManyUnknownsFromTheFileThatMergeCopiesAndValidateExamines) {
+  const Shell shell;
+  shell.expect(
+      "./isoline run --problem 'poisson[N=32]' --optimizer nlopt-lbfgs --rates none "
+      "--iterations 3 --quiet --no-report --out out && ./isoline merge out --out whole && ./isoline validate whole/runs");
+  shell.expect("./isoline solution whole --format npy", {.exit_code = 1, .err = {"--out"}});
+  shell.expect("./isoline solution whole --format npy --out x.npy");
+  const NumberArray x = read_npy(shell.folder() / "x.npy");
+  EXPECT_EQ(x.shape, (std::vector<Index>{1024}));
+  EXPECT_NE(std::ranges::max(x.values), 0);
+  shell.expect("./isoline solution whole", {.out = {"984 more unknowns"}});
+  // It starts a run, which begins with the loss that this one found.
+  shell.expect(
+      "./isoline run --problem 'poisson[N=32]' --optimizer nlopt-lbfgs --rates none "
+      "--iterations 1 --quiet --no-report --start x.npy --out more");
+  const auto only_record = [&](const char* folder) {
+    for (const auto& file : std::filesystem::directory_iterator(shell.folder() / folder / "runs"))
+      if (file.path().extension() == ".json") return read_json(file.path());
+    return Json();
+  };
+  EXPECT_EQ(only_record("more").at("summary").at("start_loss"),
+            only_record("out").at("summary").at("best_loss"));
+  shell.expect("for file in whole/runs/*.x.npy; do printf damaged > $file; done");
+  shell.expect("./isoline validate whole/runs", {.exit_code = 2, .out = {".x.npy"}});
+}
+
+// One residual of two unknowns: gradients move both alike, simplices do not.
+TEST(SolutionVerb, StatesThatRunsOfOneLossEndAtOtherPoints) {
+  const Shell shell;
+  write_text(shell.folder() / "sum.py",
+             "import sys\n"
+             "sys.path.insert(0, '" ISOLINE_SOURCE_DIR
+             "/clients/python')\n"
+             "import isoline\n"
+             "isoline.problem(lambda x: [x[0] + x[1]], start=[3.0, -1.5], target=[1.0],\n"
+             "                vjp=lambda x, u: [u[0], u[0]],\n"
+             "                minimum=0.0, name='sum')\n");
+  const std::string run =
+      "./isoline run --problem 'process[command=\"python3 sum.py\"]' --rates none --iterations 300 "
+      "--quiet --no-report --optimizer ";
+  shell.expect(run + "'gd[rate=0.2]' --out one");
+  const std::string one = shell.expect("./isoline solution one", {.out = {"x2"}}).out;
+  EXPECT_FALSE(contains(one, "at another point")) << one;
+  shell.expect(run + "'gd[rate=0.2],nlopt-neldermead' --out two");
+  shell.expect("./isoline solution two", {.out = {"1 run with the same loss is at another point"}});
 }
 
 // --- the table of best losses, renewed from runs

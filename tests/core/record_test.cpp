@@ -51,6 +51,8 @@ Record sample() {
                   .step_norm = {0, 1}};
   record.hits = Hits{{1, 0.1}, {0, -1}, {0, -1}, {0, -1}, {{"forward", {0, -1}}}, {0, NAN}};
   record.trajectory = Trajectory{{{1, 2}, {3, 4}}, {{1}, {-INFINITY}}};
+  record.answer = AnswerPoints{
+      .unknowns = 2, .points = {kReturned, kBest}, .x = {{1, 0.1}, {3, 4}}, .residual_norm = 0.5};
   record.repeat_wall_seconds = {0.5};
   record.provenance = Provenance(Build{.version = "0"});
   record.provenance.run.concurrent_jobs = 2;
@@ -292,6 +294,40 @@ TEST(Schema, ViolationsNameTheirPlace) {
 }
 
 // y*, x* and x at two iterations, of 2×3 cells.
+TEST(Answer, WithManyUnknownsIsReadBackFromItsFile) {
+  const TemporaryFolder folder;
+  const std::filesystem::path path = folder.path() / "a.x.npy";
+  AnswerPoints written{
+      .unknowns = 3, .points = {kReturned, kBest}, .x = {{1, 0.1, 1e-300}, {4, 5, 6}}};
+  written.digest = digest(answer_file(written));
+  Record record = sample();
+  record.answer = written;
+  AnswerPoints read = record_from_text(file_text(record), "it").answer.value();
+  EXPECT_TRUE(read.x.empty()) << "the record does not repeat the numbers";
+  EXPECT_THROW(read_answer_numbers(read, path), UsageError) << "the file is missing";
+  write_text(path, answer_file(written));
+  read_answer_numbers(read, path);
+  EXPECT_EQ(read.x, written.x);
+  EXPECT_EQ(read.point(kBest)[2], 6);
+  write_text(path, answer_file(written) + " ");
+  EXPECT_THROW(read_answer_numbers(read, path), UsageError) << "the file is damaged";
+}
+
+TEST(Answer, WhoseSizesOrNamesDisagreeIsUnsound) {
+  const AnswerPoints sound{.unknowns = 2, .points = {kBest}, .x = {{1, 2}}};
+  EXPECT_NO_THROW(require_sound(sound));
+  for (const auto& change : std::vector<std::function<void(AnswerPoints&)>>{
+           [](AnswerPoints& a) { a.unknowns = 3; }, [](AnswerPoints& a) { a.points = {"other"}; },
+           [](AnswerPoints& a) { a.points = {}; },
+           [](AnswerPoints& a) {
+             a.x.push_back({1, 2});
+           }}) {
+    AnswerPoints changed = sound;
+    change(changed);
+    EXPECT_THROW(require_sound(changed), UsageError);
+  }
+}
+
 FieldFrames small_fields() {
   FieldFrames fields{.iterations = {0, 7}, .shape = {4, 2, 3}};
   for (int i = 0; i < 24; ++i) fields.numbers.push_back(0.1F * static_cast<float>(i));

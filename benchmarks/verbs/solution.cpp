@@ -1,0 +1,307 @@
+// isoline solution DIR...: the x that runs found, with what is known of its accuracy.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "benchmarks/cli/terminal.h"
+#include "benchmarks/cli/verb.h"
+#include "benchmarks/plan/catalog.h"
+#include "core/errors.h"
+#include "core/json.h"
+#include "core/output.h"
+#include "core/records/npy.h"
+#include "core/results/study.h"
+#include "core/text.h"
+#include "reports/formats/formats.h"
+#include "reports/sections/words.h"
+
+namespace isoline::benchmarks {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct SolutionArguments {
+  std::vector<std::string> folders;
+  std::string problem, optimizer = "best", format = "table", out;
+};
+
+void declare(VerbArguments& verb, SolutionArguments& given) {
+  verb.texts("DIR", given.folders, kFolders).required();
+  verb.text("--problem", given.problem, "Problem, by its name or its specification (default: all)");
+  verb.text("--optimizer", given.optimizer,
+            "Optimizer, by its name or its specification; best: the run of least loss")
+      .shown();
+  verb.text("--format", given.format, "Format of the output")
+      .one_of({"table", "csv", "json", "npy"})
+      .shown();
+  verb.text("--out", given.out, "Output file, which npy requires (default: standard output)");
+}
+
+// A run with its answer, whose numbers are read.
+struct Solution {
+  const Record* record = nullptr;
+  AnswerPoints answer = {};
+  std::vector<std::string> active = {};  // (n), "lower" or "upper"; empty without such bounds
+  std::size_t others = 0;                // runs that reach its loss at another point
+  Real distance = 0;                     // to the farthest of those points
+
+  Real loss() const {
+    const Summary& summary = record->summary;
+    return answer.point(kBest).empty() ? summary.loss : summary.best_loss;
+  }
+  std::span<const Real> point() const {  // of least loss
+    const std::span<const Real> best = answer.point(kBest);
+    return best.empty() ? answer.point(kReturned) : best;
+  }
+  std::span<const Real> deviations() const {  // of the returned point
+    if (!record->uncertainty) return {};
+    return record->uncertainty->standard_deviation;
+  }
+};
+
+bool is_named(const Component& component, const std::string& name) {
+  return component.name == name || component.spec == name || component.asked == name;
+}
+
+AnswerPoints answer_in(const std::vector<std::string>& folders, const Record& record) {
+  AnswerPoints answer = *record.answer;
+  if (!answer.is_in_file()) return answer;
+  for (const fs::path folder : folders) {
+    const fs::path file = answer_path(folder / "runs" / record.file_name());
+    if (!fs::exists(file)) continue;
+    read_answer_numbers(answer, file);
+    return answer;
+  }
+  throw UsageError(fmt::format("{} is missing: it holds the {} unknowns of the answer of {}",
+                               answer_path(record.file_name()).string(), answer.unknowns,
+                               record.file_name()));
+}
+
+Real distance(std::span<const Real> a, std::span<const Real> b) {
+  Real sum = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += (a[i] - b[i]) * (a[i] - b[i]);
+  return std::sqrt(sum);
+}
+
+// Losses tie where they differ by less than the strictest target of the tables; points are others
+// where they differ by more than a thousandth of their norm.
+void compare_with(const Solution& other, Solution& solution) {
+  constexpr Real kTie = 1e-6, kApart = 1e-3;
+  const Record &a = *solution.record, &b = *other.record;
+  if (a.request.problem.spec != b.request.problem.spec || a.request.seed != b.request.seed) return;
+  const Real descent = a.summary.start_loss - solution.loss();
+  const bool is_tie = std::abs(solution.loss() - other.loss()) <= kTie * a.scale.value_or(descent);
+  const auto x = solution.point(), z = other.point();
+  if (!is_tie || x.size() != z.size()) return;
+  const std::vector<Real> zero(x.size());
+  const Real apart = distance(x, z);
+  if (!(apart > kApart * std::max(distance(x, zero), distance(z, zero)))) return;
+  ++solution.others;
+  solution.distance = std::max(solution.distance, apart);
+}
+
+// The run of least loss of each problem, among those that are wanted.
+std::vector<Solution> solutions_of(const results::Study& study, const SolutionArguments& given,
+                                   const Catalog& catalog) {
+  std::vector<Solution> all, chosen;
+  for (const Record& record : study.runs)
+    if (record.answer && (given.problem.empty() || is_named(record.request.problem, given.problem)))
+      all.push_back({.record = &record, .answer = answer_in(given.folders, record)});
+  const auto loss_or_worst = [](const Solution& solution) {
+    const Real loss = solution.loss();
+    return std::isnan(loss) ? std::numeric_limits<Real>::infinity() : loss;
+  };
+  for (const Solution& each : all) {
+    const Request& request = each.record->request;
+    if (given.optimizer != "best" && !is_named(request.optimizer, given.optimizer)) continue;
+    const auto same = std::ranges::find_if(chosen, [&](const Solution& other) {
+      return other.record->request.problem.spec == request.problem.spec;
+    });
+    if (same == chosen.end())
+      chosen.push_back(each);
+    else if (loss_or_worst(each) < loss_or_worst(*same))
+      *same = each;
+  }
+  for (Solution& solution : chosen) {
+    const Request& request = solution.record->request;
+    solution.active = active_bounds(catalog, request.problem, request.seed, solution.point());
+    for (const Solution& other : all) compare_with(other, solution);
+  }
+  return chosen;
+}
+
+// The columns of an answer: a name, and a text for each unknown.
+struct Column {
+  std::string name;
+  std::vector<std::string> texts;
+};
+
+std::vector<Column> columns_of(const Solution& solution, const char* number_format) {
+  std::vector<Column> columns{{"unknown", {}}};
+  for (std::size_t i = 0; i < solution.point().size(); ++i)
+    columns[0].texts.push_back(fmt::format("x{}", i + 1));
+  const auto add = [&](const char* name, std::span<const Real> values) {
+    if (values.empty()) return;
+    columns.push_back({name, {}});
+    for (const Real value : values)
+      columns.back().texts.push_back(fmt::format(fmt::runtime(number_format), value));
+  };
+  add("returned", solution.answer.point(kReturned));
+  add("standard deviation", solution.deviations());
+  add("best", solution.answer.point(kBest));
+  if (std::ranges::any_of(solution.active, [](const auto& text) { return !text.empty(); }))
+    columns.push_back({"active bound", solution.active});
+  return columns;
+}
+
+std::string table_text(const Solution& solution) {
+  constexpr std::size_t kMostRows = 40;
+  const Record& record = *solution.record;
+  const Request& request = record.request;
+  std::string text =
+      fmt::format("{} × {}, seed {}: {}, loss {:.6g}", reports::terminal_text(request.problem.spec),
+                  reports::terminal_text(request.optimizer.spec), request.seed,
+                  name_of(record.status), solution.loss());
+  if (solution.answer.residual_norm)
+    text += fmt::format(", ‖y − y*‖ {:.6g}", *solution.answer.residual_norm);
+  text += "\n";
+  const std::vector<Column> columns = columns_of(solution, "{:.10g}");
+  const std::size_t rows = columns[0].texts.size(), shown = std::min(rows, kMostRows);
+  for (std::size_t row = 0; row <= shown; ++row) {
+    for (const Column& column : columns) {
+      std::size_t width = column.name.size();
+      for (std::size_t i = 0; i < shown; ++i) width = std::max(width, column.texts[i].size());
+      text += fmt::format("  {:>{}}", row == 0 ? column.name : column.texts[row - 1], width);
+    }
+    text += "\n";
+  }
+  if (shown < rows)
+    text += fmt::format("  {} more unknowns; --format csv prints all\n", rows - shown);
+  if (solution.others > 0)
+    text += fmt::format(
+        "  {} with the same loss {} at another point, up to {:.3g} away: several x fit the data "
+        "equally well.\n",
+        reports::counted(solution.others, "run"), solution.others == 1 ? "is" : "are",
+        solution.distance);
+  return text + fmt::format("  {}\n", reports::rerun_command(request));
+}
+
+std::string quoted(std::string text) {  // for CSV
+  for (std::size_t at = 0; (at = text.find('"', at)) != std::string::npos; at += 2)
+    text.insert(at, 1, '"');
+  return "\"" + text + "\"";
+}
+
+std::string csv_text(const std::vector<Solution>& solutions) {
+  std::string text =
+      "problem,optimizer,seed,unknown,returned,standard deviation,best,active bound\n";
+  for (const Solution& solution : solutions) {
+    const Request& request = solution.record->request;
+    const std::vector<Column> columns = columns_of(solution, "{}");
+    for (std::size_t i = 0; i < columns[0].texts.size(); ++i) {
+      text += fmt::format("{},{},{}", quoted(request.problem.spec), quoted(request.optimizer.spec),
+                          request.seed);
+      for (const char* name :
+           {"unknown", "returned", "standard deviation", "best", "active bound"}) {
+        const auto column = std::ranges::find(columns, name, &Column::name);
+        text += "," + (column == columns.end() ? "" : column->texts[i]);
+      }
+      text += "\n";
+    }
+  }
+  return text;
+}
+
+Json to_json(const Solution& solution) {
+  const Record& record = *solution.record;
+  Json json{{"problem", record.request.problem.spec},
+            {"optimizer", record.request.optimizer.spec},
+            {"seed", record.request.seed},
+            {"status", name_of(record.status)},
+            {"loss", json_number(solution.loss())},
+            {"runs_at_another_point", solution.others},
+            {"command", reports::rerun_command(record.request)},
+            {"record", record.file_name()}};
+  for (std::size_t i = 0; i < solution.point().size(); ++i)
+    json["unknowns"].push_back(fmt::format("x{}", i + 1));
+  const auto add = [&](const char* name, std::span<const Real> values) {
+    if (!values.empty()) json[name] = json_numbers(values);
+  };
+  add("returned", solution.answer.point(kReturned));
+  add("best", solution.answer.point(kBest));
+  add("standard_deviation", solution.deviations());
+  if (!solution.active.empty()) json["active_bounds"] = solution.active;
+  if (solution.answer.residual_norm)
+    json["residual_norm"] = json_number(*solution.answer.residual_norm);
+  return json;
+}
+
+std::string text_of(const std::vector<Solution>& solutions, const std::string& format) {
+  if (format == "csv") return csv_text(solutions);
+  std::string text;
+  if (format == "json") {
+    Json all = Json::array();
+    for (const Solution& solution : solutions) all.push_back(to_json(solution));
+    return json_text(all, 1) + "\n";
+  }
+  for (const Solution& solution : solutions)
+    text += (text.empty() ? "" : "\n") + table_text(solution);
+  return text;
+}
+
+int run(const SolutionArguments& given, Session& session) {
+  require(given.format != "npy" || !given.out.empty(),
+          "--format npy writes a binary file: name it with --out x.npy");
+  const results::Study study =
+      results::read_study(given.folders, progress_on_terminal("reading records"));
+  const std::vector<Solution> solutions = solutions_of(study, given, session.catalog());
+  require(!solutions.empty(), [&] {
+    return fmt::format(
+        "no run of {}{} in {} states an x: runs that train a network do not, and records of "
+        "earlier versions did not",
+        given.optimizer == "best" ? "any optimizer" : given.optimizer,
+        given.problem.empty() ? "" : " on " + given.problem, reports::joined(given.folders));
+  });
+  if (given.format == "npy") {
+    require(solutions.size() == 1, [&] {
+      return fmt::format("--format npy writes one x, but {} problems match: choose with --problem",
+                         solutions.size());
+    });
+    const auto x = solutions[0].point();
+    write_npy(given.out, {{static_cast<Index>(x.size())}, {x.begin(), x.end()}});
+  } else {
+    const std::string text = text_of(solutions, given.format);
+    if (given.out.empty())
+      say(stdout, text);
+    else
+      write_output(given.out, text, text.substr(0, text.find('\n')));
+  }
+  return kGood;
+}
+
+}  // namespace
+
+void register_solution(VerbRegistry& registry) {
+  registry.add(verb_of(
+      {.name = "solution",
+       .help_position = 47,
+       .summary = "Print the unknowns x that runs found, and the command that repeats each run",
+       .examples =
+           R"(  isoline solution results/quick    of each problem the run of least loss
+  isoline solution results/quick --problem rosenbrock --optimizer ceres-bfgs
+  isoline solution results/quick --problem rosenbrock --format npy --out x.npy)",
+       .notes =
+           "`returned` is the point that the run returned, and `best` the evaluated point of least "
+           "loss, where that is another one. Standard deviations belong to the returned point of "
+           "a least-squares problem. The file of --format npy holds the point of least loss; "
+           "`isoline run --start FILE` starts from it."},
+      declare, run));
+}
+
+}  // namespace isoline::benchmarks
