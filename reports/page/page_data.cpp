@@ -120,6 +120,9 @@ std::string problem_json(const Comparison& c, std::size_t p,
              indices(ranked), indices(shown_at_first(c, ranked))) +
          origins_json(c, p) + learned_json(c, p) +
          (problem.lacks_least_loss() ? ",\"isUnknown\":true" : "") +
+         (problem.least_goal > 0 && problem.least_goal < kNever
+              ? fmt::format(",\"goal\":{:.4g}", problem.least_goal)
+              : "") +
          (prices_of(problem) ? ",\"sheet\":" + json_quoted(problem.sheet->file_name()) : "") +
          (fields ? ",\"fields\":" + fields_json(*fields) : "") + "}";
 }
