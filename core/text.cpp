@@ -142,6 +142,7 @@ std::string nearest_name(std::string_view wrong, const std::vector<std::string>&
   for (const std::string& name : known) {
     const bool begins = wrong.size() >= 2 && name.starts_with(wrong);
     const std::size_t distance = begins ? 1 : edit_distance(wrong, name);
+    if (distance > 1 && !name.starts_with(wrong.substr(0, 1))) continue;  // 'report' for 'import'
     if (distance < least) {
       least = distance;
       nearest = name;

@@ -136,7 +136,7 @@ def findings(report):
     inverse = [cell["figures"]["work"]["1e-6"]["median"] for cell in report["cells"]
                if cell["optimizer"] == "sip, given P⁻¹" and cell["problem"] in report["ranked"]]
     solved = [work for work in inverse if math.isfinite(float(work))]
-    works = " to ".join(f"{work:.0f}" for work in sorted({min(solved), max(solved)}))
+    works = " and ".join(f"{work:.0f}" for work in sorted({min(solved), max(solved)}))
     sine = next(cell for cell in report["cells"]
                 if cell["problem"].startswith("sine[") and cell["optimizer"].startswith("sip"))
     seeds, given = sine["runs"], sine["optimizer"].partition(", given ")[2] or "extra information"
@@ -146,20 +146,20 @@ def findings(report):
     lead = (f"**Findings** from the suite `quick` ({report['answered'] - inapplicable:,} runs; {inapplicable} more were skipped, because "
             f"the method does not apply to the problem). {methods} methods are ranked on {leader['settings']} settings of "
             f"{leader['families']} physics problems ({starts} instances per setting).")
-    decision = (f"By work, {first['optimizer']} is significantly ahead of every other method: it"
+    decision = (f"By work, {first['optimizer']} is significantly ahead of every other method (sign-flip test): it"
                 if leader["significant"] else
-                f"By work, no method is significantly ahead. {first['optimizer']}")
+                f"By work, no method is significantly ahead (sign-flip test). {first['optimizer']}")
     return lead, [
         f"{decision} ranks first (solves {first['solved']} of {leader['settings']} settings), {second['optimizer']} "
-        f"second (solves {second['solved']}; sign-flip test, p = {second['p']:.2f}). Of the other {methods - 1} "
-        f"methods, {band - 1 or 'none'} {'is' if band < 3 else 'are'} not significantly worse than the first.",
+        f"second ({second['solved']}; p = {second['p']:.2f}). {band - 1 or 'None'} of the "
+        f"{methods - 1} methods below the first {'is' if band == 2 else 'are'} not significantly worse.",
         f"By wall time, {' and '.join(by_time)} {'ranks' if len(by_time) == 1 else 'rank'} first.",
         f"levenberg-marquardt solves {lm['solved']} settings (median slowdown: {float(lm['typical']):.1f} times the least "
         f"work), gauss-newton {by_name['gauss-newton']['solved']}.",
-        f"With learning rates that are tuned for each problem on all other problems, adam solves {by_name['adam']['solved']} "
+        f"With learning rates that were tuned on other problems only, adam solves {by_name['adam']['solved']} "
         f"settings, hig {by_name['hig']['solved']} and gd {by_name['gd']['solved']}.",
         f"{len(inverse)} of the {leader['settings']} settings provide an inverse P⁻¹. Given P⁻¹ (†), sip solves {len(solved)} "
-        f"of these, each with {works} forward solves. This includes calls to P⁻¹, charged at the cost that each problem declares.",
+        f"of these, each with {'between ' * (' ' in works)}{works} forward solves. This includes calls to P⁻¹, charged at the cost that each problem declares.",
         "Networks were also trained to invert a sine map. At equal work, the median error in x is "
         f"{sine_at_equal_work(report):.0f} times as large after training with adam as after training with sip, which is given "
         f"{given} (†; {seeds} seeds).",

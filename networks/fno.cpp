@@ -442,7 +442,8 @@ std::unique_ptr<Network> make_fno(const OptionValues& options, const NetworkShap
           "fno requires that both x and y are fields on a grid of at least 2×2 cells");
   require(2 * o.modes <= padded, [&] {
     return fmt::format(
-        "fno: twice modes must be at most {}, the number of cells along an edge with padding, got modes={}",
+        "fno: twice modes must be at most {}, the number of cells along an edge with padding, got "
+        "modes={}",
         padded, o.modes);
   });
   return std::make_unique<FourierOperator>(N, o.modes, o.width);

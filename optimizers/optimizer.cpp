@@ -68,7 +68,8 @@ std::unique_ptr<Descent> make_descent(const OptimizerRegistry& registry, const s
   const OptimizerEntry& entry = registry.at(spec.name);
   require(static_cast<bool>(entry.make_descent), [&] {
     return fmt::format(
-        "{} requires more than a gradient, so another method cannot use it as its network optimizer",
+        "{} requires more than a gradient, so another method cannot use it as its network "
+        "optimizer",
         spec.name);
   });
   return entry.make_descent(complete_options(entry.options, spec.name, options_of(spec)));

@@ -194,7 +194,8 @@ class PluginMethod final : public Optimizer {
         throw std::runtime_error(component_.words() + ": step() failed");
       default:
         throw std::runtime_error(fmt::format(
-            "{}: step() must return a value from ISOLINE_RUNNING (0) to ISOLINE_FAILED ({}), got {}",
+            "{}: step() must return a value from ISOLINE_RUNNING (0) to ISOLINE_FAILED ({}), got "
+            "{}",
             component_.words(), static_cast<int>(ISOLINE_FAILED), told));
     }
   }

@@ -121,12 +121,11 @@ void fields(GaussNewton& o, auto& field) {
   field("cutoff", o.cutoff, between(0, 1),
         "pivots or singular values up to this share of the largest one count as zero, and so do "
         "those within rounding");
-  field(
-      "factorization", o.factorization, Choices{"orthogonal", "svd", "qr", "gram", "layers"},
-      "how J⁺ is applied: by a complete orthogonal factorization with pivots, or by sparse "
-      "Cholesky of JᵀJ with corrections where J is sparse and has 256 unknowns or more; by the "
-      "thin SVD of J; by QR and the SVD of R; by the smaller Gram matrix of J; or by JJᵀ formed layer by "
-      "layer");
+  field("factorization", o.factorization, Choices{"orthogonal", "svd", "qr", "gram", "layers"},
+        "how J⁺ is applied: by a complete orthogonal factorization with pivots, or by sparse "
+        "Cholesky of JᵀJ with corrections where J is sparse and has 256 unknowns or more; by the "
+        "thin SVD of J; by QR and the SVD of R; by the smaller Gram matrix of J; or by JJᵀ formed "
+        "layer by layer");
 }
 
 void first_fields(auto& o, auto& field) {

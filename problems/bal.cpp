@@ -172,7 +172,8 @@ std::filesystem::path path_of(const std::string& file) {
     for (const char* ending : {"", ".bz2"})
       if (const std::filesystem::path path = in / (file + ending); is_there(path)) return path;
   throw NotApplicable(fmt::format(
-      "the file {} is missing: set the environment variable ISOLINE_BAL to the folder that contains it",
+      "the file {} is missing: set the environment variable ISOLINE_BAL to the folder that "
+      "contains it",
       file));
 }
 

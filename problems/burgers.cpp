@@ -106,7 +106,8 @@ Index checked_steps(Index N, Index steps, Real viscosity, Real time) {
   if (steps == 0) return least(0.5, 0.4);
   require(steps >= least(1, 0.5), [&] {
     return fmt::format(
-        "burgers: in one time step, a speed of 1 may cross at most one cell, and νΔt/h² may be at most ½; with N={}, viscosity={:g} and time={:g}, steps must be at least {}, got {}",
+        "burgers: in one time step, a speed of 1 may cross at most one cell, and νΔt/h² may be at "
+        "most ½; with N={}, viscosity={:g} and time={:g}, steps must be at least {}, got {}",
         N, viscosity, time, least(1, 0.5), steps);
   });
   return steps;

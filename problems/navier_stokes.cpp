@@ -51,9 +51,10 @@ void fields(Options& o, auto& field) {
   field("loss", o.loss, {"", "amplitude"},
         "amplitude: Σ √max(w² |F (m_T − m_T*)|², 1e-5), as published, instead of half the sum of "
         "squares");
-  field(
-      "inverse", o.inverse, {"generator", "coarse"},
-      "the local inverse: an estimate of translation and vortex that uses knowledge of how the data were generated; or a few steps of Gauss-Newton over ten coarse modes, without extra information");
+  field("inverse", o.inverse, {"generator", "coarse"},
+        "the local inverse: an estimate of translation and vortex that uses knowledge of how the "
+        "data were generated; or a few steps of Gauss-Newton over ten coarse modes, without extra "
+        "information");
   field("track", o.track, {"consistent", "published"},
         "for inverse=generator: the marker's path, or the published one, which lacks a factor Δt");
   fields(o.learning, field);
@@ -67,7 +68,8 @@ void check_speed(const Options& o) {
   const Real passed = fastest * o.dt;
   require(passed <= kFlowLength / 2, [&] {
     return fmt::format(
-        "navier-stokes: with dt={} and steps={}, the fastest flow (speed {:.3g}) moves by {:.3g} in one time step, which is more than half of the domain, {}; reduce dt",
+        "navier-stokes: with dt={} and steps={}, the fastest flow (speed {:.3g}) moves by {:.3g} "
+        "in one time step, which is more than half of the domain, {}; reduce dt",
         o.dt, o.steps, fastest, passed, kFlowLength / 2);
   });
 }

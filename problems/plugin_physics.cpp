@@ -51,7 +51,8 @@ isoline_sizes sizes_of(const PluginInstance& instance) {
   const bool is_known = sizes.inverse >= ISOLINE_EXACT && sizes.inverse <= ISOLINE_APPROXIMATE;
   require(!has_inverse || is_known, [&] {
     return fmt::format(
-        "{}: dimension() must set inverse to a kind from ISOLINE_EXACT to ISOLINE_APPROXIMATE, got {}",
+        "{}: dimension() must set inverse to a kind from ISOLINE_EXACT to ISOLINE_APPROXIMATE, got "
+        "{}",
         words, sizes.inverse);
   });
   return sizes;

@@ -216,7 +216,9 @@ Preview preview_of(const PlannedRun& all, const RunArguments& given,
   std::vector<fs::path> timed = result_folders(all.folder);
   for (const std::string& folder : earlier) {
     const std::vector<fs::path> there = result_folders(folder);
-    require(!there.empty(), [&] { return folder + ": no such result folder"; });
+    require(!there.empty(), [&] {
+      return folder + " is not a result folder; `isoline run --out FOLDER` creates one";
+    });
     timed.insert(timed.end(), there.begin(), there.end());
   }
   return preview(session.catalog(), all.requests, folders, EarlierTimes(record_outlines(timed)),

@@ -91,7 +91,7 @@ void print_outcome(const Outcome& outcome, const std::filesystem::path& folder, 
   std::string counts;
   for (const auto& [status, count] : outcome.statuses)
     counts += fmt::format("{}{} {}", counts.empty() ? "" : ", ", count, name_of(status));
-  say(stdout, fmt::format("{}: {} run, {} reused ({}) in {}\n",
+  say(stdout, fmt::format("{}: {} new, {} reused. Status: {}. Time: {}\n",
                           reports::counted(std::size_t(outcome.planned), "cell"), outcome.run,
                           outcome.reused, counts, duration_text(outcome.seconds)));
 }

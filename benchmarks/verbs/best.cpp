@@ -34,8 +34,9 @@ void declare(VerbArguments& verb, BestArguments& given) {
 std::vector<Record> records_under(const std::vector<std::string>& folders) {
   std::vector<Record> records;
   for (const fs::path folder : folders) {
-    require(fs::exists(folder / "runs"),
-            [&] { return fmt::format("{}: no such result folder", folder.string()); });
+    require(fs::exists(folder / "runs"), [&] {
+      return folder.string() + " is not a result folder; `isoline run --out FOLDER` creates one";
+    });
     for (const auto& entry : fs::directory_iterator(folder / "runs"))
       if (entry.path().extension() == ".json") records.push_back(read_record(entry.path()));
   }

@@ -161,7 +161,8 @@ class Said {
   OptionTable options(const char* name) const {
     if (!has(name)) return {};
     const std::string law = fmt::format(
-        "a list of at most {} objects, each with a new name of letters, digits and hyphens, and with a default",
+        "a list of at most {} objects, each with a new name of letters, digits and hyphens, and "
+        "with a default",
         kMostPackages);
     const Json& list = json_[name];
     if (!list.is_array() || list.size() > kMostPackages) refuse(name, law);

@@ -37,9 +37,9 @@ class Invariants {
     const std::string cell = cell_digest(record.request);
     hold(cell == record.cell, "its cell is {}, but the digest of its request is {}", record.cell,
          cell);
-    hold(
-        record.criterion.empty() || record.criterion == digest_of(criterion_of(record)),
-        "its criterion is not the digest of its f_L, scale, x_scale, x_floor, aim and nominal costs");
+    hold(record.criterion.empty() || record.criterion == digest_of(criterion_of(record)),
+         "its criterion is not the digest of its f_L, scale, x_scale, x_floor, aim and nominal "
+         "costs");
     check_signs();
     if (!is_own) return;
     hold(std::ranges::adjacent_find(curve_.iteration, std::greater_equal()) ==

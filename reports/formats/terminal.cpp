@@ -87,7 +87,7 @@ std::string best_of_each(const Comparison& c) {
     const bool is_pair = half < lines.size() && i + half < lines.size();
     text += (is_pair ? left(lines[i], longest + 2) + lines[i + half] : lines[i]) + "\n";
   }
-  return text;
+  return text + "\n" + wrapped(success_text(c));
 }
 
 std::string line_of(const Comparison& c, std::size_t p, std::size_t s, std::size_t width) {

@@ -130,9 +130,10 @@ std::string published_html(const Document& document) {
   const std::vector<Plot> plots = claim_plots(best->evidence, best->id + "-first");
   if (plots.empty()) return html;
   return fmt::format(
-      "{0}<div data-claim=\"{1}\"><p class=reading><a href=\"#claim-{1}\">{2}</a> {3}</p>{4}</div>",
-      html, best->id, html_text(best->sentence), html_text(words("page.quantity", best->quantity)),
-      plot_html(plots[0]));
+      "{0}<div data-claim=\"{1}\"><p class=reading>{3} "
+      "<a href=\"#claim-{1}\">{2}</a> {4}</p>{5}</div>",
+      html, best->id, html_text(best->sentence), html_text(words("page.sentence")),
+      html_text(words("page.quantity", best->quantity)), plot_html(plots[0]));
 }
 
 // The first tab: alerts; a sentence that decides, of which all that these runs say opens; facts.
@@ -244,7 +245,7 @@ std::string html_report(const Document& document) {
               {"headline", head_html(document)},
               {"page.ranking",
                html_text(words("page.ranking", counted_name(c), setting_noun(c), tau_name(c)))},
-              {"page.heat", html_text(words("page.heat", unit_name(c)))},
+              {"page.heat", html_text(words("page.heat", unit_name(c), success_text(c)))},
               {"overview", overview_html(document)},
               {"endings", endings_html(c)},
               {"remarks", remarks_html(document)},

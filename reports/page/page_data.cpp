@@ -120,6 +120,9 @@ std::string problem_json(const Comparison& c, std::size_t p,
              indices(ranked), indices(shown_at_first(c, ranked))) +
          origins_json(c, p) + learned_json(c, p) +
          (problem.lacks_least_loss() ? ",\"isUnknown\":true" : "") +
+         (problem.least_goal > 0 && problem.least_goal < kNever
+              ? fmt::format(",\"goal\":{:.4g}", problem.least_goal)
+              : "") +
          (prices_of(problem) ? ",\"sheet\":" + json_quoted(problem.sheet->file_name()) : "") +
          (fields ? ",\"fields\":" + fields_json(*fields) : "") + "}";
 }
@@ -308,9 +311,12 @@ std::string json_quoted(const std::string& text) { return json_text(Json(text));
 std::string page_data(const Document& document, const AllFields& fields) {
   const Comparison& c = document.comparison;
   std::string text = fmt::format(
-      "{{\"runs\":{},\"by\":\"{}\",\"allLearned\":{},\"shades\":{},\"measures\":{},\"isTimedTogether\":{},"
-      "\"rungs\":{},\"targets\":{},{},\"given\":{},\"ranked\":{},\"common\":{},\"sanity\":{},\"claims\":{},"
-      "\"pinned\":{},\"group\":{},\"dataKinds\":{},\"advice\":{},\"words\":{},\"terms\":{},\"standings\":{},\"problems\":[",
+      "{{\"runs\":{},\"by\":\"{}\",\"allLearned\":{},\"shades\":{},\"measures\":{},"
+      "\"isTimedTogether\":{},"
+      "\"rungs\":{},\"targets\":{},{},\"given\":{},\"ranked\":{},\"common\":{},\"sanity\":{},"
+      "\"claims\":{},"
+      "\"pinned\":{},\"group\":{},\"dataKinds\":{},\"advice\":{},\"words\":{},\"terms\":{},"
+      "\"standings\":{},\"problems\":[",
       json_quoted(runs_address(document)), name_of(c.yardstick.by), is_all_learned(c),
       json_list(kShades, exact_figure), measures_json(c), c.is_any_timed_together,
       json_list(c.yardstick.tolerances,

@@ -112,7 +112,7 @@ function explanationOf(p, s) {
   if (!isMeasured(cell)) return [title, 'not applicable'];
   const learned = problem.learned?.rows.find((row) => row.s === s);
   const lines = learned === undefined ? [] : [`error in x at equal work: ${figure(learned.error)} (${figure(learned.low ?? Infinity)}–${figure(learned.high ?? Infinity)})`, `loss in y there: ${figure(learned.loss)}`];
-  lines.push(`${reachedOf(cell)}/${cell.reached.length} runs reach τ = ${tauName(view.target)}`);
+  lines.push(`${reachedOf(cell)}/${cell.reached.length} runs reach ${goalOf(problem)}`);
   MEASURES.forEach((name, measure) => lines.push(`${name}: ${figure(takenBy(cell, view.target, measure))} ${DATA.measures[measure].unit}`));
   if (cell.failed > 0) lines.push(`${cell.failed} failed`);
   if (cell.missing > 0) lines.push(`${cell.missing} missing`);

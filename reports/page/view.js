@@ -19,6 +19,11 @@ function tauName(target) {
   return target % 5 === 0 ? (target === 0 ? '1' : `1e-${target / 5}`) : tauOf(target).toExponential(1).replace('.0e', 'e');
 }
 
+// 1.1 times the floor of the error in x, relative to ‖x*‖, replaces a smaller τ.
+function goalOf({goal = 0}) {
+  return goal > tauOf(view.target) ? `an error in x of ${goal} ‖x*‖ (1.1 times the floor)` : `τ = ${tauName(view.target)}`;
+}
+
 // Methods by name: the audit has one row for all settings of a method.
 function hiddenMethods() {
   const shown = new Set(shownOf('s').map((index) => DATA.methods[index]));

@@ -44,7 +44,8 @@ Plot curves(const Evidence& evidence) {
   plot.is_log_x = plot.series.at(0).x.back() > kLong || evidence.is_over_time;
   plot.published = goals_of(evidence);
   if (!plot.published.empty())
-    plot.caption += " " + words(evidence.kind == "ratio" ? "curves.ratio" : "curves.value");
+    plot.caption += " " + (evidence.kind == "ratio" ? words("curves.ratio", names[0], names.at(1))
+                                                    : words("curves.value"));
   return plot;
 }
 

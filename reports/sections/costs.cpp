@@ -132,7 +132,7 @@ Table prices_table(const Comparison& c) {
 Section problems_section(const Comparison& c) {
   constexpr std::size_t kMostColumns = 7;  // problems: more side by side are too wide to read
   Section section = worded_section("problems");
-  Table table = worded_table("matrix", counted_to_tau(c), marks_legend(c));
+  Table table = worded_table("matrix", counted_to_tau(c), success_text(c), marks_legend(c));
   table.is_folded = c.problems.size() > kMostColumns;
   table.most_columns = kMostColumns;
   for (std::size_t p = 0; p < c.problems.size(); ++p) {

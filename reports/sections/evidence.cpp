@@ -166,17 +166,19 @@ std::string reading_text(const Json& claim) {
   return words("reading." + from, source.value("figure", source.value("section", "a figure")));
 }
 
-// "ratio of the loss, at the end: adam / sip"
+// "loss: the value of adam divided by that of sip, at the end"
 std::string quantity_text(const Json& claim) {
   const Json& quantity = claim.at("quantity");
   const std::string kind = quantity.at("kind");
   std::vector<std::string> terms;
   for (const Json& term : quantity.at("terms")) terms.push_back(term_text(term));
-  const std::string name = kind == "mean_difference" ? "mean difference" : kind;
-  return fmt::format("{} of the {}, {}: {}", name, column_words(quantity.at("column")),
-                     iteration_text(quantity, quantity.contains("clock") ? "at equal processor time"
-                                                                         : "at the end"),
-                     joined(terms, kind == "ratio" ? " / " : ", "));
+  const std::string column = column_words(quantity.at("column")),
+                    when = iteration_text(quantity, quantity.contains("clock")
+                                                        ? "at equal processor time"
+                                                        : "at the end");
+  if (kind == "ratio") return words("quantity.ratio", column, when, terms.at(0), terms.at(1));
+  return words("quantity.other", column, when, kind == "mean_difference" ? "mean difference" : kind,
+               joined(terms));
 }
 
 constexpr std::size_t kPoints = 24;  // a curve has up to twice as many

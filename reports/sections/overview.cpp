@@ -56,6 +56,14 @@ Leading leaders(const Comparison& c, const Profile& profile, Real factor) {
   return first;
 }
 
+// "solves this setting to 1e-6", or what replaces it where 1.1 times the floor is larger.
+std::string goal_text(const Comparison& c, std::size_t problem, std::size_t methods) {
+  const Real least = c.problems[problem].least_goal;
+  return least > c.yardstick.tightest().tau
+             ? words("curve.floor", methods, least)
+             : words("curve.solve", methods, setting_noun(c), tau_name(c));
+}
+
 std::string least_loss_reading(const Comparison& c, std::size_t problem,
                                const std::vector<std::size_t>& order) {
   const auto loss_of = [&](std::size_t s) { return c.cell(problem, s).loss.median; };
@@ -67,23 +75,26 @@ std::string least_loss_reading(const Comparison& c, std::size_t problem,
                      ? ""
                      : words("curve.next-loss", name_in_sentence(c.optimizers[order[1]]),
                              reached_figure(loss_of(order[1]))));
-  return words(loss == kNever ? "curve.none-finite" : "curve.least-loss",
-               words(c.problems[problem].aim == Aim::x ? "curve.x-error" : "curve.gap"),
-               tau_name(c), name_in_sentence(c.optimizers[best]), loss);
+  return words(loss == kNever ? "curve.none-finite" : "curve.least-loss", goal_text(c, problem, 1),
+               name_in_sentence(c.optimizers[best]), loss);
 }
 
-// "; next is adam, which needs 1.3× as much", and on how many of the seeds that both ran the first
+// "; next is adam, with 1.3× the median work", and on how many of the seeds that both ran the first
 // took less.
-std::string runner_up(const Comparison& c, const Cell& first, const Cell& second,
-                      const std::string& name) {
+std::string runner_up(const Comparison& c, std::size_t problem, std::size_t one,
+                      std::size_t other) {
+  const Cell &first = c.cell(problem, one), &second = c.cell(problem, other);
   const Real best = first.headline[kTightest].median, next = second.headline[kTightest].median;
   const auto pairs = c.join(first.runs, second.runs, [](const Run& run) { return run.seed; });
   const auto less = std::ranges::count_if(pairs, [&](const auto& pair) {
     return c.taken(c.runs[pair.first], c.yardstick.by, kTightest) <
            c.taken(c.runs[pair.second], c.yardstick.by, kTightest);
   });
-  return words("curve.next", name, multiple(next / std::max(best, least_unit(c.yardstick.by))),
-               pairs.size() < 2 ? "" : " " + words("curve.seeds", less, pairs.size()));
+  return words("curve.next", name_in_sentence(c.optimizers[other]),
+               multiple(next / std::max(best, least_unit(c.yardstick.by))), counted_name(c),
+               pairs.size() < 2 ? ""
+                                : " " + words("curve.seeds", name_in_sentence(c.optimizers[one]),
+                                              less, pairs.size()));
 }
 
 }  // namespace
@@ -161,7 +172,7 @@ std::string profile_reading(const Comparison& c, std::size_t tolerance) {
 
 std::string curve_reading(const Comparison& c, std::size_t problem) {
   std::vector<std::size_t> order = ranking(c, problem);
-  if (order.empty()) return words("curve.nothing");
+  if (order.empty()) return words("curve.nothing", setting_noun(c));
   const auto work = [&](std::size_t s) { return c.cell(problem, s).headline[kTightest]; };
   std::ranges::stable_sort(order, {}, [&](std::size_t s) { return work(s).median; });
   const auto solved = static_cast<std::size_t>(
@@ -176,19 +187,18 @@ std::string curve_reading(const Comparison& c, std::size_t problem) {
   const bool is_tied = tied.size() > 1;
   const std::string range =
       range_figure(first, c.yardstick.by == Measure::time ? milliseconds : reached_figure);
+  std::vector<std::string> notes;
+  if (!range.empty() && !is_tied) notes.push_back(words("curve.range", range));
+  if (c.cell(problem, order[0]).is_bound[kTightest]) notes.push_back(words("curve.bound"));
   const std::size_t unsolved = order.size() - solved, next = tied.size();
-  return words("curve.least", counted_name(c), tau_name(c),
-               is_tied ? words("curve.tied", listed(tied)) : tied[0],
-               c.cell(problem, order[0]).is_bound[kTightest] ? "≤ " : "", amount(c, first.median),
-               unit_name(c), range.empty() || is_tied ? "" : " " + words("curve.range", range),
-               solved <= next
-                   ? ""
-                   : runner_up(c, c.cell(problem, order[0]), c.cell(problem, order[next]),
-                               name_in_sentence(c.optimizers[order[next]])),
+  return words("curve.least", counted_name(c), goal_text(c, problem, 2),
+               is_tied ? words("curve.tied", listed(tied)) : tied[0], amount(c, first.median),
+               unit_name(c), notes.empty() ? "" : " (" + joined(notes, "; ") + ")",
+               solved <= next ? "" : runner_up(c, problem, order[0], order[next]),
                words(unsolved > 0        ? "curve.unsolved"
                      : order.size() == 1 ? "curve.only"
                                          : "curve.all",
-                     unsolved, order.size()));
+                     unsolved, order.size(), setting_noun(c)));
 }
 
 // The learned problems, at equal work.

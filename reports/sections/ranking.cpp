@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 
 #include "core/results/statistics.h"
@@ -78,9 +79,14 @@ std::string decision_sentence(const Comparison& c, const Decision& decision) {
                      [](const results::Place& place) { return place.p > kSignificant; });
     const auto rival = open == decision.places.end() ? decision.places.begin() + 1 : open;
     const auto rank = static_cast<std::size_t>(rival - decision.places.begin()) + 1;
+    const auto digits = [](Real score) { return fmt::format("{:.2f}", score); };
+    const bool is_close = rank == 2 && digits(rival->score) == digits(first.score);
     text = words(decision.is_lead ? "ranking.lead" : "ranking.open", on, measure, tau, name(first),
-                 first.score, first.solved, name(*rival), rank == 2 ? "next" : ordinal(rank),
-                 rival->score, rival->solved, rival->p);
+                 first.score, first.solved,
+                 words(is_close ? "ranking.close" : "ranking.rival", name(*rival),
+                       rank == 2 ? words("ranking.second") : words("ranking.later", ordinal(rank)),
+                       rival->score, rival->solved),
+                 rival->p);
   }
   for (const Choice& choice : decision.choices)
     if (choice.varied == Varied::measure && choice.value == name_of(Measure::time) &&
@@ -97,25 +103,30 @@ std::string group_text(const Comparison& c, const Decision& decision) {
 
 std::string robustness_text(const Comparison& c, const Decision& decision) {
   const results::Place& first = decision.places[0];
-  const auto share_text = [&](const char* key, const results::Place& place) {
-    return words(key, name_in_sentence(c.optimizers[place.method]), percent(place.share_first));
+  const auto name = [&](const results::Place& place) {
+    return name_in_sentence(c.optimizers[place.method]);
   };
   std::vector<results::Place> often = decision.places;
   std::ranges::stable_sort(often, std::ranges::greater{}, &results::Place::share_first);
   const auto other = std::ranges::find_if_not(
       often, [&](const results::Place& place) { return place.method == first.method; });
   const bool has_other = other != often.end() && other->share_first > 0;
-  std::vector<std::string> lost;
-  std::size_t kept = 0;
+  std::map<std::string, std::vector<std::string>> lost;  // by the method that then ranks first
+  std::size_t kept = 0, others = 0;
   for (const Choice& choice : decision.choices) {
     kept += choice.is_kept;
-    if (!choice.is_kept && !choice.first.empty())
-      lost.push_back(fmt::format("{} ({})", names_text(c, choice.first, 1), choice_text(choice)));
+    if (choice.is_kept || choice.first.empty()) continue;
+    lost[names_text(c, choice.first, 1)].push_back(choice_text(choice));
+    ++others;
   }
-  return words("ranking.robustness", share_text("ranking.share", first),
-               has_other ? " " + share_text("ranking.share-other", *other) : "", kept,
-               decision.choices.size(),
-               lost.empty() ? "" : words("ranking.otherwise", first_of(lost, 3)));
+  std::vector<std::string> firsts;
+  for (const auto& [method, choices] : lost)
+    firsts.push_back(fmt::format("{} ({})", method, first_of(choices, 3)));
+  return words(
+      "ranking.robustness", name(first), percent(first.share_first),
+      has_other ? words("ranking.share-other", name(*other), percent(other->share_first)) : "",
+      kept, decision.choices.size(),
+      lost.empty() ? "" : words("ranking.otherwise", others, listed(firsts)));
 }
 
 std::string not_run(const Comparison& c) {

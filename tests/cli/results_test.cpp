@@ -54,7 +54,7 @@ TEST(Features, AreOptionsOfEveryProblemAndFactorsOfASuite) {
              R"({"schema": "isoline.suite/1", "name": "s", "matrix": [{"problems": ["burgers[N=8]"],
                  "features": ["plain", "noise=0.01", "scale=100,rotate=yes", "model=\"viscosity=0.2\""],
                  "optimizers": ["gauss-newton", "gd"], "budget": {"iterations": 20}}]})");
-  shell.expect("./isoline run s.json --out out --no-report", {.out = {"8 cells: 8 run"}});
+  shell.expect("./isoline run s.json --out out --no-report", {.out = {"8 cells: 8 new"}});
   EXPECT_EQ(shell.expect("./isoline replay out/runs/*.json").out.find("differ"), std::string::npos);
 }
 
@@ -98,7 +98,7 @@ TEST_F(Shards, ArePredictedByWhatEarlierRunsTook) {
   shell.expect("./isoline plan " + kMatrix + "--shards 2 --out out --from before",
                {.out = {"24 from earlier runs", " 0 from nominal costs"}});
   shell.expect("./isoline plan " + kMatrix + "--from nowhere",
-               {.exit_code = 1, .err = {"nowhere: no such"}});
+               {.exit_code = 1, .err = {"nowhere is not"}});
 }
 
 // The promise of it all. Measured prices stand in the sheets, which no comparison reads.
@@ -132,7 +132,7 @@ TEST_F(Shards, ThatAreMissingAreMissedByTheUnion) {
   shell.expect("./isoline merge out/shards/* --out merged");
   EXPECT_EQ(read_json(shell.folder() / "merged/plan.json").at("cells").size(), 24U)
       << "a part never passes for the whole";
-  run("--out out --shard 1/3", {.out = {" 0 run, "}});
+  run("--out out --shard 1/3", {.out = {" 0 new, "}});
 }
 
 // A new division of the plan reuses completed cells.
@@ -141,10 +141,10 @@ TEST_F(Shards, TakeOverWhatOtherDivisionsHaveDone) {
     run(std::string("--out out --quiet --shard ") + shard);
   EXPECT_EQ(plan("--shards 2 --out out").at("cached"), 24);
   for (const char* shard : {"1/2", "2/2"})
-    run(std::string("--out out --shard ") + shard, {.out = {" 0 run, 12 reused"}});
+    run(std::string("--out out --shard ") + shard, {.out = {" 0 new, 12 reused"}});
   shell.expect("./isoline merge out/shards/* --out merged");
   EXPECT_EQ(count_records(shell.folder() / "merged"), 24U);
-  run("--out out --shard 1/2 --force", {.out = {" 12 run, 0 reused"}});
+  run("--out out --shard 1/2 --force", {.out = {" 12 new, 0 reused"}});
 }
 
 TEST_F(Shards, OfAPlanThatIsNotThePredictedOneAreRefused) {

@@ -53,7 +53,7 @@ class Run : public testing::Test {
 
 TEST_F(Run, WritesRecordsAPlanSheetsAndAReportAndSaysWhere) {
   const Finished result = shell.expect(
-      kMatrix, {.out = {"3 cells: 3 run, 0 reused", "1 inapplicable", "out/report/index.html"},
+      kMatrix, {.out = {"3 cells: 3 new, 0 reused", "1 inapplicable", "out/report/index.html"},
                 .err = {"cells 3/3"}});
   EXPECT_FALSE(contains(result.err, "\r")) << "progress in a pipe is plain lines: " << result.err;
   EXPECT_FALSE(contains(result.out, "cells 3/3")) << result.out;
@@ -68,21 +68,21 @@ TEST_F(Run, WritesRecordsAPlanSheetsAndAReportAndSaysWhere) {
 TEST_F(Run, DoneCellsAreNotRepeatedUnlessForced) {
   shell(kMatrix + "--no-report");
   EXPECT_FALSE(fs::exists(out / "report"));
-  shell.expect(kMatrix, {.out = {"3 cells: 0 run, 3 reused"}});
-  shell.expect(kMatrix + "--force", {.out = {"3 cells: 3 run, 0 reused"}});
+  shell.expect(kMatrix, {.out = {"3 cells: 0 new, 3 reused"}});
+  shell.expect(kMatrix + "--force", {.out = {"3 cells: 3 new, 0 reused"}});
   const Finished quiet = shell.expect(kMatrix + "--force --quiet");
   EXPECT_EQ(quiet.out + quiet.err, "") << "where nothing is wrong";
 }
 
 TEST_F(Run, AFlagAfterTheMatrixTakesEffect) {
-  shell.expect(kMatrix + "--seeds 2..4 --jobs 2", {.out = {"9 cells: 9 run"}});
-  shell.expect(kMatrix + "--seeds =9 --jobs 1", {.out = {"3 cells: 3 run"}});
-  shell.expect(kMatrix + "--seeds 2 --exclusive", {.out = {"6 cells: 6 run"}});
+  shell.expect(kMatrix + "--seeds 2..4 --jobs 2", {.out = {"9 cells: 9 new"}});
+  shell.expect(kMatrix + "--seeds =9 --jobs 1", {.out = {"3 cells: 3 new"}});
+  shell.expect(kMatrix + "--seeds 2 --exclusive", {.out = {"6 cells: 6 new"}});
 }
 
 TEST_F(Run, InstancesAndStartsAreCrossed) {
   const std::string matrix = "./isoline run --problem sine --optimizer newton --out out ";
-  shell.expect(matrix + "--instances 2 --starts 3", {.out = {"6 cells: 6 run"}});
+  shell.expect(matrix + "--instances 2 --starts 3", {.out = {"6 cells: 6 new"}});
   const std::string csv = read_text(out / "report" / "report.csv");
   EXPECT_TRUE(contains(csv, "seed,instance,start,status")) << csv;
   EXPECT_TRUE(contains(csv, ",1001002,1,2,")) << csv;
@@ -93,7 +93,7 @@ TEST_F(Run, InstancesAndStartsAreCrossed) {
 
 TEST_F(Run, RepetitionsAppendTimings) {
   shell.expect(kMatrix + "--repeat 3");
-  shell.expect(kMatrix + "--repeat 3", {.out = {"3 cells: 0 run, 3 reused"}});
+  shell.expect(kMatrix + "--repeat 3", {.out = {"3 cells: 0 new, 3 reused"}});
   for (const Json& record : records()) {
     if (record.at("status") == "inapplicable") continue;
     EXPECT_EQ(record.at("repeat_wall_seconds").size(), 3U) << record.at("request").dump();
@@ -237,7 +237,7 @@ TEST_F(Run, StallsAfterAsManyIterationsAsAskedAndUsualCellsKeepTheirNames) {
   };
   shell.expect(still, {.out = {"1 stalled"}});
   EXPECT_EQ(iterations("stalled"), 100);
-  shell.expect(still + "--stall 100", {.out = {"0 run, 1 reused"}});
+  shell.expect(still + "--stall 100", {.out = {"0 new, 1 reused"}});
   shell.expect(still + "--stall 150", {.out = {"1 stalled"}});
   EXPECT_EQ(iterations("stalled"), 150);
   shell.expect(still + "--stall never", {.out = {"1 budget"}});
@@ -247,7 +247,7 @@ TEST_F(Run, StallsAfterAsManyIterationsAsAskedAndUsualCellsKeepTheirNames) {
              R"({"schema": "isoline.suite/1", "name": "mine", "matrix": [
                  {"problems": ["rosenbrock"], "optimizers": ["gd[rate=1e-300]"],
                   "budget": {"iterations": 250, "stall": "never"}}]})");
-  shell.expect("./isoline run mine.json --out out --no-report", {.out = {"0 run, 1 reused"}});
+  shell.expect("./isoline run mine.json --out out --no-report", {.out = {"0 new, 1 reused"}});
   shell.expect("./isoline validate out mine.json");
 }
 
@@ -262,7 +262,7 @@ TEST_F(Run, StopsAtTheNoiseWhereAskedAndTheRecordSaysSo) {
   const double most = 1.2 * record.at("noise_level").get<double>();
   EXPECT_LE(all.back().get<double>(), most);
   EXPECT_GT(all.at(all.size() - 2).get<double>(), most);
-  shell.expect(noisy + "--stop none", {.out = {"1 run"}});
+  shell.expect(noisy + "--stop none", {.out = {"1 new"}});
   EXPECT_EQ(records().size(), 2U);
   shell.expect(noisy + "--stop discrepency", {.exit_code = 1, .err = {"--stop"}});
   shell.expect(noisy + "--stop 'discrepancy[tau=0.5]'", {.exit_code = 1, .err = {"tau"}});
@@ -270,18 +270,18 @@ TEST_F(Run, StopsAtTheNoiseWhereAskedAndTheRecordSaysSo) {
              R"({"schema": "isoline.suite/1", "name": "mine", "matrix": [
                  {"problems": ["burgers[N=16]"], "features": ["noise=0.01"],
                   "optimizers": ["ceres-lm"], "budget": {"stop": "discrepancy[tau=1.2]"}}]})");
-  shell.expect("./isoline run mine.json --out out --no-report", {.out = {"0 run, 1 reused"}});
+  shell.expect("./isoline run mine.json --out out --no-report", {.out = {"0 new, 1 reused"}});
   shell.expect("./isoline validate out mine.json");
 }
 
 TEST_F(Run, MoreIterationsAreOtherCellsAndAFinishedCellKeepsNoCheckpoint) {
-  shell.expect(kMatrix + "--no-report", {.out = {"3 cells: 3 run"}});
-  shell.expect(kMatrix + "--no-report --seeds 2", {.out = {"6 cells: 3 run, 3 reused"}});
+  shell.expect(kMatrix + "--no-report", {.out = {"3 cells: 3 new"}});
+  shell.expect(kMatrix + "--no-report --seeds 2", {.out = {"6 cells: 3 new, 3 reused"}});
   EXPECT_TRUE(!fs::exists(out / "checkpoints") || fs::is_empty(out / "checkpoints"));
   const std::string longer =
       "./isoline run --problem brown-dennis --optimizer gd,newton "
       "--iterations 40 --out out --no-report";
-  shell.expect(longer, {.out = {"2 cells: 2 run, 0 reused"}});
+  shell.expect(longer, {.out = {"2 cells: 2 new, 0 reused"}});
   EXPECT_EQ(count_records(out), 8U);
 }
 
@@ -290,7 +290,7 @@ TEST_F(Run, BeginsAtTheStartOfAFileWhoseContentBelongsToTheCell) {
       "./isoline run --problem rosenbrock --optimizer newton --out out --no-report ";
   const auto begin = [&](const char* numbers) { write_text(shell.folder() / "a.csv", numbers); };
   begin("0.5,2");
-  shell.expect(run + "--start a.csv", {.out = {"1 run"}});
+  shell.expect(run + "--start a.csv", {.out = {"1 new"}});
   EXPECT_EQ(records().at(0).at("summary").at("start_loss"), 153.25);  // ½ (17.5² + 0.5²)
   EXPECT_EQ(records().at(0).at("minimum"), 0);
   shell.expect(
@@ -300,7 +300,7 @@ TEST_F(Run, BeginsAtTheStartOfAFileWhoseContentBelongsToTheCell) {
   shell.expect("./isoline replay out/runs/*.json");
   begin("0.5,1");
   shell.expect("./isoline replay out/runs/*.json", {.exit_code = 4, .out = {"a.csv"}});
-  shell.expect(run + "--start a.csv", {.out = {"1 run"}});
+  shell.expect(run + "--start a.csv", {.out = {"1 new"}});
   EXPECT_EQ(count_records(out), 2U);
   begin("1,2,3");
   shell.expect(run + "--start a.csv", {.exit_code = 1, .err = {"a.csv", "rosenbrock", "(1, 3)"}});
@@ -314,7 +314,7 @@ TEST_F(Run, FitsTheTargetOfAFileWhoseSolutionIsUnknown) {
   shell.expect(
       "./isoline run --problem rosenbrock --optimizer gauss-newton --target-data y.csv "
       "--out out --no-report",
-      {.out = {"1 run"}});
+      {.out = {"1 new"}});
   const Json record = records().at(0);
   EXPECT_LT(record.at("summary").at("loss"), 1e-20);
   EXPECT_EQ(record.at("minimum"), nullptr);
@@ -418,7 +418,7 @@ TEST_F(LongRun, ThatIsInterruptedTwiceExitsWith130AndGoesOn) {
   shell.expect(
       "./isoline run --problem square --optimizer newton --iterations 1000000000 --target 0 "
       "--rates none --out out --no-report",
-      {.out = {"1 cell: 0 run, 1 reused"}});
+      {.out = {"1 cell: 0 new, 1 reused"}});
   shell.expect("./isoline report out && cat out/report/report.md", {.out = {"of 4 cells"}});
 }
 
@@ -435,13 +435,13 @@ class Retry : public Run {
 
 TEST_F(Retry, RepeatsCellsThatEndedSoAndNoOthers) {
   change("gd", [](Json& record) { record["status"] = "crashed"; });
-  EXPECT_TRUE(contains(shell(kRetried + "--retry timeout,memory").out, "0 run, 4 reused"));
+  EXPECT_TRUE(contains(shell(kRetried + "--retry timeout,memory").out, "0 new, 4 reused"));
   shell.expect(kRetried + "--retry crashed --dry-run",
                {.out = {"4 cells: 2 cached, 0 inapplicable, 2 "}});
   const Finished again =
-      shell.expect(kRetried + "--retry failed,crashed", {.out = {"4 cells: 2 run, 2 reused"}});
+      shell.expect(kRetried + "--retry failed,crashed", {.out = {"4 cells: 2 new, 2 reused"}});
   EXPECT_FALSE(contains(again.err, "repetitions differ")) << again.err;
-  shell.expect(kRetried + "--retry failed,crashed", {.out = {"0 run, 4 reused"}});
+  shell.expect(kRetried + "--retry failed,crashed", {.out = {"0 new, 4 reused"}});
   shell.expect("./isoline run --retry failed notebook --dry-run");  // the word behind is a suite
 }
 
@@ -458,8 +458,8 @@ TEST_F(Retry, ForgetsTheTimesOfWhatItReplaces) {
 TEST_F(Retry, NeedsNoClockThatGoesForward) {
   change("*",
          [](Json& record) { record["provenance"]["run"]["started"] = "2199-12-31T23:59:59Z"; });
-  shell.expect(kRetried, {.out = {"4 cells: 0 run, 4 reused"}});
-  shell.expect(kRetried + "--force", {.out = {"4 cells: 4 run, 0 reused"}});
+  shell.expect(kRetried, {.out = {"4 cells: 0 new, 4 reused"}});
+  shell.expect(kRetried + "--force", {.out = {"4 cells: 4 new, 0 reused"}});
   for (const Json& record : records())
     EXPECT_LT(record.at("provenance").at("run").at("started"), "2199");
 }
@@ -471,7 +471,7 @@ TEST_F(Retry, ARecordOfTheFutureDoesNotHideThisBuildsOwn) {
   record["provenance"]["run"]["started"] = "2199-12-31T23:59:59Z";
   const std::string cell = record.at("cell");
   write_text(out / "runs" / (cell + "-" + std::string(16, 'f') + ".json"), record.dump() + "\n");
-  const Finished reused = shell.expect(kRetried + "--reuse", {.out = {"4 cells: 0 run, 4 reused"}});
+  const Finished reused = shell.expect(kRetried + "--reuse", {.out = {"4 cells: 0 new, 4 reused"}});
   EXPECT_FALSE(contains(reused.err, "another build")) << reused.err;
 }
 

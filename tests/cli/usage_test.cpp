@@ -57,6 +57,7 @@ TEST(Help, VersionIsOneLine) {
 // A command that is wrong, and what the one sentence about it must contain.
 const std::vector<std::pair<std::string, std::string>> kMistakes = {
     {"rnu", "did you mean 'run'"},
+    {"import", "unknown command 'import'; known: "},
     {"", "`isoline help` lists"},
     {"--verson", "did you mean --version"},
     {"run --problm square", "did you mean --problem"},
@@ -305,7 +306,7 @@ TEST(Terminal, ARunSaysHowLongItTook) {
   const Finished result =
       Shell()("./isoline run --problem square --optimizer newton --no-report --out out");
   EXPECT_TRUE(
-      std::regex_search(result.out, std::regex(R"(^1 cell: 1 run, 0 reused .* \d+\.\d s\n)")))
+      std::regex_search(result.out, std::regex(R"(^1 cell: 1 new, 0 reused\. .* \d+\.\d s\n)")))
       << result.out;
 }
 

@@ -239,7 +239,7 @@ TEST(Comparison, WithoutAKnownLeastLossNothingIsSolvedAndLossesAreCompared) {
   ASSERT_EQ(standings.tables.size(), 1U);
   EXPECT_EQ(at(standings.tables[0], "a", "square"), "0.01 (+0 %)");
   EXPECT_EQ(at(standings.tables[0], "b", "square"), "0.1 (+9 %)");  // 0.09 of 1 − 0.01
-  EXPECT_TRUE(has(standings.readings.at(0).text, "0.01 (in")) << standings.readings[0].text;
+  EXPECT_TRUE(has(standings.readings.at(0).text, "0.01 (not")) << standings.readings[0].text;
   EXPECT_FALSE(has(terminal_table(document), "/1"));
   // One that knows f_L, as of a later table of best losses, is not enough; a cell that failed
   // before it had any loss takes nothing away.
