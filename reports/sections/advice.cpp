@@ -32,6 +32,9 @@ std::string advice_text(const Comparison& c, const Means& means, const Advice& a
   std::string text;
   if (advice.ranked.empty()) {
     text = words("advice.none", means_text(means), tau_name(c), advice.settings.size());
+    const auto is_unknown = [&](std::size_t p) { return c.problems[p].lacks_least_loss(); };
+    const auto unknown = std::ranges::count_if(advice.settings, is_unknown);
+    if (unknown > 0) text += " " + words("advice.unknown", unknown);
   } else {
     const Advised& first = advice.ranked[0];
     std::vector<std::string> group;
