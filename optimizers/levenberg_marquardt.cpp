@@ -4,7 +4,9 @@
 // step that gained little, d gets a term of second order. On fresh samples at every step J and r
 // are those of the step's own. With damping=fixed, the rule of mini-batches that cannot be
 // compared: θ ← θ − η Jᵀ (K + μ)⁻¹ r, K = JJᵀ, μ a share of the mean diagonal of K, and every step
-// is taken.
+// is taken; absolute: the same with μ added to JJᵀ/B. With a small μ it is the energy natural
+// gradient of Müller, Zeinhofer (2023), in the form of Guzmán-Cordero et al. (2025) where J is
+// wide.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -257,7 +259,7 @@ class DampedLeastSquares {
 
 struct LevenbergMarquardt {
   Real initial_damping = 1e-4, rate = 1, acceleration = 0.75;
-  std::string damping = "adaptive", factorization = "auto", scaling = "more";
+  std::string damping = "adaptive", factorization = "auto", scaling = "more", line_search;
 
   struct State {
     DampedLeastSquares squares;
@@ -286,7 +288,7 @@ struct LevenbergMarquardt {
   }
 
   Status step(Meter& f, Vector& theta, State& s) const {
-    return damping == "fixed" ? step_fixed(f, theta, s) : step_adaptive(f, theta, s);
+    return damping == "adaptive" ? step_adaptive(f, theta, s) : step_fixed(f, theta, s);
   }
 
   Status step_adaptive(Meter& f, Vector& theta, State& s) const {
@@ -331,9 +333,17 @@ struct LevenbergMarquardt {
   Status step_fixed(Meter& f, Vector& theta, State& s) const {
     f.linearize(theta, s.at);
     s.residual = (s.at.y() - f.target()).reshaped();
-    const auto filter = tikhonov_filter(initial_damping);
-    return s.spectral.add(f, s.at, filter, s.residual, -rate, theta) ? Status::running
-                                                                     : Status::stalled;
+    const auto filter = damping == "absolute" ? absolute_filter(initial_damping, f.samples())
+                                              : tikhonov_filter(initial_damping);
+    if (line_search.empty())
+      return s.spectral.add(f, s.at, filter, s.residual, -rate, theta) ? Status::running
+                                                                       : Status::stalled;
+    s.step.setZero(theta.size());
+    if (!s.spectral.add(f, s.at, filter, s.residual, -1, s.step)) return Status::stalled;
+    const Real length = length_on_grid(f, theta, s.step, rate, s.candidate);
+    if (length == 0) return Status::stalled;
+    theta += length * s.step;
+    return Status::running;
   }
 
   // J, −r and D at the point just accepted.
@@ -393,15 +403,18 @@ struct LevenbergMarquardt {
 
 void fields(LevenbergMarquardt& o, auto& field) {
   field("initial-damping", o.initial_damping, above(0),
-        "damping μ at the start, in units of D²; where it is fixed, μ as a share of the mean "
-        "diagonal of JJᵀ");
+        "damping μ at the start, in units of D²; for damping=fixed, μ as a share of the mean "
+        "diagonal of JJᵀ; for damping=absolute, μ itself, added to JJᵀ/B");
   field("acceleration", o.acceleration, at_least(0),
         "for damping=adaptive: α of geodesic acceleration. After a step with a gain below 1/4, "
         "the second-order correction a is added to d; if 2‖D a‖ > α‖D d‖, the step is rejected. "
         "0: no acceleration");
-  field("damping", o.damping, Choices{"adaptive", "fixed"},
-        "by the gain of each step, or always the same");
-  field("rate", o.rate, above(0), "of damping=fixed: step length η");
+  field("damping", o.damping, Choices{"adaptive", "fixed", "absolute"},
+        "by the gain of each step, or always the same, in either unit");
+  field("rate", o.rate, above(0), "of a damping that is not adaptive: step length η");
+  field("line-search", o.line_search, Choices{"", "grid"},
+        "of a damping that is not adaptive; grid: of η, η/2, …, η/2³⁰, the step length with the "
+        "lowest loss on the samples of the step");
   field("factorization", o.factorization, Choices{"auto", "orthogonal", "cholesky", "sparse"},
         "by QR; by Cholesky of the smaller Gram matrix, which of networks of dense layers is "
         "formed layer by layer; or by sparse Cholesky of a sparse J, after elimination of blocks "
@@ -509,14 +522,15 @@ std::string objection_of_levenberg_marquardt(const OptionValues& options, const 
   const bool has_projection =
       options.text("damping") == "adaptive" && options.text("factorization") != "sparse";
   if (has_projection || !problem.bounds()->are_needed) return "";
-  return "the problem has bounds on x, which damping=fixed and factorization=sparse do not respect";
+  return "the problem has bounds on x, which only damping=adaptive without factorization=sparse "
+         "respects";
 }
 
 OracleSet needs_of_levenberg_marquardt(const OptionValues& options, const Problem& problem) {
   const std::string factorization = options.text("factorization");
-  if (problem.bounds() && options.text("damping") != "fixed")
+  if (problem.bounds() && options.text("damping") == "adaptive")
     return {Oracle::forward, Oracle::jacobian};
-  if (options.text("damping") == "fixed")
+  if (options.text("damping") != "adaptive")
     return needs_of(LevenbergMarquardt::spectral_factorization(factorization), tikhonov_filter(1),
                     problem);
   if (factorization == "sparse" || (factorization == "auto" && is_solved_sparse(problem)))

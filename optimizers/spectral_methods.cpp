@@ -18,8 +18,8 @@
 // regularized least squares of this batch leave nearest to the last one,
 //   Δ ← μ Δ₋ − Jᵀ (K + λ)⁻¹ (r + μ J Δ₋),  θ ← θ + η Δ,  K = JJᵀ, r = y − y*,
 // so that what the batch says nothing of goes on as it went. λ is a share of the mean diagonal of
-// K, where the paper's is absolute in units of its wave function, and the paper's bound on ‖ηΔ‖ is
-// left out.
+// K, or as published with damping-unit=absolute. longest-step is the paper's bound on ‖ηΔ‖, the
+// root of its constant C.
 #include <algorithm>
 #include <limits>
 
@@ -161,14 +161,16 @@ void fields(DampedHalfInverse& o, auto& field) {
 }
 
 struct Spring {
-  Real rate = 1, momentum = 0.9, damping = 1e-3;
+  Real rate = 1, momentum = 0.9, damping = 1e-3, longest_step = 0;
+  std::string damping_unit = "mean", line_search;
 
   struct State {
     Linearization at;
     SpectralStep spectral;
-    Vector step;      // (n) Δ
-    Matrix pushed;    // (m, B) J Δ₋
-    Vector residual;  // (m·B)
+    Vector step;       // (n) Δ
+    Vector candidate;  // (n)
+    Matrix pushed;     // (m, B) J Δ₋
+    Vector residual;   // (m·B)
   };
   static void persist(State& s, Archive& archive) {
     s.spectral.persist(archive);
@@ -185,9 +187,14 @@ struct Spring {
     s.pushed.resize(s.at.y().rows(), s.at.y().cols());
     s.at.pushforward(s.step, s.pushed);
     s.residual = (s.at.y() - f.target() + s.pushed).reshaped();
-    if (!s.spectral.add(f, s.at, tikhonov_filter(damping), s.residual, -1, s.step))
-      return Status::stalled;
-    theta += rate * s.step;
+    const SpectralFilter filter = damping_unit == "absolute" ? absolute_filter(damping, f.samples())
+                                                             : tikhonov_filter(damping);
+    if (!s.spectral.add(f, s.at, filter, s.residual, -1, s.step)) return Status::stalled;
+    Real length = rate;
+    if (!line_search.empty()) length = length_on_grid(f, theta, s.step, rate, s.candidate);
+    if (longest_step > 0) length = std::min(length, longest_step / s.step.norm());
+    if (length == 0) return Status::stalled;
+    theta += length * s.step;
     return Status::running;
   }
 };
@@ -195,7 +202,13 @@ struct Spring {
 void fields(Spring& o, auto& field) {
   field("rate", o.rate, above(0), "step length η");
   field("momentum", o.momentum, between(0, 1), "share μ of the last step");
-  field("damping", o.damping, above(0), "damping λ, as a share of the mean diagonal of JJᵀ");
+  field("damping", o.damping, above(0), "damping λ, in its unit");
+  field("damping-unit", o.damping_unit, Choices{"mean", "absolute"},
+        "mean: λ is a share of the mean diagonal of JJᵀ; absolute: λ is added to JJᵀ/B");
+  field("longest-step", o.longest_step, at_least(0), "bound on ‖η Δ‖; 0: none");
+  field(
+      "line-search", o.line_search, Choices{"", "grid"},
+      "grid: of η, η/2, …, η/2³⁰, the step length with the lowest loss on the samples of the step");
 }
 
 OracleSet needs_of_spring(const OptionValues&, const Problem& problem) {
@@ -258,8 +271,9 @@ void register_spectral_methods(OptimizerRegistry& registry) {
        .kind = Kind::least_squares,
        .formula = "Δ ← μ Δ − Jᵀ (JJᵀ + λ)⁻¹ (y − y* + μ J Δ),  θ ← θ + η Δ",
        .source = "Goldshlager, Abrahamsen, Lin (2024)",
-       .note = "Damped Gauss-Newton with projected momentum. λ is relative to the mean diagonal of "
-               "JJᵀ; without the paper's bound on the length of a step.",
+       .note = "Damped Gauss-Newton with projected momentum. By default, λ is relative to the mean "
+               "diagonal of JJᵀ, and the length of a step has no bound; the paper's λ is absolute, "
+               "and its bound is √0.001.",
        .needs = {Oracle::forward, Oracle::pushforward},
        .most_rank = 2048,
        .tunable = {.option = "rate", .below = 4},

@@ -38,7 +38,7 @@ constexpr Real kLeastCutoffByGram = 1e-7;
 
 // Whether one number is enough of a spectrum: Tikhonov's filter with μ in units of the mean.
 bool is_tikhonov(const SpectralFilter& filter) {
-  return filter.kappa == 1 && filter.damping > 0 && filter.unit == SpectralFilter::Unit::mean;
+  return filter.kappa == 1 && filter.damping > 0 && filter.unit != SpectralFilter::Unit::largest;
 }
 
 // Whether every spectrum excludes a Gram matrix. A damping in units of the mean is judged when it
@@ -50,6 +50,22 @@ bool never_by_gram(const SpectralFilter& filter) {
 }
 
 }  // namespace
+
+Real length_on_grid(Meter& f, const Vector& theta, const Vector& step, Real rate,
+                    Vector& candidate) {
+  constexpr int kHalvings = 30;
+  Real best = 0, least = std::numeric_limits<Real>::infinity();
+  for (int k = 0; k <= kHalvings; ++k) {
+    const Real length = std::ldexp(rate, -k);
+    candidate = theta + length * step;
+    const Real loss = f.loss(candidate);
+    if (loss < least) {
+      least = loss;
+      best = length;
+    }
+  }
+  return best;
+}
 
 Factorization factorization_named(std::string_view name) {
   for (const FactorizationRow& row : kFactorizations)

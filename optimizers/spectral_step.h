@@ -28,7 +28,7 @@ struct Spectrum {
 };
 
 struct SpectralFilter {
-  enum class Unit { largest, mean };  // of μ: σ₁², or the mean diagonal of K
+  enum class Unit { largest, mean, absolute };  // of μ: σ₁², the mean diagonal of K, or 1
 
   Real kappa;           // κ
   Real cutoff = 0;      // τ
@@ -37,6 +37,7 @@ struct SpectralFilter {
   Unit unit = Unit::largest;
 
   Real mu(const Spectrum& of) const {
+    if (unit == Unit::absolute) return damping;
     return damping * (unit == Unit::largest ? of.largest * of.largest : of.mean_square);
   }
   Real operator()(Real sigma, const Spectrum& of) const {
@@ -68,6 +69,12 @@ inline SpectralFilter power_filter(Real kappa, Real cutoff) {
 // σ/(σ² + μ), μ as a share of the mean diagonal of K: fixed damping, and SPRING's.
 inline SpectralFilter tikhonov_filter(Real damping) {
   return {.kappa = 1, .damping = damping, .unit = SpectralFilter::Unit::mean};
+}
+// The same with μ in units of the K of r = (y − y*)/√B, which is JJᵀ/B.
+inline SpectralFilter absolute_filter(Real damping, Index samples) {
+  return {.kappa = 1,
+          .damping = damping * static_cast<Real>(samples),
+          .unit = SpectralFilter::Unit::absolute};
 }
 // σ/(σ² + μ)^¾ for κ = ½, μ as a share of σ₁²: the half-inverse that decays where σ vanishes.
 inline SpectralFilter decaying_filter(Real kappa, Real damping) {
@@ -130,6 +137,12 @@ Factorization factorization_named(std::string_view name);  // "auto", and each a
 
 // The factorization used, in words: "the thin SVD of J".
 std::string_view factorization_text(Factorization factorization);
+
+// The length η of a step Δ with the lowest loss L(θ + η Δ) on the samples of this step, of η = rate
+// · 2^(−k), k = 0 … 30; Müller, Zeinhofer (2023), section 4. 0 where no loss is finite.
+// `candidate` is scratch.
+Real length_on_grid(Meter& f, const Vector& theta, const Vector& step, Real rate,
+                    Vector& candidate);
 
 // The oracles that a method with a SpectralStep needs, by its factorization.
 OracleSet needs_of(Factorization factorization, const SpectralFilter& filter,
