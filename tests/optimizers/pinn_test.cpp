@@ -1,9 +1,13 @@
 // Least squares over a physics-informed network: its Jacobian by layers whose samples have several
 // lanes, and how far Levenberg-Marquardt gets.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
+#include "core/decompose.h"
 #include "optimizers/layered_jacobian.h"
 #include "tests/optimizers/run.h"
 
@@ -82,6 +86,50 @@ TEST(Pinn, StepsByLayersAreThoseByTheJacobian) {
          "levenberg-marquardt[factorization=orthogonal]"},
         {"hig[factorization=split]", "hig[factorization=svd]"}})
     expect_near(first_step(problem, one), first_step(problem, other), 1e-7, one);
+}
+
+// λ in units of JJᵀ/B, as the paper on SPRING for these networks has it; all samples at each step.
+TEST(Pinn, AnAbsoluteDampingIsAddedToTheMeanOfSquares) {
+  Assembled f(kWide);
+  constexpr Real kDamping = 1e-2;
+  const Vector r = (f.at.y() - f.meter.target()).reshaped();
+  Matrix K = f.J * f.J.transpose();
+  K.diagonal().array() += kDamping * static_cast<Real>(r.size());
+  Vector solved;
+  ASSERT_TRUE(solve_square(K, r, solved));
+  Vector expected(f.J.cols());
+  expected(f.order) = -0.3 * (f.J.transpose() * solved);
+  for (const char* spec : {"levenberg-marquardt[damping=absolute,initial-damping=1e-2,rate=0.3]",
+                           "spring[damping-unit=absolute,damping=1e-2,rate=0.3]"})
+    expect_near(first_step(f.problem, spec), expected, 1e-9, spec);
+}
+
+TEST(Pinn, TheBoundOnAStepOfSpringShortensIt) {
+  const Problem problem = make(kWide);
+  const Vector whole = first_step(problem, "spring[rate=0.5]");
+  const Real length = whole.norm();
+  expect_near(first_step(problem, fmt::format("spring[rate=0.5,longest-step={}]", length / 4)),
+              whole / 4, 1e-9, "bound");
+  expect_near(first_step(problem, fmt::format("spring[rate=0.5,longest-step={}]", 2 * length)),
+              whole, 1e-12, "no bound");
+}
+
+TEST(Pinn, TheLineSearchTakesTheLengthWithTheLowestLoss) {
+  const Problem problem = make("pinn-poisson[interior=49,boundary=40]");
+  for (const std::string name : {"spring[damping=1e-3", "levenberg-marquardt[damping=fixed"}) {
+    const Vector step = first_step(problem, name + "]");
+    const Real length = first_step(problem, name + ",line-search=grid]").norm() / step.norm();
+    Real best = 0, least = std::numeric_limits<Real>::infinity();
+    for (int k = 0; k <= 30; ++k) {
+      const Real loss = loss_at(problem, problem.start() + std::ldexp(1, -k) * step);
+      if (loss < least) {
+        least = loss;
+        best = std::ldexp(1, -k);
+      }
+    }
+    EXPECT_LT(best, 1) << name;  // the whole step is too long here
+    EXPECT_NEAR(length, best, 1e-9 * best) << name;
+  }
 }
 
 // The independent trial that this repeats ended between 1.6e-6 and 3.1e-5.
