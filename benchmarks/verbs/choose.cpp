@@ -90,7 +90,8 @@ int run(const ChooseArguments& given, Session&) {
     say(stdout,
         fmt::format("  {} {:28} solves {:2}/{}  work {:>8}  score {:.2f}\n",
                     one.is_in_group ? '*' : ' ', comparison.optimizers[one.optimizer].name_of_all(),
-                    one.solved, advice.settings.size(), reports::figure(one.work), one.score));
+                    one.solved, advice.settings.size(),
+                    one.work < results::kNever ? reports::figure(one.work) : "–", one.score));
   return kGood;
 }
 

@@ -135,8 +135,9 @@ Trial trial_of(const Comparison& c, const Means& means, const std::vector<std::s
 }
 
 // The method that was run on some of the settings alone and solves more of them than the first of
-// those that were run on all: it would not be ranked. Of several, that with the most settings.
-std::optional<std::size_t> better_on_some(const Trial& trial, std::size_t first) {
+// those that were run on all, if there is one: it would not be ranked. Of several, that with the
+// most settings.
+std::optional<std::size_t> better_on_some(const Trial& trial, std::optional<std::size_t> first) {
   constexpr std::size_t kFewest = 3;
   std::optional<std::size_t> better;
   for (std::size_t m = 0; m < trial.all.size(); ++m) {
@@ -145,7 +146,8 @@ std::optional<std::size_t> better_on_some(const Trial& trial, std::size_t first)
         (better && settings <= trial.all[*better].settings))
       continue;
     std::size_t solved = 0;
-    for (const auto& row : trial.costs) solved += row[m] && row[first] && *row[first] < kNever;
+    for (const auto& row : trial.costs)
+      solved += first && row[m] && row[*first] && *row[*first] < kNever;
     if (trial.all[m].solved > solved) better = m;
   }
   return better;
@@ -177,15 +179,16 @@ Advice advise(const Comparison& c, const Means& means) {
     return advice.settings.empty() ? std::nullopt : decide(evidence);
   };
   auto decision = decided();
-  if (decision && !decision->places.empty())
-    if (const auto m = better_on_some(trial, decision->places[0].method)) {
-      std::vector<std::size_t> shared;
-      for (std::size_t i = 0; i < advice.settings.size(); ++i)
-        if (trial.costs[i][*m]) shared.push_back(advice.settings[i]);
-      advice.settings = std::move(shared);
-      trial = trial_of(c, means, advice.settings, methods);
-      decision = decided();
-    }
+  const bool has_first = decision && !decision->places.empty();
+  if (const auto m = better_on_some(
+          trial, has_first ? std::optional(decision->places[0].method) : std::nullopt)) {
+    std::vector<std::size_t> shared;
+    for (std::size_t i = 0; i < advice.settings.size(); ++i)
+      if (trial.costs[i][*m]) shared.push_back(advice.settings[i]);
+    advice.settings = std::move(shared);
+    trial = trial_of(c, means, advice.settings, methods);
+    decision = decided();
+  }
   for (std::size_t i = 0; decision && i < decision->places.size(); ++i) {
     const Place& place = decision->places[i];
     advice.ranked.push_back(trial.all[place.method]);

@@ -281,7 +281,13 @@ TEST(Advice, RanksTheMethodsThatNeedNoMoreThanTheReaderHas) {
   const Real most = c.cell(0, some.ranked[0].optimizer).median(Measure::work, 30);
   EXPECT_EQ(advise(c, {.derivatives = gradient, .budget = most}).ranked[0].solved, 6U);
   EXPECT_EQ(advise(c, {.derivatives = gradient, .budget = most}).ranked[1].solved, 0U);
-  EXPECT_TRUE(advise(c, {.derivatives = gradient, .budget = most - 1}).ranked.empty());
+  // Those that were run on all solve nothing, and one that was run on three does.
+  const Advice short_of_work = advise(c, {.derivatives = gradient, .budget = most - 1});
+  ASSERT_EQ(short_of_work.ranked.size(), 1U);
+  EXPECT_EQ(c.optimizers[short_of_work.ranked[0].optimizer].method, "sip");
+  EXPECT_EQ(short_of_work.settings.size(), 3U);
+  EXPECT_EQ(short_of_work.of_size, 6U);
+  EXPECT_TRUE(advise(c, {.budget = 1}).ranked.empty());
 }
 
 TEST(BriefLabels, ShowWhatDiffersAndNoTwoBecomeTheSame) {
