@@ -263,8 +263,8 @@ int run(const SolutionArguments& given, Session& session) {
   const std::vector<Solution> solutions = solutions_of(study, given, session.catalog());
   require(!solutions.empty(), [&] {
     return fmt::format(
-        "no run of {}{} in {} states an x: runs that train a network do not, and records of "
-        "earlier versions did not",
+        "no record of {}{} in {} contains an x; records of network training, and those that "
+        "earlier versions wrote, do not contain it",
         given.optimizer == "best" ? "any optimizer" : given.optimizer,
         given.problem.empty() ? "" : " on " + given.problem, reports::joined(given.folders));
   });
