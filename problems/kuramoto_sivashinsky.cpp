@@ -102,10 +102,10 @@ class KuramotoFlow final : public Physics {
     return 2.0 / static_cast<Real>(u.size()) * (waves_.transpose() * u);
   }
 
-  // w.saved[0]: v, a, b, c of each step side by side, (N, 4·steps·B); w.saved[1]: scratch.
+  // w.saved[0]: v, a, b, c of each step side by side, (N, 4·steps·B); the others: scratch.
   void forward(BatchRef x, BatchRef, BatchOut y, Workspace& w) const override {
     const Index N = outputs(), B = x.cols();
-    w.saved.resize(2);
+    w.saved.resize(kSaved);
     Matrix &all = w.saved[0], &squares = w.saved[1];
     all.resize(N, 4 * steps_ * B);
     squares.resize(N, 4 * B);
@@ -137,10 +137,11 @@ class KuramotoFlow final : public Physics {
   void pushforward(BatchRef d, BatchOut Jd, Workspace& w) const override {
     const Index B = d.cols();
     const Matrix& all = w.saved[0];
-    Matrix dv, da, db, dc, squares[3];
+    Matrix &dv = w.saved[2], &da = w.saved[3], &db = w.saved[4], &dc = w.saved[5];
+    Matrix* const squares = &w.saved[6];  // three
     dv.noalias() = waves_ * d;
     for (Index t = 0; t < steps_; ++t) {
-      const auto twice = [&](Index i, const Matrix& tangent) {  // of the square of a stage
+      const auto twice = [&](Index i, const auto& tangent) {  // of the square of a stage
         return 2 * all.middleCols((4 * t + i) * B, B).cwiseProduct(tangent);
       };
       squares[0] = twice(0, dv);
@@ -168,9 +169,11 @@ class KuramotoFlow final : public Physics {
   void pullback(BatchRef u, BatchOut JTu, Workspace& w) const override {
     const Index B = u.cols();
     const Matrix& all = w.saved[0];
-    Matrix g = u, gc, gb, ga, gv, shared, driven;
+    Matrix &g = w.saved[2], &gc = w.saved[3], &gb = w.saved[4], &ga = w.saved[5], &gv = w.saved[6],
+           &shared = w.saved[7], &driven = w.saved[8];
+    g = u;
     for (Index t = steps_; t-- > 0;) {
-      const auto twice = [&](Index i, const Matrix& cotangent) {
+      const auto twice = [&](Index i, const auto& cotangent) {
         return 2 * all.middleCols((4 * t + i) * B, B).cwiseProduct(cotangent);
       };
       driven.noalias() = third_.transpose() * g;
@@ -205,6 +208,7 @@ class KuramotoFlow final : public Physics {
     return sum / kPoints;
   }
 
+  static constexpr std::size_t kSaved = 9;
   Index steps_;
   Matrix waves_;                                         // (N, k): u(0) by x
   Matrix full_, half_, drive_, first_, second_, third_;  // (N, N)

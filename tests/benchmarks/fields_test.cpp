@@ -61,7 +61,7 @@ TEST(Fields, OfAGridProblemStandBesideItsRecord) {
   const Folder done(requests);
   const Record& record = done.records[0];
   const FieldFrames fields = done.fields();
-  EXPECT_EQ(fields.shape, (std::vector<Index>{8, 8, 8}));
+  EXPECT_EQ(fields.shape, (std::vector<Index>{9, 8, 8}));  // y*, x*, six x, and the last y
   EXPECT_EQ(fields.iterations.size(), 6U);
   EXPECT_EQ(fields.iterations.front(), 0);
   EXPECT_EQ(fields.iterations.back(), record.summary.iterations);

@@ -63,7 +63,8 @@ TEST(KernelsDeathTest, GiveEveryMethodTheSameTheta) {
     Vector theta(one.theta.size());
     ASSERT_TRUE(in.read(reinterpret_cast<char*>(theta.data()), bytes(theta)));
     is_equal = is_equal && theta == one.theta;
-    if (one.theta.allFinite()) expect_near(theta, one.theta, 1e-8, one.name);
+    const bool is_squared = one.name.starts_with("libdogleg");  // it solves with JᵀJ, unscaled
+    if (one.theta.allFinite()) expect_near(theta, one.theta, is_squared ? 1e-5 : 1e-8, one.name);
   }
   EXPECT_FALSE(is_equal) << own << ", " << other;
 }
