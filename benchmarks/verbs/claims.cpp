@@ -107,13 +107,15 @@ std::string papers_page(const std::vector<reports::Judgement>& judgements) {
              reports::kAllRows);
 }
 
+// Published records are the same for all: only the reader's own runs can fail.
 int exit_code_of(const std::vector<reports::Judgement>& judgements) {
-  const auto has = [&](auto&& is_so) {
-    return std::ranges::any_of(judgements, is_so, &reports::Judgement::verdict);
+  const auto has_failed = [](const reports::Judgement& one) {
+    return one.verdict == reports::Verdict::not_reproduced && one.reached.empty();
   };
-  if (has([](reports::Verdict verdict) { return verdict == reports::Verdict::not_reproduced; }))
-    return kWorse;
-  return has(reports::is_decided) ? kGood : kNotComparable;
+  if (std::ranges::any_of(judgements, has_failed)) return kWorse;
+  const bool is_any_decided =
+      std::ranges::any_of(judgements, reports::is_decided, &reports::Judgement::verdict);
+  return is_any_decided ? kGood : kNotComparable;
 }
 
 // None of the default folder before its first run: then published records decide.
