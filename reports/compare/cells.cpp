@@ -106,8 +106,7 @@ void add_figures(ComparedCell& cell, const Record& record) {
     cell.figures[kWork + j] = record.hits->iteration[j] < 0 ? kNever : Real(record.hits->work[j]);
 }
 
-// The path is compared separately from the other values, to state which of them differs. The answer
-// is left out: it follows the path, and baselines without it stay comparable.
+// The path is compared apart, to state which values differ. The answer, which follows it, is not.
 void add_digests(ComparedCell& cell, const Record& record) {
   Json json = result_of(to_json(record));
   for (const char* known : {"build", "build_parts", "cell", "schema", "answer"}) json.erase(known);
