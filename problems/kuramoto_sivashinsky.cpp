@@ -14,7 +14,7 @@
 #include <memory>
 #include <numbers>
 
-#include "problems/problem.h"
+#include "problems/learning.h"
 
 namespace isoline::problems {
 namespace {
@@ -217,23 +217,15 @@ class KuramotoFlow final : public Physics {
 // x* is on the attractor: the waves of x in the state that a random one reaches in a time of 100.
 ProblemParts make_kuramoto_sivashinsky(const KuramotoSivashinsky& options, const Draw& draw) {
   const KuramotoSivashinsky o = completed(options);
-  auto physics = std::make_unique<KuramotoFlow>(o);
   KuramotoSivashinsky transient = o;
   transient.time = 100;
   transient.steps = 1000;
+  const KuramotoFlow flow(transient);
   RandomStream stream = draw.stream("target");
   Workspace w;
-  Matrix state(o.points, 1), target(o.points, 1);
-  const KuramotoFlow flow(transient);
+  Matrix state(o.points, 1);
   flow.forward(stream.normal_vector(2 * o.waves), Matrix(0, 1), state, w);
-  const Vector truth = flow.waves_of(state);
-  physics->forward(truth, Matrix(0, 1), target, w);
-  return {.physics = std::move(physics),
-          .start = draw.start(Vector::Zero(2 * o.waves)),
-          .target = target,
-          .minimum = 0,
-          .truth = truth,
-          .x_error = [truth](BatchRef x, const Batch&) { return (x - truth).norm(); }};
+  return from_exact_data(std::make_unique<KuramotoFlow>(o), flow.waves_of(state), draw);
 }
 
 }  // namespace
