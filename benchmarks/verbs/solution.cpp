@@ -192,12 +192,6 @@ std::string table_text(const Solution& solution) {
   return text + fmt::format("  {}\n", reports::rerun_command(request));
 }
 
-std::string quoted(std::string text) {  // for CSV
-  for (std::size_t at = 0; (at = text.find('"', at)) != std::string::npos; at += 2)
-    text.insert(at, 1, '"');
-  return "\"" + text + "\"";
-}
-
 std::string csv_text(const std::vector<Solution>& solutions) {
   std::string text =
       "problem,optimizer,seed,unknown,returned,standard deviation,best,active bound\n";
@@ -205,8 +199,8 @@ std::string csv_text(const std::vector<Solution>& solutions) {
     const Request& request = solution.record->request;
     const std::vector<Column> columns = columns_of(solution, "{}");
     for (std::size_t i = 0; i < columns[0].texts.size(); ++i) {
-      text += fmt::format("{},{},{}", quoted(request.problem.spec), quoted(request.optimizer.spec),
-                          request.seed);
+      text += fmt::format("{},{},{}", reports::exact_csv_field(request.problem.spec),
+                          reports::exact_csv_field(request.optimizer.spec), request.seed);
       for (const char* name :
            {"unknown", "returned", "standard deviation", "best", "active bound"}) {
         const auto column = std::ranges::find(columns, name, &Column::name);
