@@ -8,7 +8,6 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <numbers>
-#include <numeric>
 #include <optional>
 #include <tuple>
 #include <utility>
@@ -18,6 +17,7 @@
 #include "benchmarks/run/execute.h"
 #include "benchmarks/run/isolate.h"
 #include "core/json.h"
+#include "core/results/statistics.h"
 #include "core/spec.h"
 #include "optimizers/optimizer.h"
 #include "problems/problem.h"
@@ -220,28 +220,6 @@ void audit_teacher(const Subject& subject, AuditedOptimizer& audited) {
   count_oracles(subject, taught_problem(), audited);
 }
 
-// --- fits
-
-// The slope of log10 y over log10 x and the residual, by least squares, summed one by one:
-// vectorized sums would depend on where the points lie in memory.
-std::pair<Real, Real> line_through(std::vector<Real> x, std::vector<Real> y) {
-  for (std::vector<Real>* values : {&x, &y})
-    for (Real& value : *values) value = std::log10(value);
-  const auto count = static_cast<Real>(x.size());
-  const Real x_mean = std::accumulate(x.begin(), x.end(), 0.0) / count;
-  const Real y_mean = std::accumulate(y.begin(), y.end(), 0.0) / count;
-  Real spread = 0, shared = 0, squares = 0;
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    spread += (x[i] - x_mean) * (x[i] - x_mean);
-    shared += (x[i] - x_mean) * (y[i] - y_mean);
-  }
-  if (spread == 0) return {kUnknown, kUnknown};
-  const Real slope = shared / spread;
-  for (std::size_t i = 0; i < x.size(); ++i)
-    squares += std::pow(y[i] - y_mean - slope * (x[i] - x_mean), 2);
-  return {slope, std::sqrt(squares / count)};
-}
-
 bool is_positive(Real value) { return std::isfinite(value) && value > 0; }
 
 }  // namespace
@@ -301,7 +279,7 @@ void write_audit(const std::vector<AuditedOptimizer>& all, const std::filesystem
 PowerLaw power_law(const std::vector<Real>& scales, std::vector<Real> values) {
   PowerLaw law{.values = std::move(values)};
   if (std::ranges::all_of(law.values, is_positive))
-    std::tie(law.exponent, law.residual) = line_through(scales, law.values);
+    std::tie(law.exponent, law.residual) = results::log_slope(scales, law.values);
   return law;
 }
 
@@ -322,7 +300,7 @@ Approach approach_of(const std::vector<Real>& errors, Real floor) {
       approach.is_exact ? errors[static_cast<std::size_t>(approach.steps)] : errors.back();
   approach.remaining = std::isfinite(last) ? last / errors.front() : kUnknown;
   if (before.size() >= 2 && approach.remaining <= kNear)
-    std::tie(approach.order, approach.residual) = line_through(before, after);
+    std::tie(approach.order, approach.residual) = results::log_slope(before, after);
   return approach;
 }
 

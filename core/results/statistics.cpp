@@ -201,6 +201,25 @@ Profile performance_profile(const Costs& costs) {
 
 // Order statistics of subsets.
 
+// Summed one by one: vectorized sums would depend on where the points lie in memory.
+std::pair<Real, Real> log_slope(std::vector<Real> x, std::vector<Real> y) {
+  for (std::vector<Real>* values : {&x, &y})
+    for (Real& value : *values) value = std::log10(value);
+  const auto count = static_cast<Real>(x.size());
+  const Real x_mean = std::accumulate(x.begin(), x.end(), 0.0) / count;
+  const Real y_mean = std::accumulate(y.begin(), y.end(), 0.0) / count;
+  Real spread = 0, shared = 0, squares = 0;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    spread += (x[i] - x_mean) * (x[i] - x_mean);
+    shared += (x[i] - x_mean) * (y[i] - y_mean);
+  }
+  if (spread == 0) return {std::nan(""), std::nan("")};
+  const Real slope = shared / spread;
+  for (std::size_t i = 0; i < x.size(); ++i)
+    squares += std::pow(y[i] - y_mean - slope * (x[i] - x_mean), 2);
+  return {slope, std::sqrt(squares / count)};
+}
+
 std::vector<Real> expected_best(std::vector<Real> values) {
   std::ranges::sort(values);
   const std::size_t n = values.size();

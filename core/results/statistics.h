@@ -10,6 +10,7 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/draws.h"
@@ -68,6 +69,10 @@ Real score_of(Real ratio, Real most);
 // The expected greatest of b of these values, b = 1 … n, drawn without replacement: each subset of
 // b is as likely as any other. E = Σ_i v_(i) [C(i, b) − C(i − 1, b)] / C(n, b), v ascending.
 std::vector<Real> expected_best(std::vector<Real> values);
+
+// The slope of log10 y over log10 x by least squares, and the root mean square of the residuals;
+// not a number without two different x.
+std::pair<Real, Real> log_slope(std::vector<Real> x, std::vector<Real> y);
 
 // Statistics of runs to a target: expected running time, simulated restarts, areas, digits.
 

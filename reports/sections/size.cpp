@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numeric>
 #include <variant>
 
 #include "core/options.h"
@@ -74,27 +73,15 @@ Growth growth_of(const Comparison& c, const SizeSweep& sweep, std::size_t s) {
   }
   const std::size_t n = growth.work.size();
   if (n < kFewestSizes) return growth;
-  std::vector<Real> x, y;
-  for (std::size_t i = 0; i < n; ++i) {
-    x.push_back(std::log(growth.unknowns[i]));
-    y.push_back(std::log(growth.work[i]));
-  }
-  const auto mean = [](const std::vector<Real>& of) {
-    return std::accumulate(of.begin(), of.end(), Real{0}) / static_cast<Real>(of.size());
-  };
-  const Real x_mean = mean(x), y_mean = mean(y);
-  Real xx = 0, xy = 0;
+  growth.slope = results::log_slope(growth.unknowns, growth.work).first;
   growth.low = kNever;
   growth.high = -kNever;
-  for (std::size_t i = 0; i < n; ++i) {
-    xx += (x[i] - x_mean) * (x[i] - x_mean);
-    xy += (x[i] - x_mean) * (y[i] - y_mean);
-    if (i == 0) continue;
-    const Real local = (y[i] - y[i - 1]) / (x[i] - x[i - 1]);
+  for (std::size_t i = 1; i < n; ++i) {
+    const Real local = std::log(growth.work[i] / growth.work[i - 1]) /
+                       std::log(growth.unknowns[i] / growth.unknowns[i - 1]);
     growth.low = std::min(growth.low, local);
     growth.high = std::max(growth.high, local);
   }
-  growth.slope = xy / xx;
   return growth;
 }
 
