@@ -99,9 +99,22 @@ TEST(Pinn, AnAbsoluteDampingIsAddedToTheMeanOfSquares) {
   ASSERT_TRUE(solve_square(K, r, solved));
   Vector expected(f.J.cols());
   expected(f.order) = -0.3 * (f.J.transpose() * solved);
-  for (const char* spec : {"levenberg-marquardt[damping=absolute,initial-damping=1e-2,rate=0.3]",
-                           "spring[damping-unit=absolute,damping=1e-2,rate=0.3]"})
+  for (const char* spec :
+       {"levenberg-marquardt[damping=absolute,initial-damping=1e-2,rate=0.3]",
+        "spring[damping-unit=absolute,damping=1e-2,rate=0.3]",
+        "spring[damping-unit=absolute,damping=1e-2,rate=0.3,factorization=cholesky]"})
     expect_near(first_step(f.problem, spec), expected, 1e-9, spec);
+}
+
+// A damping so small that the default is QR: Cholesky is taken nevertheless, and says so.
+TEST(Pinn, SpringIsByCholeskyWhereThatIsAsked) {
+  const Problem problem = make(kWide);
+  const auto claim_of = [&](const std::string& options) {
+    const auto trace = run(problem, "spring[damping=1e-12" + options + "]", iterations(2)).trace;
+    return std::string(trace->claimed);
+  };
+  EXPECT_NE(claim_of("").find("QR"), std::string::npos);
+  EXPECT_EQ(claim_of(",factorization=cholesky").find("QR"), std::string::npos);
 }
 
 TEST(Pinn, TheBoundOnAStepOfSpringShortensIt) {
