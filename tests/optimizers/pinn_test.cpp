@@ -145,6 +145,24 @@ TEST(Pinn, TheLineSearchTakesTheLengthWithTheLowestLoss) {
   }
 }
 
+// The Gram matrix whose layers include one without inputs, for the viscosity.
+TEST(Pinn, TheGramMatrixIncludesAnUnknownCoefficient) {
+  Assembled f("pinn-burgers[layers=15-12,points=40]");
+  const Matrix expected = (f.J * f.J.transpose()).triangularView<Eigen::Lower>();
+  Matrix K;
+  f.layers.gram(K);
+  EXPECT_LE((K - expected).norm(), kRounding * expected.norm());
+}
+
+// From twenty times the viscosity; measurements of 1 % noise determine it to some percent.
+TEST(Pinn, LevenbergMarquardtFindsAViscosityFromNoisyMeasurements) {
+  const Problem problem =
+      make("pinn-burgers[layers=12-12,points=400,viscosity=0.05,start-viscosity=1]");
+  const auto found = run(problem, "levenberg-marquardt", iterations(80));
+  EXPECT_LE(found.trace->last.x_error, 0.02);
+  EXPECT_NEAR(std::exp(found.theta.tail(1)[0]), 0.05, 0.05 * 0.05);
+}
+
 // The independent trial that this repeats ended between 1.6e-6 and 3.1e-5.
 TEST(Pinn, LevenbergMarquardtSolvesPoissonInTwoDimensionsFromEveryStart) {
   std::vector<Real> errors;
