@@ -3,6 +3,7 @@
 // The trapezoidal rule converges exponentially: neither weights nor sine have a kink.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 

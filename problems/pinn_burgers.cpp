@@ -39,7 +39,7 @@ class BurgersResidual final : public Physics {
   }
   void pullback(BatchRef u, BatchOut JTu, Workspace& w) const override {
     const Row row(w.x);
-    const auto f = u.row(1).array();
+    const Row::Numbers f = u.row(1);
     JTu.row(0) = u.row(0).array() + f * row.u_x;
     JTu.row(1) = f * row.u;
     JTu.row(2) = f;
