@@ -27,34 +27,34 @@ class BurgersResidual final : public Physics {
   Index inputs() const override { return 5; }
   Index outputs() const override { return 2; }
   void forward(BatchRef x, BatchRef, BatchOut y, Workspace&) const override {
-    const Row row(x);
-    y.row(0) = x.row(0);
-    y.row(1) = row.u_t + row.u * row.u_x - row.viscosity * row.u_xx;
+    for (Index b = 0; b < x.cols(); ++b) {
+      const Sample at(x, b);
+      y(0, b) = at.u;
+      y(1, b) = at.u_t + at.u * at.u_x - at.viscosity * at.u_xx;
+    }
   }
   void pushforward(BatchRef v, BatchOut Jv, Workspace& w) const override {
-    const Row row(w.x), dv(v);
-    Jv.row(0) = v.row(0);
-    Jv.row(1) = dv.u_t + row.u * dv.u_x + row.u_x * dv.u -
-                row.viscosity * (dv.u_xx + row.u_xx * v.row(4).array());
+    for (Index b = 0; b < v.cols(); ++b) {
+      const Sample at(w.x, b);
+      Jv(0, b) = v(0, b);
+      Jv(1, b) = v(2, b) + at.u * v(1, b) + at.u_x * v(0, b) -
+                 at.viscosity * (v(3, b) + at.u_xx * v(4, b));
+    }
   }
   void pullback(BatchRef u, BatchOut JTu, Workspace& w) const override {
-    const Row row(w.x);
-    const Row::Numbers f = u.row(1);
-    JTu.row(0) = u.row(0).array() + f * row.u_x;
-    JTu.row(1) = f * row.u;
-    JTu.row(2) = f;
-    JTu.row(3) = -f * row.viscosity;
-    JTu.row(4) = -f * row.viscosity * row.u_xx;
+    for (Index b = 0; b < u.cols(); ++b) {
+      const Sample at(w.x, b);
+      const Real f = u(1, b);
+      JTu.col(b) << u(0, b) + f * at.u_x, f * at.u, f, -f * at.viscosity,
+          -f * at.viscosity * at.u_xx;
+    }
   }
 
  private:
-  struct Row {
-    using Numbers = Eigen::Array<Real, 1, Eigen::Dynamic>;
-    explicit Row(BatchRef x)
-        : u(x.row(0)), u_x(x.row(1)), u_t(x.row(2)), u_xx(x.row(3)), viscosity(x.row(4)) {
-      viscosity = viscosity.exp();
-    }
-    Numbers u, u_x, u_t, u_xx, viscosity;
+  struct Sample {
+    Sample(BatchRef x, Index b)
+        : u(x(0, b)), u_x(x(1, b)), u_t(x(2, b)), u_xx(x(3, b)), viscosity(std::exp(x(4, b))) {}
+    Real u, u_x, u_t, u_xx, viscosity;
   };
 };
 
