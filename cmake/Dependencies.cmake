@@ -27,7 +27,8 @@ isoline_library(Isoline::onednn "dnnl" oneapi/dnnl/dnnl.hpp)  # its own package 
 isoline_library(Isoline::random123 "" Random123/philox.h)
 isoline_library(Isoline::cminpack "cminpack" cminpack.h cminpack-1)
 isoline_library(Isoline::libdogleg "dogleg" dogleg.h)
-isoline_library(Isoline::gsl "gsl;gslcblas" gsl/gsl_multifit_nlinear.h)
+# Without gslcblas, which GSL loads itself: linked before OpenBLAS, its slow cblas_dgemm would be ours.
+isoline_library(Isoline::gsl "gsl" gsl/gsl_multifit_nlinear.h)
 isoline_library(Isoline::simdjson "simdjson" simdjson.h)
 isoline_library(Isoline::valijson "" valijson/validator.hpp)
 

@@ -563,7 +563,7 @@ void register_levenberg_marquardt(OptimizerRegistry& registry) {
        .needs = {Oracle::forward},
        .is_input_scale_invariant = true,
        .keeps_bounds = true,
-       .most_rank = 2048,
+       .most_rank = 4000,
        .tunable = {.option = "initial-damping", .factor = 10},
        .needs_for = needs_of_levenberg_marquardt,
        .objection = objection_of_levenberg_marquardt}));

@@ -159,9 +159,11 @@ void fields(DampedHalfInverse& o, auto& field) {
   way_fields(o, field);
 }
 
+constexpr Index kMostRank = 4000;  // of a Cholesky decomposition that takes seconds
+
 struct Spring {
   Real rate = 1, momentum = 0.9, damping = 1e-3, longest_step = 0;
-  std::string damping_unit = "mean", line_search;
+  std::string damping_unit = "mean", line_search, factorization;
 
   struct State {
     Linearization at;
@@ -177,6 +179,7 @@ struct Spring {
   }
   State init(Meter&, const Vector& theta) const {
     State s;
+    s.spectral = SpectralStep(wanted());
     s.step = Vector::Zero(theta.size());
     return s;
   }
@@ -196,6 +199,9 @@ struct Spring {
     theta += length * s.step;
     return Status::running;
   }
+  Factorization wanted() const {
+    return factorization.empty() ? Factorization::automatic : factorization_named(factorization);
+  }
 };
 
 void fields(Spring& o, auto& field) {
@@ -208,10 +214,13 @@ void fields(Spring& o, auto& field) {
   field(
       "line-search", o.line_search, Choices{"", "grid"},
       "grid: of η, η/2, …, η/2³⁰, the step length with the lowest loss on the samples of the step");
+  field("factorization", o.factorization, Choices{"", "cholesky"},
+        "how the step is computed; by default by size and accuracy; cholesky: always by that of "
+        "JJᵀ, as published, or of JᵀJ if it is smaller");
 }
 
-OracleSet needs_of_spring(const OptionValues&, const Problem& problem) {
-  OracleSet needs = needs_of(Factorization::automatic, tikhonov_filter(1), problem);
+OracleSet needs_of_spring(const OptionValues& options, const Problem& problem) {
+  OracleSet needs = needs_of(read_options<Spring>(options).wanted(), tikhonov_filter(1), problem);
   needs.add(Oracle::pushforward);
   return needs;
 }
@@ -274,7 +283,7 @@ void register_spectral_methods(OptimizerRegistry& registry) {
                "diagonal of JJᵀ, and the length of a step has no bound; the paper's λ is absolute, "
                "and its bound is √0.001.",
        .needs = {Oracle::forward, Oracle::pushforward},
-       .most_rank = 2048,
+       .most_rank = kMostRank,
        .tunable = {.option = "rate", .below = 4},
        .needs_for = needs_of_spring}));
 }

@@ -267,6 +267,19 @@ std::function<void(RandomStream&, Index, Batch&)> sample_of(
   };
 }
 
+// The same samples, but the input of each is that of the next one, and of the last that of the
+// first.
+static auto shuffled(std::function<void(RandomStream&, Index, Batch&)> draw) {
+  return [draw = std::move(draw)](RandomStream& stream, Index b, Batch& batch) {
+    draw(stream, b, batch);
+    const Index last = batch.samples() - 1;
+    if (b < last) return;
+    const Vector first = batch.input.col(0);
+    for (Index i = 0; i < last; ++i) batch.input.col(i) = batch.input.col(i + 1);
+    batch.input.col(last) = first;
+  };
+}
+
 ProblemParts learn(const Learning& options, const NetworkShape& shape, const Draw& draw,
                    ProblemParts parts) {
   if (!parts.network) parts.network = networks::make_network(options.network, shape);
@@ -274,6 +287,7 @@ ProblemParts learn(const Learning& options, const NetworkShape& shape, const Dra
   parts.start = parts.network->start(stream);
   parts.samples.batch = options.batch;
   parts.samples.data = options.data;
+  if (options.inputs == "shuffled") parts.samples.draw = shuffled(std::move(parts.samples.draw));
   const Index epoch = options.data > 0 ? 0 : parts.samples.epoch;
   require(epoch % options.batch == 0, "epoch must be a multiple of batch");
   const bool is_fresh = options.data == 0 && epoch == 0;

@@ -37,7 +37,7 @@ Series spectrum(Index grid);
 //   void fields(Options& o, auto& field) { field("xi", …); fields(o.learning, field); }
 
 struct Learning {
-  std::string mode = kDirectMode, network = "mlp", watch;
+  std::string mode = kDirectMode, network = "mlp", watch, inputs;
   Index batch = 100, data = 0;
 
   bool is_on() const { return mode == kLearnMode; }
@@ -54,6 +54,8 @@ inline void fields(Learning& o, auto& field) {
   field(kWatchOption, o.watch, {"", "noise", "spectrum"},
         "additional series of mode=learn: noise: differences of gradients between batches; "
         "spectrum, for grids: the share of power by wave number");
+  field("inputs", o.inputs, {"", "shuffled"},
+        "shuffled: as a null hypothesis, the network of mode=learn sees the y* of the next sample");
 }
 
 // Finding an x* (k) again from its exact data, y* = P(x*), of physics that are one to one, with 0

@@ -3,6 +3,7 @@
 // `ratio` and difference `extra_ns`. Choose by --benchmark_filter=metering. The bare side calls the
 // libraries without the adapters of the other modules.
 #include <benchmark/benchmark.h>
+#include <cblas.h>
 #include <ceres/ceres.h>
 #include <fftw3.h>
 #include <fmt/format.h>
@@ -32,6 +33,7 @@ namespace isoline::benchmarks::micro {
 
 using Eigen::Map;
 using optimizers::Linearization;
+using problems::Block;
 namespace {
 
 // The mean seconds of a call.
@@ -547,6 +549,80 @@ void register_parts() {
         ->UseManualTime();
 }
 
+// --- a step of SPRING on a physics-informed network over the products of matrices that it is made
+// of: value, gradient and Laplacian of all points through the layers, their change along the last
+// step, the cotangents, the rows of J, K = JJᵀ and its Cholesky decomposition, and the pullback.
+
+// All arrays of the layers of z = W a + b, with so many lanes in all.
+class BareSpring {
+ public:
+  BareSpring(const Problem& problem, Index lanes) : K_(problem.samples(), problem.samples()) {
+    for (const Block& block : problem.layout())
+      if (block.kind == Block::Kind::weight) layers_.emplace_back(block, lanes, problem.samples());
+  }
+  double run() {
+    return seconds_of(1, [this] {
+      for (Layer& at : layers_) {
+        multiply(CblasNoTrans, CblasNoTrans, at.W, at.A, 0, at.Z);
+        multiply(CblasNoTrans, CblasNoTrans, at.W, at.A, 0, at.dZ);
+        multiply(CblasNoTrans, CblasNoTrans, at.W, at.A, 1, at.dZ);
+        multiply(CblasTrans, CblasNoTrans, at.W, at.G, 0, at.H);
+        multiply(CblasNoTrans, CblasTrans, at.G, at.A, 0, at.JTu);
+      }
+      K_.setIdentity();
+      for (Layer& at : layers_) add_gram(at);
+      const auto B = static_cast<int>(K_.rows());
+      LAPACKE_dpotrf(LAPACK_COL_MAJOR, 'L', B, K_.data(), B);
+    });
+  }
+
+ private:
+  struct Layer {
+    Layer(const Block& block, Index lanes, Index samples)
+        : W(Matrix::Constant(block.rows, block.columns, 1e-2)),
+          A(Matrix::Constant(block.columns, lanes, 1e-2)),
+          G(Matrix::Constant(block.rows, lanes, 1e-2)),
+          Z(block.rows, lanes),
+          dZ(block.rows, lanes),
+          H(block.columns, lanes),
+          JTu(block.rows, block.columns),
+          rows(block.rows * block.columns, samples) {}
+    Matrix W, A, G, Z, dZ, H, JTu, rows;
+  };
+  static void multiply(CBLAS_TRANSPOSE a, CBLAS_TRANSPOSE b, const Matrix& A, const Matrix& B,
+                       double keep, Matrix& C) {
+    const auto k = static_cast<int>(a == CblasNoTrans ? A.cols() : A.rows());
+    const auto rows = static_cast<int>(C.rows()), columns = static_cast<int>(C.cols());
+    cblas_dgemm(CblasColMajor, a, b, rows, columns, k, 1, A.data(), static_cast<int>(A.rows()),
+                B.data(), static_cast<int>(B.rows()), keep, C.data(), rows);
+  }
+  // A row of J is the sum of the outer products of its lanes.
+  void add_gram(Layer& at) {
+    const Index samples = K_.rows(), each = at.A.cols() / samples;
+    const auto o = static_cast<int>(at.W.rows()), i = static_cast<int>(at.W.cols());
+    for (Index b = 0; b < samples; ++b)
+      cblas_dgemm(CblasColMajor, CblasNoTrans, CblasTrans, o, i, static_cast<int>(each), 1,
+                  &at.G(0, b * each), o, &at.A(0, b * each), i, 0, &at.rows(0, b), o);
+    cblas_dsyrk(CblasColMajor, CblasLower, CblasTrans, static_cast<int>(samples), o * i, 1,
+                at.rows.data(), o * i, 1, K_.data(), static_cast<int>(samples));
+  }
+
+  Matrix K_;
+  std::vector<Layer> layers_;
+};
+
+void register_spring() {
+  constexpr const char* kSpec = "pinn-poisson[dimension=10]";
+  constexpr Index kInside = 100, kLanes = 12;  // of a point inside; one on the boundary has 1
+  register_pair(fmt::format("spring/{}", kSpec), 21, {.ratio = 1.3}, [=] {
+    const auto problem = std::make_shared<const Problem>(make_problem(kSpec));
+    const auto still = std::make_shared<Still>(*problem, "spring[factorization=cholesky]", 0);
+    const auto bare =
+        std::make_shared<BareSpring>(*problem, kInside * kLanes + problem->samples() - kInside);
+    return Pair{[problem, still] { return still->run(); }, [=] { return bare->run(); }};
+  });
+}
+
 }  // namespace
 }  // namespace isoline::benchmarks::micro
 
@@ -560,6 +636,7 @@ int main(int count, char** arguments) {
   register_round_trips();
   register_spectral();
   register_parts();
+  register_spring();
   benchmark::Initialize(&count, arguments);
   if (benchmark::ReportUnrecognizedArguments(count, arguments)) return 1;
   benchmark::RunSpecifiedBenchmarks();

@@ -154,6 +154,11 @@ Vector averaged_statistics(const Problem& problem, VectorRef theta, std::int64_t
   return sum / kBatches;
 }
 
+NumberArray samples_array(const Problem& problem, Matrix samples) {
+  turn_grids(samples, side_of_grid(problem));
+  return {{samples.cols(), samples.rows()}, {samples.data(), samples.data() + samples.size()}};
+}
+
 NumberArray infer(const Problem& problem, const TrainedNetwork& network, const NumberArray& input,
                   const std::string& origin) {
   constexpr Index kAtOnce = 1024;  // samples: all layers of all of them need not be held
@@ -167,13 +172,9 @@ NumberArray infer(const Problem& problem, const TrainedNetwork& network, const N
     problem.network().infer(network.theta, network.statistics, some, inferred, workspace);
     x.middleCols(first, some.cols()) = inferred;
   }
-  turn_grids(x, side_of_grid(problem));
-  NumberArray output{{x.cols()}, {x.data(), x.data() + x.size()}};
-  const bool is_picture = side_of_grid(problem) > 0 && input.shape.size() > 2;
-  if (is_picture)
-    output.shape.insert(output.shape.end(), {side_of_grid(problem), side_of_grid(problem)});
-  else
-    output.shape.push_back(x.rows());
+  NumberArray output = samples_array(problem, std::move(x));
+  const Index side = side_of_grid(problem);
+  if (side > 0 && input.shape.size() > 2) output.shape = {output.shape[0], side, side};
   return output;
 }
 

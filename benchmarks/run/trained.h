@@ -31,6 +31,9 @@ Vector averaged_statistics(const Problem& problem, VectorRef theta, std::int64_t
 // UsageError where the network is not one of this problem.
 void require_fitting(const TrainedNetwork& network, const Problem& problem);
 
+// Samples (i, S), as a file holds them: (S, i), grids row by row.
+NumberArray samples_array(const Problem& problem, Matrix samples);
+
 // x of each input. One sample along the first index: (S, i) -> (S, k), and (S, [channels,] N, N) of
 // grids as pictures, row by row. UsageError where the shape does not fit.
 NumberArray infer(const Problem& problem, const TrainedNetwork& network, const NumberArray& input,

@@ -13,7 +13,7 @@ namespace isoline::benchmarks {
 namespace {
 
 struct InferArguments {
-  std::string network, input, output;
+  std::string network, input, output, training_data;
   std::int64_t memory_bytes = 0;  // 0: as a cell's
   double seconds = 600;
 };
@@ -21,10 +21,12 @@ struct InferArguments {
 void declare(VerbArguments& verb, InferArguments& given) {
   verb.text("NETWORK", given.network, "File of the trained network").required();
   verb.text(
-          "--input", given.input,
-          "Observations, one per row: .npy of shape (samples, length of y) or (samples, N, N), or "
-          ".csv")
-      .required();
+      "--input", given.input,
+      "Observations, one per row: .npy of shape (samples, length of y) or (samples, N, N), or "
+      ".csv");
+  verb.text("--training-data", given.training_data,
+            "Instead of --input: apply the network to the N samples of the option data=N that it "
+            "was trained on, and write their y* to this file");
   verb.text("--output", given.output, "Output file for the inferred x: .npy or .csv").required();
   verb.time("--time", given.seconds, "Time limit: 10s, 2m (default: 10m)");
   verb.memory("--memory", given.memory_bytes, "Memory limit (default: 4GB)");
@@ -33,18 +35,24 @@ void declare(VerbArguments& verb, InferArguments& given) {
 // Reads, infers and writes; the sentence about it.
 std::string inferred(const InferArguments& given, const Catalog& catalog) {
   const TrainedNetwork network = read_network(given.network);
-  const NumberArray input = read_numbers(given.input);
   const Component component =
       complete_problem(catalog, network.problem.name, network.problem.options);
   require(component.is_learned,
           [&] { return given.network + " is not a trained network: its problem has no network"; });
   const Problem problem = make_problem(catalog, component, network.seed);
+  require(given.training_data.empty() || !problem.has_fresh_batches(),
+          "infer: --training-data requires a network that was trained with data=N");
   try {
     require_fitting(network, problem);
   } catch (const UsageError& error) {
     throw UsageError(fmt::format("{}: {}", given.network, error.what()));
   }
+  const NumberArray input = given.training_data.empty()
+                                ? read_numbers(given.input)
+                                : samples_array(problem, problem.batch().input);
   const NumberArray output = infer(problem, network, input, given.input);
+  if (!given.training_data.empty())
+    write_numbers(given.training_data, samples_array(problem, problem.target()));
   write_numbers(given.output, output);
   return fmt::format("{}: {} inferred by {} trained on {} for {}", given.output,
                      reports::counted(std::size_t(output.shape[0]), "sample"),
@@ -57,6 +65,8 @@ constexpr char kSaid = '+', kMistaken = '-';
 
 // In a process of its own, under limits: whatever a file holds costs that process alone.
 int run(const InferArguments& given, Session& session) {
+  require(given.input.empty() != given.training_data.empty(),
+          "infer requires either --input or --training-data");
   const Catalog& catalog = session.catalog();
   const auto work = [&] {
     try {

@@ -1,7 +1,9 @@
 // Training and inference on the command line, and their error messages.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <cstdio>
 #include <functional>
 #include <nlohmann/json.hpp>
 
@@ -29,6 +31,47 @@ TEST(Train, WritesANetworkThatInfersWhatItLearned) {
   EXPECT_NEAR(20 * half * (x.values[0] + x.values[1]), -0.5, 0.1);
   const auto as_json = read_text(shell.folder() / "net.json");
   EXPECT_TRUE(contains(as_json, "isoline.network/1"));
+}
+
+// What the network is applied to is what it was trained on: the y* of the file give the same x.
+TEST(Infer, WritesTheSamplesOfTheTraining) {
+  const Shell shell;
+  shell.expect(
+      "./isoline train 'sine[xi=2,data=5]' --optimizer adam --iterations 9 --out net.json");
+  shell.expect("./isoline infer net.json --training-data y.csv --output x.csv");
+  EXPECT_EQ(count_lines(read_text(shell.folder() / "y.csv")), 5U);
+  shell.expect("./isoline infer net.json --input y.csv --output again.csv");
+  EXPECT_EQ(read_text(shell.folder() / "x.csv"), read_text(shell.folder() / "again.csv"));
+}
+
+// Levenberg-Marquardt solves each instance alone to rounding, so that no network wins. Against no
+// step of gradient descent, the network wins. One that sees other y* fits its few instances, too.
+TEST(NetworkOrSolver, CountsTheInstancesThatTheNetworkWins) {
+  const Shell shell;
+  const Finished done = shell.expect(
+      "python3 " ISOLINE_SOURCE_DIR
+      "/clients/python/network_or_solver.py 'sine[xi=1]' --instances 4 --steps 400 --training "
+      "'adam[rate=1e-2]' --solvers 'levenberg-marquardt,gd[rate=1e-300]'");
+  struct Row {
+    int network = -1, shuffled = -1, refined = -1;
+    double of_network = 0, of_shuffled = 0, of_solver = 0;
+  };
+  const auto row_of = [&](const std::string& solver) {
+    Row row;
+    const std::size_t at = done.out.rfind(solver);
+    EXPECT_EQ(std::sscanf(done.out.c_str() + at + solver.size(), "%d/4 %d/4 %d/4 %lf %lf %lf",
+                          &row.network, &row.shuffled, &row.refined, &row.of_network,
+                          &row.of_shuffled, &row.of_solver),
+              6)
+        << done.out;
+    return row;
+  };
+  const Row newton = row_of("levenberg-marquardt"), nothing = row_of("gd[rate=1e-300]");
+  EXPECT_EQ(newton.network, 0);
+  EXPECT_LE(newton.of_solver, 1e-25);
+  EXPECT_EQ(nothing.network, 4);
+  EXPECT_EQ(nothing.refined, 4) << "it ends where the network is";
+  EXPECT_NE(nothing.of_network, nothing.of_shuffled);
 }
 
 TEST(Train, ContinuesFromANetwork) {
@@ -84,6 +127,8 @@ TEST(Train, MistakesAreOneSentenceAndLeaveNothing) {
            {"infer net.json --input holes.csv --output x.npy", "'nan' is not "},
            {"infer net.json --input good.csv --output x.txt", ".npy or .csv"},
            {"infer good.csv --input good.csv --output x.npy", "not a trained network"},
+           {"infer net.json --output x.npy", "either --input or --training-data"},
+           {"infer net.json --training-data y.csv --output x.npy", "data=N"},
            {"infer net.json --input missing.npy --output x.npy", "missing.npy"}}) {
     const Finished result =
         shell.expect("./isoline " + command, {.exit_code = 1, .err = {sentence}});

@@ -99,9 +99,22 @@ TEST(Pinn, AnAbsoluteDampingIsAddedToTheMeanOfSquares) {
   ASSERT_TRUE(solve_square(K, r, solved));
   Vector expected(f.J.cols());
   expected(f.order) = -0.3 * (f.J.transpose() * solved);
-  for (const char* spec : {"levenberg-marquardt[damping=absolute,initial-damping=1e-2,rate=0.3]",
-                           "spring[damping-unit=absolute,damping=1e-2,rate=0.3]"})
+  for (const char* spec :
+       {"levenberg-marquardt[damping=absolute,initial-damping=1e-2,rate=0.3]",
+        "spring[damping-unit=absolute,damping=1e-2,rate=0.3]",
+        "spring[damping-unit=absolute,damping=1e-2,rate=0.3,factorization=cholesky]"})
     expect_near(first_step(f.problem, spec), expected, 1e-9, spec);
+}
+
+// A damping so small that the default is QR: Cholesky is taken nevertheless, and says so.
+TEST(Pinn, SpringIsByCholeskyWhereThatIsAsked) {
+  const Problem problem = make(kWide);
+  const auto claim_of = [&](const std::string& options) {
+    const auto trace = run(problem, "spring[damping=1e-12" + options + "]", iterations(2)).trace;
+    return std::string(trace->claimed);
+  };
+  EXPECT_NE(claim_of("").find("QR"), std::string::npos);
+  EXPECT_EQ(claim_of(",factorization=cholesky").find("QR"), std::string::npos);
 }
 
 TEST(Pinn, TheBoundOnAStepOfSpringShortensIt) {
@@ -130,6 +143,24 @@ TEST(Pinn, TheLineSearchTakesTheLengthWithTheLowestLoss) {
     EXPECT_LT(best, 1) << name;  // the whole step is too long here
     EXPECT_NEAR(length, best, 1e-9 * best) << name;
   }
+}
+
+// The Gram matrix whose layers include one without inputs, for the viscosity.
+TEST(Pinn, TheGramMatrixIncludesAnUnknownCoefficient) {
+  Assembled f("pinn-burgers[layers=15-12,points=40]");
+  const Matrix expected = (f.J * f.J.transpose()).triangularView<Eigen::Lower>();
+  Matrix K;
+  f.layers.gram(K);
+  EXPECT_LE((K - expected).norm(), kRounding * expected.norm());
+}
+
+// From twenty times the viscosity; measurements of 1 % noise determine it to some percent.
+TEST(Pinn, LevenbergMarquardtFindsAViscosityFromNoisyMeasurements) {
+  const Problem problem =
+      make("pinn-burgers[layers=12-12,points=400,viscosity=0.05,start-viscosity=1]");
+  const auto found = run(problem, "levenberg-marquardt", iterations(80));
+  EXPECT_LE(found.trace->last.x_error, 0.02);
+  EXPECT_NEAR(std::exp(found.theta.tail(1)[0]), 0.05, 0.05 * 0.05);
 }
 
 // The independent trial that this repeats ended between 1.6e-6 and 3.1e-5.

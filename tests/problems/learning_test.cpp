@@ -29,6 +29,17 @@ Batch batch_of(const Problem& problem, std::int64_t step) {
   return batch;
 }
 
+TEST(Learning, ShuffledInputsAreThoseOfTheNextSample) {
+  const std::string spec = "burgers[mode=learn,N=16,data=5,batch=5";
+  const Batch plain = batch_of(make(spec + "]"), 0),
+              shuffled = batch_of(make(spec + ",inputs=shuffled]"), 0);
+  EXPECT_EQ(shuffled.target, plain.target);
+  EXPECT_EQ(shuffled.truth, plain.truth);
+  EXPECT_EQ(plain.input, plain.target);
+  EXPECT_EQ(shuffled.input.leftCols(4), plain.input.rightCols(4));
+  EXPECT_EQ(shuffled.input.col(4), plain.input.col(0));
+}
+
 TEST(Learning, EachStepHasItsOwnSamplesAndTheSameEveryTime) {
   for (const std::string& spec : kLearned) {
     const Problem problem = make(spec, 1), again = make(spec, 1), other = make(spec, 2);

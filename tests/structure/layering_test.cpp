@@ -190,7 +190,7 @@ const std::vector<std::pair<std::string, std::string>> kDoors = {
     {"lapacke.h", R"(core/decompose\.cpp|benchmarks/micro/.*\.cpp)"},
     {"suitesparse/", R"((core/sparse|optimizers/libdogleg)\.cpp)"},
     {"openblas_config.h", R"(core/(decompose|threads)\.cpp)"},
-    {"cblas.h", R"(core/(product|threads)\.cpp)"},
+    {"cblas.h", R"(core/(product|threads)\.cpp|benchmarks/micro/.*\.cpp)"},
     {"oneapi/dnnl/", R"(core/convolution\.cpp)"},
     {"omp.h", R"(core/threads\.cpp)"},
     {"Random123/", R"(core/random\.cpp)"},
