@@ -202,6 +202,9 @@ const Method kWithoutGradient[] = {
      true},
     {NLOPT_LN_SBPLX, Kind::derivative_free, "nlopt-sbplx", "Subplex (NLopt)",
      "Nelder-Mead on a sequence of subspaces", "NLopt 2.7; Rowan (1990)"},
+    {NLOPT_LN_NEWUOA, Kind::derivative_free, "nlopt-newuoa", "NEWUOA (NLopt)",
+     "min of a quadratic through 2n+1 points, its Hessian of least change, ‖d‖ ≤ Δ",
+     "NLopt 2.7; Powell (2006)"},
 };
 
 const OptionField kRemembered{
@@ -219,7 +222,12 @@ OptionTable options_of(const Method& m, Family family) {
   return m.is_luksans() ? OptionTable{kRemembered, kLossScale} : OptionTable{kLossScale};
 }
 
+std::string too_few_unknowns(const OptionValues&, const Problem& problem) {
+  return problem.unknowns() < 2 ? "NEWUOA requires at least two unknowns" : "";
+}
+
 OptimizerEntry entry_of(const Method& m, Family family, OracleSet needs) {
+  const bool is_newuoa = m.algorithm == NLOPT_LN_NEWUOA;
   return {.name = m.name,
           .title = m.title,
           .family = family,
@@ -230,11 +238,13 @@ OptimizerEntry entry_of(const Method& m, Family family, OracleSet needs) {
           .needs = needs,
           .is_input_scale_invariant = m.is_input_scale_invariant,
           .needs_same_samples = true,
-          .keeps_bounds = true,
+          .keeps_bounds = !is_newuoa,
           .most_unknowns = family == Family::nlopt ? m.most_unknowns : kMostWithoutGradient,
           .options = options_of(m, family),
           .tunable = family == Family::nlopt ? Tunable{.option = "loss-scale", .below = 5}
                                              : Tunable{.option = "initial-step", .below = 4},
+          .in_all = !is_newuoa,  // of the suite forward
+          .objection = is_newuoa ? &too_few_unknowns : nullptr,
           .make = [algorithm = m.algorithm](const OptionValues& options, const OptimizerRegistry&) {
             return std::make_unique<Nlopt>(
                 algorithm,
