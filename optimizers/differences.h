@@ -53,6 +53,7 @@ class DifferenceJacobian {
     at.set_jacobian(J_);
   }
   bool is_fresh() const { return is_fresh_; }  // not yet updated
+  bool is_noisy() const { return noise_ > std::numeric_limits<Real>::epsilon(); }
   bool has_jacobian() const { return J_.size() > 0; }
   void persist(Archive& archive) { archive(J_, theta_, y_, sizes_, noise_, is_fresh_); }
 

@@ -304,8 +304,8 @@ struct LevenbergMarquardt {
     }
     if (!s.squares.solve(s.damping.mu, factorization, s.step, s.Jd)) return Status::stalled;
     Real predicted = predicted_decrease(s);
-    if (acceleration > 0 && s.gain < kPoorGain && !accelerate(f, theta, s))
-      return reject(f, theta, s);
+    const bool accelerates = acceleration > 0 && s.gain < kPoorGain && !s.differences.is_noisy();
+    if (accelerates && !accelerate(f, theta, s)) return reject(f, theta, s);
     s.candidate = theta + s.step;
     if (f.bounds() && !f.bounds()->hold(s.candidate)) predicted = project(f, theta, s);
     if (s.candidate == theta && !f.has_fresh_batches()) return Status::converged;
