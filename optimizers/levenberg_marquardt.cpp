@@ -18,6 +18,7 @@
 #include "core/array.h"
 #include "core/decompose.h"
 #include "core/product.h"
+#include "optimizers/differences.h"
 #include "optimizers/optimizer.h"
 #include "optimizers/sparse_least_squares.h"
 #include "optimizers/spectral_step.h"
@@ -66,7 +67,8 @@ class DampedLeastSquares {
     has_gram_ = false;
     factored_ = -1;
     // An audit grants both, and J serves any problem.
-    is_layered_ = !is_sparse_ && !f.is_granted(Oracle::jacobian);
+    is_layered_ =
+        f.is_granted(Oracle::layer_factors) && !f.is_granted(Oracle::jacobian) && !is_sparse_;
     if (is_sparse_) {
       norms_.resize(n);
       f.sparse_pattern()->squared_columns(at.sparse_jacobian().data(), norms_);
@@ -260,9 +262,12 @@ class DampedLeastSquares {
 struct LevenbergMarquardt {
   Real initial_damping = 1e-4, rate = 1, acceleration = 0.75;
   std::string damping = "adaptive", factorization = "auto", scaling = "more", line_search;
+  std::string jacobian = "exact";
+  bool broyden = true;
 
   struct State {
     DampedLeastSquares squares;
+    DifferenceJacobian differences;
     SpectralStep spectral;
     NielsenDamping damping;
     bool has_point = false;
@@ -276,6 +281,7 @@ struct LevenbergMarquardt {
     s.squares.persist(archive);
     s.spectral.persist(archive);
     s.damping.persist(archive);
+    s.differences.persist(archive);
     archive(s.has_point, s.gain, s.last_length, s.residual);
   }
 
@@ -298,7 +304,8 @@ struct LevenbergMarquardt {
     }
     if (!s.squares.solve(s.damping.mu, factorization, s.step, s.Jd)) return Status::stalled;
     Real predicted = predicted_decrease(s);
-    if (acceleration > 0 && s.gain < kPoorGain && !accelerate(f, theta, s)) return reject(f, s);
+    const bool accelerates = acceleration > 0 && s.gain < kPoorGain && !s.differences.is_noisy();
+    if (accelerates && !accelerate(f, theta, s)) return reject(f, theta, s);
     s.candidate = theta + s.step;
     if (f.bounds() && !f.bounds()->hold(s.candidate)) predicted = project(f, theta, s);
     if (s.candidate == theta && !f.has_fresh_batches()) return Status::converged;
@@ -311,7 +318,7 @@ struct LevenbergMarquardt {
       if (!(length <= s.last_length / 2)) return Status::converged;
       s.last_length = length;
     } else if (!(actual > 0 && predicted > 0)) {
-      return reject(f, s);
+      return reject(f, theta, s);
     }
     theta = s.candidate;
     std::swap(s.at, s.trial);
@@ -321,10 +328,13 @@ struct LevenbergMarquardt {
     return Status::running;
   }
 
-  static Status reject(Meter& f, State& s) {
+  Status reject(Meter& f, const Vector& theta, State& s) const {
     f.reject_step();
     s.gain = 0;
-    return s.damping.reject();
+    if (jacobian == "exact" || s.differences.is_fresh()) return s.damping.reject();
+    s.differences.renew(f, theta, jacobian == "central", s.at);  // the update may be to blame
+    s.squares.set(f, s.at, theta, s.residual, scaling);
+    return Status::running;
   }
 
   // Up to a gain of 1/4, Moré (1978) reduces the radius: r is far from linear in d.
@@ -332,6 +342,7 @@ struct LevenbergMarquardt {
 
   Status step_fixed(Meter& f, Vector& theta, State& s) const {
     f.linearize(theta, s.at);
+    if (jacobian != "exact") s.differences.renew(f, theta, jacobian == "central", s.at);
     s.residual = (s.at.y() - f.target()).reshaped();
     const auto filter = damping == "absolute" ? absolute_filter(initial_damping, f.samples())
                                               : tikhonov_filter(initial_damping);
@@ -349,6 +360,12 @@ struct LevenbergMarquardt {
   // J, −r and D at the point just accepted.
   void accept(Meter& f, const Vector& theta, State& s) const {
     s.residual = (f.target() - s.at.y()).reshaped();
+    if (jacobian != "exact") {
+      if (broyden && s.differences.has_jacobian() && s.gain >= kPoorGain)
+        s.differences.update(theta, s.at);
+      else
+        s.differences.renew(f, theta, jacobian == "central", s.at);
+    }
     s.squares.set(f, s.at, theta, s.residual, scaling);
     s.has_point = true;
   }
@@ -422,6 +439,10 @@ void fields(LevenbergMarquardt& o, auto& field) {
   field("scaling", o.scaling, Choices{"more", "fading", "none", "jacobian"},
         "for damping=adaptive, the diagonal of D: more: the largest norm that each column of J "
         "has had; fading: the same, but halved at each step; none: 1; jacobian: the current norms");
+  field("jacobian", o.jacobian, kJacobians, kJacobianHelp);
+  field("broyden", o.broyden,
+        "of a J by differences and damping=adaptive: after steps with a gain above 1/4 J is "
+        "updated by Broyden's formula");
 }
 
 // Levenberg-Marquardt by products, for problems too large for a Jacobian: θ ← θ + d,
@@ -528,6 +549,7 @@ std::string objection_of_levenberg_marquardt(const OptionValues& options, const 
 
 OracleSet needs_of_levenberg_marquardt(const OptionValues& options, const Problem& problem) {
   const std::string factorization = options.text("factorization");
+  if (options.text("jacobian") != "exact") return {Oracle::forward};
   if (problem.bounds() && options.text("damping") == "adaptive")
     return {Oracle::forward, Oracle::jacobian};
   if (options.text("damping") != "adaptive")

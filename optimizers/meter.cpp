@@ -64,6 +64,7 @@ void Meter::linearize(VectorRef theta, Linearization& at) {
   at.has_jacobian_ = at.has_hessian_ = at.has_sparse_ = false;
   problem_.forward(theta, *samples_, at.point_);
   see(at.point_.loss, theta);
+  disturb(at.point_);
   if (problem_.is_learned() && !has_seen_batch_) note_batch(at.point_);
 }
 
@@ -73,6 +74,15 @@ void Meter::linearize_physics(BatchRef x, Linearization& at) {
   at.problem_ = &problem_;
   at.has_jacobian_ = at.has_hessian_ = at.has_sparse_ = false;
   problem_.physics_forward(x, *samples_, at.point_);
+  disturb(at.point_);
+}
+
+// After the loss without jitter has been seen.
+void Meter::disturb(Point& at) {
+  const problems::Jitter* const jitter = problem_.jitter();
+  if (!jitter) return;
+  jitter->disturb(disturbed_++, samples_->target, at.y);
+  at.loss = problem_.loss_of(at.y);
 }
 
 const Matrix& Meter::truth() {
@@ -84,6 +94,7 @@ Real Meter::loss(VectorRef theta) {
   charge_forward(theta);
   problem_.forward(theta, *samples_, point_);
   see(point_.loss, theta);
+  disturb(point_);
   return point_.loss;
 }
 
@@ -112,6 +123,8 @@ void Meter::charge_forward(VectorRef theta) {
 bool Meter::pay_for_judged() {
   if (problem_.is_learned() || judged_.loss == paid_loss_ || judged_.loss == best_loss_)
     return true;
+  // A method that sees noisy losses keeps a point that is not the best.
+  if (problem_.jitter() && judged_theta_ == accepted_) return true;
   constexpr auto kForward = static_cast<std::size_t>(Oracle::forward);
   if (work_ + prices_[kForward] > budget_.work) {
     is_exhausted_ = true;
@@ -210,10 +223,10 @@ void Meter::prepare() {
 
 void Meter::persist(Archive& archive) {
   double wall = watch_.seconds(), processor = watch_.processor_seconds();
-  archive(counts_, work_, iteration_, next_kept_, best_loss_, next_target_, target_loss_,
-          target_x_error_, targets_met_, stall_loss_, stall_iteration_, status_, batch_loss_,
-          batch_x_error_, judged_.loss, judged_theta_, paid_loss_, is_prepaid_, previous_, wall,
-          processor);
+  archive(counts_, work_, disturbed_, iteration_, next_kept_, best_loss_, next_target_,
+          target_loss_, target_x_error_, targets_met_, stall_loss_, stall_iteration_, status_,
+          batch_loss_, batch_x_error_, judged_.loss, judged_theta_, paid_loss_, is_prepaid_,
+          previous_, wall, processor);
   const bool are_spectra_wanted =
       trace_.spectra.are_wanted;        // the caller decides this, not the file
   archive.raw(&trace_, sizeof trace_);  // plain data; no reader waits for its atomics

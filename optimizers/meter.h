@@ -61,6 +61,10 @@ class Linearization {
   const Matrix& x() const { return point_.x(); }  // (k, B)
   const Matrix& y() const { return point_.y; }    // (m, B)
   Real loss() const { return point_.loss; }
+  void set_jacobian(const Matrix& J) {  // the method's own approximation of it
+    J_ = J;
+    has_jacobian_ = true;
+  }
 
   void cotangent(Matrix& g) const {  // g = ∂L/∂y, (m, B)
     g.resize(point_.y.rows(), point_.y.cols());
@@ -191,6 +195,7 @@ class Meter {
   [[noreturn]] void refuse(Oracle oracle) const;
   [[noreturn]] void exhaust();
   void charge_forward(VectorRef theta);
+  void disturb(Point& at);
   bool look_at(VectorRef theta);
   bool pay_for_judged();
   bool is_out_of_work() const {
@@ -251,6 +256,7 @@ class Meter {
   OracleCounts counts_{};
   OracleCounts prices_;
   std::int64_t work_ = 0, iteration_ = 0, next_kept_ = 0;
+  std::uint64_t disturbed_ = 0;   // calls
   Real best_loss_, next_target_;  // the loss that meets the next of the 51 targets
   Real target_loss_;
   int targets_met_ = 0;

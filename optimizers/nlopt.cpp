@@ -101,10 +101,13 @@ struct NloptOptions {
   Index memory = kMemory;
   Real loss_scale = 1;    // of methods with gradients
   Real initial_step = 1;  // of the others, in units of NLopt's choice
+  Real first_step = 0;    // instead, in units of max(1, ‖θ₀‖∞)
 };
 
-void set_initial_step(nlopt_opt handle, const Vector& theta, Real multiple) {
-  if (multiple == 1) return;
+void set_initial_step(nlopt_opt handle, const Vector& theta, Real multiple, Real first) {
+  if (first > 0)
+    nlopt_set_initial_step1(handle, first * std::max<Real>(1, theta.lpNorm<Eigen::Infinity>()));
+  if (first > 0 || multiple == 1) return;
   Vector step(theta.size());
   nlopt_set_default_initial_step(handle, theta.data());
   nlopt_get_initial_step(handle, theta.data(), step.data());
@@ -132,7 +135,7 @@ class Nlopt final : public Optimizer {
   bool reports_iterations() const override { return true; }
   Status step(Meter& f, Vector& theta) override {
     const Handle handle = make_handle(algorithm_, theta.size(), options_.memory);
-    set_initial_step(handle.get(), theta, options_.initial_step);
+    set_initial_step(handle.get(), theta, options_.initial_step, options_.first_step);
     if (const Bounds* bounds = f.bounds()) set_bounds(handle.get(), theta, *bounds);
     Search search{f, handle.get(), options_.loss_scale, {}, theta, Vector(theta.size()), theta};
     const nlopt_result result = minimize(search, theta);
@@ -202,6 +205,9 @@ const Method kWithoutGradient[] = {
      true},
     {NLOPT_LN_SBPLX, Kind::derivative_free, "nlopt-sbplx", "Subplex (NLopt)",
      "Nelder-Mead on a sequence of subspaces", "NLopt 2.7; Rowan (1990)"},
+    {NLOPT_LN_NEWUOA, Kind::derivative_free, "nlopt-newuoa", "NEWUOA (NLopt)",
+     "min of a quadratic through 2n+1 points, its Hessian of least change, ‖d‖ ≤ Δ",
+     "NLopt 2.7; Powell (2006)"},
 };
 
 const OptionField kRemembered{
@@ -214,12 +220,24 @@ const OptionField kLossScale{"loss-scale",
 const OptionField kInitialStep{
     "initial-step", Real{1}, above(0), {}, "first step, in units of the one that NLopt chooses"};
 
+const OptionField kFirstStep{
+    "first-step",
+    Real{0},
+    at_least(0),
+    {},
+    "first step of each unknown, in units of max(1, ‖θ₀‖∞); 0: initial-step"};
+
 OptionTable options_of(const Method& m, Family family) {
-  if (family == Family::nlopt_derivative_free) return {kInitialStep};
+  if (family == Family::nlopt_derivative_free) return {kInitialStep, kFirstStep};
   return m.is_luksans() ? OptionTable{kRemembered, kLossScale} : OptionTable{kLossScale};
 }
 
+std::string too_few_unknowns(const OptionValues&, const Problem& problem) {
+  return problem.unknowns() < 2 ? "NEWUOA requires at least two unknowns" : "";
+}
+
 OptimizerEntry entry_of(const Method& m, Family family, OracleSet needs) {
+  const bool is_newuoa = m.algorithm == NLOPT_LN_NEWUOA;
   return {.name = m.name,
           .title = m.title,
           .family = family,
@@ -230,17 +248,20 @@ OptimizerEntry entry_of(const Method& m, Family family, OracleSet needs) {
           .needs = needs,
           .is_input_scale_invariant = m.is_input_scale_invariant,
           .needs_same_samples = true,
-          .keeps_bounds = true,
+          .keeps_bounds = !is_newuoa,
           .most_unknowns = family == Family::nlopt ? m.most_unknowns : kMostWithoutGradient,
           .options = options_of(m, family),
           .tunable = family == Family::nlopt ? Tunable{.option = "loss-scale", .below = 5}
                                              : Tunable{.option = "initial-step", .below = 4},
+          .in_all = !is_newuoa,  // of the suite forward
+          .objection = is_newuoa ? &too_few_unknowns : nullptr,
           .make = [algorithm = m.algorithm](const OptionValues& options, const OptimizerRegistry&) {
             return std::make_unique<Nlopt>(
                 algorithm,
                 NloptOptions{.memory = static_cast<Index>(options.number("memory", kMemory)),
                              .loss_scale = options.number("loss-scale", 1),
-                             .initial_step = options.number("initial-step", 1)});
+                             .initial_step = options.number("initial-step", 1),
+                             .first_step = options.number("first-step", 0)});
           }};
 }
 

@@ -23,6 +23,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "optimizers/differences.h"
 #include "optimizers/optimizer.h"
 #include "optimizers/sparse_least_squares.h"
 #include "optimizers/spectral_step.h"
@@ -33,7 +34,7 @@ namespace {
 struct GaussNewton {
   static constexpr bool kIsOnResidual = true;  // w = y − y*, else ∂L/∂y
   Real rate = 1, cutoff = 0;
-  std::string factorization = "orthogonal";
+  std::string factorization = "orthogonal", jacobian = "exact";
   KrylovLimits krylov;
 
   SpectralFilter filter(Index longest) const {
@@ -70,8 +71,12 @@ struct Spectral : Options {
     Matrix w;  // (m, B)
     SparseLeastSquares sparse;
     Vector inverse, scaled, moved;  // (n) D⁻¹, D d; (m) J d
+    DifferenceJacobian differences;
   };
-  static void persist(State& s, Archive& archive) { s.spectral.persist(archive); }
+  static void persist(State& s, Archive& archive) {
+    s.spectral.persist(archive);
+    if (Options::kIsOnResidual) s.differences.persist(archive);
+  }
   State init(Meter& f, const Vector&) const {
     State s;
     s.spectral = SpectralStep(factorization_named(this->factorization), this->krylov);
@@ -81,10 +86,13 @@ struct Spectral : Options {
   }
   Status step(Meter& f, Vector& theta, State& s) const {
     f.linearize(theta, s.at);
-    if (Options::kIsOnResidual)
+    if constexpr (Options::kIsOnResidual) {
       s.w = s.at.y() - f.target();
-    else
+      if (this->jacobian != "exact")
+        s.differences.renew(f, theta, this->jacobian == "central", s.at);
+    } else {
       s.at.cotangent(s.w);
+    }
     if (f.is_sparse()) return step_sparse(f, theta, s);
     const SpectralFilter filter = this->filter(std::max(s.w.size(), theta.size()));
     const bool is_taken = s.spectral.add(f, s.at, filter, s.w.reshaped(), -this->rate, theta);
@@ -106,6 +114,7 @@ template <class Options>
 OptimizerEntry spectral_entry(OptimizerEntry entry) {
   entry.needs_for = [](const OptionValues& options, const Problem& problem) {
     const auto o = read_options<Options>(options);
+    if (options.text("jacobian", "exact") != "exact") return OracleSet{Oracle::forward};
     if (o.factorization == "orthogonal" && is_solved_sparse(problem))
       return OracleSet{Oracle::forward, Oracle::sparse_jacobian};
     return needs_of(factorization_named(o.factorization), o.filter(0), problem);
@@ -126,6 +135,7 @@ void fields(GaussNewton& o, auto& field) {
         "Cholesky of JᵀJ with corrections where J is sparse and has 256 unknowns or more; by the "
         "thin SVD of J; by QR and the SVD of R; by the smaller Gram matrix of J; or by JJᵀ formed "
         "layer by layer");
+  field("jacobian", o.jacobian, kJacobians, kJacobianHelp);
 }
 
 void first_fields(auto& o, auto& field) {

@@ -11,6 +11,7 @@
 
 #include "core/decompose.h"
 #include "core/errors.h"
+#include "problems/differences.h"
 
 namespace isoline::problems {
 namespace {
@@ -341,13 +342,11 @@ OptionTable feature_table(const OptionTable& own) {
   return table;
 }
 
-Problem with_features(Problem plain, const OptionValues& options, const Draw& draw,
-                      const std::optional<Matrix>& target) {
-  if (options.empty()) return plain;
-  const Features features =
-      read_options<Features>(complete_options(option_table<Features>(), "features", options));
-  require(!plain.is_learned(),
-          "noise, model, scale, rotate, digits, tikhonov and order require mode=direct");
+namespace {
+
+// Those that change the data, the unknowns or the loss.
+Problem with_other_data(Problem plain, const Features& features, const Draw& draw,
+                        const std::optional<Matrix>& target) {
   require(features.tikhonov == 0 || plain.is_least_squares(),
           "tikhonov requires a least-squares loss, which this problem does not have");
   require(features.tikhonov > 0 || features.order == 0, "order=1 requires tikhonov above 0");
@@ -408,6 +407,24 @@ Problem with_features(Problem plain, const OptionValues& options, const Draw& dr
   featured.set_minimum(fit.loss);
   if (is_bound) featured.set_x_floor(featured.x_error(fit.x));
   return featured;
+}
+
+}  // namespace
+
+Problem with_features(Problem plain, const OptionValues& options, const Draw& draw,
+                      const std::optional<Matrix>& target) {
+  if (options.empty()) return plain;
+  const Features features =
+      read_options<Features>(complete_options(option_table<Features>(), "features", options));
+  require(!plain.is_learned(),
+          "noise, model, scale, rotate, digits, tikhonov, order, jitter and derivatives require "
+          "mode=direct");
+  Problem featured = with_other_data(std::move(plain), features, draw, target);
+  if (features.jitter == 0 && features.derivatives == "exact") return featured;
+  ProblemParts parts = std::move(featured).parts();
+  if (features.jitter > 0) parts.jitter = {features.jitter, draw.stream("jitter")};
+  if (features.derivatives != "exact") replace_derivatives(parts, features.derivatives);
+  return Problem(std::move(parts));
 }
 
 }  // namespace isoline::problems

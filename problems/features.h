@@ -1,6 +1,6 @@
 // Features that any direct problem can have, as options: noise in the data, data of another model,
-// badly scaled or rotated unknowns, few digits, regularization, bounds. Options with default values
-// do not appear in specs, records or cells.
+// badly scaled or rotated unknowns, few digits, regularization, bounds, noise of the calls, no
+// derivatives. Options with default values do not appear in specs, records or cells.
 #pragma once
 
 #include <optional>
@@ -19,6 +19,8 @@ struct Features {
   Real tikhonov = 0;
   Index order = 0;
   std::string bounds = "none";
+  Real jitter = 0;
+  std::string derivatives = "exact";
 };
 inline void fields(Features& o, auto& field) {
   field("noise", o.noise, between(0, 10),
@@ -35,6 +37,11 @@ inline void fields(Features& o, auto& field) {
   field("bounds", o.bounds, {"none", "wide", "active"},
         "a box around x*: wide, or with one upper bound in three below x*, so that the solution "
         "lies on bounds");
+  field("jitter", o.jitter, between(0, 10),
+        "σ of the noise of each call, which multiplies each residual by 1 + σz, z ~ N(0, 1)");
+  field("derivatives", o.derivatives, {"exact", "forward", "central", "none"},
+        "those of the problem; by forward or central differences, at the cost of their calls; or "
+        "none");
 }
 
 // Whether f_L is the loss of a fit from x*, which a run may better from elsewhere.

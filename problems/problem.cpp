@@ -12,6 +12,13 @@ namespace isoline::problems {
 
 using networks::Identity;
 
+void Jitter::disturb(std::uint64_t call, BatchRef target, BatchOut y) const {
+  RandomStream z = stream.of_sample(call);
+  for (Index b = 0; b < y.cols(); ++b)
+    y.col(b).array() +=
+        sigma * z.normal_vector(y.rows()).array() * (y.col(b) - target.col(b)).array();
+}
+
 Problem::Problem(ProblemParts parts) : parts_(std::move(parts)) {
   if (const auto& bounds = parts_.bounds) {
     require(!parts_.network && bounds->lower.size() == parts_.start.drawn.size() &&

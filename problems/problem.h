@@ -87,6 +87,15 @@ struct Bounds {
   }
 };
 
+// Noise of the calls: y ← y* + (1 + σz)(y − y*) for each residual, z ~ N(0, 1) by the number of
+// the call. What is judged has none.
+struct Jitter {
+  Real sigma;
+  RandomStream stream;
+
+  void disturb(std::uint64_t call, BatchRef target, BatchOut y) const;
+};
+
 // The parts of a problem. A direct problem leaves network, input and samples empty. A learning
 // problem leaves target, input, context and truth empty, which `samples` provides.
 struct ProblemParts {
@@ -105,9 +114,10 @@ struct ProblemParts {
   std::optional<Matrix> truth;       // the x* that made y*, (k, B), where there is one
   // Where the problem itself puts noise into y*, so that x* does not reproduce it: this x*, (k, 1).
   std::optional<Matrix> made_from;
-  std::optional<Real> noise_level;  // δ, the expected ‖y* − P(x*)‖ of noise in y*
-  Index penalties = 0;              // last rows of y that are no data, but a penalty
-  std::optional<Bounds> bounds;     // on θ = x of a direct problem
+  std::optional<Real> noise_level;    // δ, the expected ‖y* − P(x*)‖ of noise in y*
+  std::optional<Jitter> jitter = {};  // of the calls
+  Index penalties = 0;                // last rows of y that are no data, but a penalty
+  std::optional<Bounds> bounds;       // on θ = x of a direct problem
   // Distance from x to the nearest solution, the mean over samples, where solutions are known.
   std::function<Real(BatchRef x, const Batch& batch)> x_error;
   std::optional<Real> x_scale;  // ‖x*‖, for targets in x; found by Problem::x_scale where empty
@@ -155,6 +165,7 @@ class Problem {
     return parts_.made_from ? parts_.made_from : parts_.truth;
   }
   std::optional<Real> noise_level() const { return parts_.noise_level; }
+  const Jitter* jitter() const { return parts_.jitter ? &*parts_.jitter : nullptr; }
   Real discrepancy(const Point& at) const {  // ‖y − y*‖ of the data
     return (at.y - at.batch->target).topRows(outputs() - parts_.penalties).norm();
   }

@@ -6,10 +6,12 @@
 #include "benchmarks/cli/verb.h"
 #include "benchmarks/plan/catalog.h"
 #include "benchmarks/run/isolate.h"
+#include "core/differences.h"
 #include "core/json.h"
 #include "core/spec.h"
 #include "core/text.h"
 #include "problems/conformance.h"
+#include "problems/differences.h"
 #include "reports/sections/words.h"
 
 namespace isoline::benchmarks {
@@ -33,6 +35,18 @@ void declare(VerbArguments& verb, CheckArguments& given) {
 
 constexpr double kCheckSeconds = 120;
 
+// The noise of y in a call, and the steps of differences that follow from it.
+Json noise_of(const Problem& problem) {
+  constexpr Real kMost = 0.1;  // beyond, differences over the size of an unknown show noise alone
+  const Real noise = problems::relative_noise(problem, problem.standard_start());
+  return {{"property", fmt::format("noise of y (relative steps of differences {:.1e}, {:.1e})",
+                                   forward_step(noise), central_step(noise))},
+          {"figure", json_number(noise)},
+          {"limit", kMost},
+          {"reason", "y changes from call to call, or with the last digits of x"},
+          {"holds", noise <= kMost}};
+}
+
 Json findings_of(const Catalog& catalog, const Component& component, std::uint64_t seed) {
   const Problem problem = make_problem(catalog, component, seed);
   RandomStream stream(seed, component.name, "check");
@@ -43,6 +57,7 @@ Json findings_of(const Catalog& catalog, const Component& component, std::uint64
                    {"limit", json_number(finding.limit)},
                    {"reason", finding.reason},
                    {"holds", finding.holds()}});
+  if (!problem.is_learned()) all.push_back(noise_of(problem));
   return all;
 }
 

@@ -5,7 +5,10 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
+#include <cmath>
+#include <tuple>
 
+#include "problems/differences.h"
 #include "tests/problems/make.h"
 
 namespace isoline::problems {
@@ -161,6 +164,75 @@ TEST(Features, ActiveBoundsHaveTheLeastLossWithinThem) {
 TEST(Features, AreForDirectProblemsOfLeastSquares) {
   EXPECT_THROW(featured("sine[mode=learn]", {{"noise", 0.1}}), UsageError);
   EXPECT_THROW(featured("poisson[N=4]", {{"order", Index{1}}}), UsageError);
+}
+
+TEST(Features, JitterIsOfTheCallsAndNotOfWhatIsJudged) {
+  constexpr Real kSigma = 0.01;
+  const Problem plain = make("poisson[N=32]");
+  const Problem noisy = featured("poisson[N=32]", {{"jitter", kSigma}});
+  EXPECT_EQ(loss_at_start(plain), loss_at_start(noisy));
+  EXPECT_EQ(plain.minimum(), noisy.minimum());
+  Point at;
+  noisy.forward(noisy.start(), at);
+  const Matrix residual = at.y - noisy.target();
+  const auto relative = [&](std::uint64_t call) -> Matrix {
+    Matrix y = at.y;
+    noisy.jitter()->disturb(call, noisy.target(), y);
+    return (y - at.y).cwiseQuotient(residual);
+  };
+  const Matrix first = relative(0);
+  EXPECT_EQ(first, relative(0));
+  EXPECT_GT((first - relative(1)).norm(), 0);
+  const auto m = static_cast<Real>(first.size());
+  EXPECT_NEAR(first.norm() / std::sqrt(m), kSigma, 4 * kSigma / std::sqrt(2 * m));
+  EXPECT_NEAR(first.mean(), 0, 4 * kSigma / std::sqrt(m));
+}
+
+TEST(Features, DerivativesByDifferencesAreTheExactOnesAtThePriceOfTheirCalls) {
+  for (const char* spec : {"brown-dennis", "wood", "burgers[N=32]"}) {
+    const Problem exact = make(spec);
+    Point at;
+    Matrix J, differences;
+    exact.forward(exact.start(), at);
+    exact.jacobian(J, at);
+    for (const auto& [kind, calls, tolerance] :
+         {std::tuple{"forward", 1, 1e-5}, std::tuple{"central", 2, 1e-8}}) {
+      const Problem problem = featured(spec, {{"derivatives", std::string(kind)}});
+      Point point;
+      problem.forward(problem.start(), point);
+      problem.jacobian(differences, point);
+      EXPECT_LE((differences - J).norm(), tolerance * J.norm()) << spec << ", " << kind;
+      const auto price = problem.prices()[static_cast<std::size_t>(Oracle::jacobian)];
+      EXPECT_EQ(price, calls * problem.unknowns());
+    }
+    const OracleSet offers = featured(spec, {{"derivatives", std::string("none")}}).offers();
+    for (const Oracle oracle :
+         {Oracle::pullback, Oracle::jacobian, Oracle::hessian, Oracle::inverse})
+      EXPECT_FALSE(offers.contains(oracle)) << spec;
+  }
+}
+
+// Steps of the square root of rounding would see steps of y instead of its slope.
+TEST(Features, DifferencesKnowTheNoiseOfTheValues) {
+  const std::string spec = "brown-dennis";
+  const Problem exact = make(spec);
+  const Problem rounded = featured(spec, {{"digits", Real{6}}});
+  const Real noise = relative_noise(rounded, rounded.start());
+  EXPECT_GT(noise, 1e-9);
+  EXPECT_LT(noise, 1e-5);
+  EXPECT_LT(relative_noise(exact, exact.start()), 1e-14);
+  const Problem jittered = featured(spec, {{"jitter", 1e-3}});
+  EXPECT_GT(relative_noise(jittered, jittered.start()), 1e-4);
+  EXPECT_LT(relative_noise(jittered, jittered.start()), 1e-2);
+  Point at, point;
+  Matrix J, differences;
+  exact.forward(exact.start(), at);
+  exact.jacobian(J, at);
+  const Problem problem =
+      featured(spec, {{"digits", Real{6}}, {"derivatives", std::string("forward")}});
+  problem.forward(problem.start(), point);
+  problem.jacobian(differences, point);
+  EXPECT_LE((differences - J).norm(), 0.05 * J.norm());
 }
 
 }  // namespace

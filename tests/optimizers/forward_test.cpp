@@ -1,0 +1,145 @@
+// Methods that call the residuals and no derivatives, and noise of the calls.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+
+#include "core/decompose.h"
+#include "core/random.h"
+#include "core/status.h"
+#include "problems/features.h"
+#include "tests/optimizers/run.h"
+#include "tests/optimizers/trial_problems.h"
+
+namespace isoline::optimizers {
+namespace {
+
+using problems::Draw;
+using problems::with_features;
+
+Problem featured(const std::string& spec, const OptionValues& features, std::uint64_t seed = 0) {
+  return with_features(make(spec), features, Draw(seed, spec));
+}
+
+// The cases of Moré and Wild that a method solves to 1e-5 within 100 (n + 1) calls.
+int solved_cases(const std::string& method, Real jitter, const std::string& except = "") {
+  int solved = 0;
+  const auto& options = problems::all_problems().at("more-wild").options;
+  const auto field = std::ranges::find(options, "case", &OptionField::name);
+  for (const std::string& name : field->choices) {
+    if (name.ends_with("-medium") || name == except) continue;
+    const std::string spec = "more-wild[case=" + name + "]";
+    const Problem problem = jitter > 0 ? featured(spec, {{"jitter", jitter}}) : make(spec);
+    const Outcome outcome = run(problem, method,
+                                {.iterations = 100'000,
+                                 .work = 100 * (problem.unknowns() + 1),
+                                 .target = 1e-8,
+                                 .stall = 0});
+    solved += outcome.trace->hit[rung_of(1e-5)].iteration >= 0 ? 1 : 0;
+  }
+  return solved;
+}
+
+// Measured: 50, 39 and 49; published ones of DFO-LS: 51 without noise and 38 with noise. The last
+// digits of rounding decide over one or two cases.
+TEST(Forward, DerivativeFreeGaussNewtonSolvesTheCasesOfMoreAndWild) {
+  EXPECT_GE(solved_cases("dfo-gn", 0), 48);
+  EXPECT_GE(solved_cases("dfo-gn", 1e-2), 36);
+}
+TEST(Forward, LevenbergMarquardtByDifferencesSolvesTheCasesOfMoreAndWild) {
+  EXPECT_GE(solved_cases("levenberg-marquardt[jacobian=differences]", 0), 47);
+}
+
+TEST(Forward, NoisyRunsRepeatAndAreJudgedWithoutNoise) {
+  const Problem problem = featured("more-wild[case=bard-good-start]", {{"jitter", 1e-2}});
+  for (const char* method : {"dfo-gn", "nlopt-neldermead", "levenberg-marquardt"}) {
+    const Budget budget{.iterations = 1000, .work = 200, .target = 0};
+    const Outcome one = run(problem, method, budget), other = run(problem, method, budget);
+    EXPECT_EQ(one.theta, other.theta) << method;
+    EXPECT_EQ(one.trace->last.loss, loss_at(problem, one.theta)) << method;
+    const Problem again = featured("more-wild[case=bard-good-start]", {{"jitter", 1e-2}}, 1);
+    EXPECT_NE(one.theta, run(again, method, budget).theta) << method;
+  }
+}
+
+// A linear model is exact for a linear problem, from any simplex.
+TEST(Forward, DerivativeFreeGaussNewtonSolvesALinearProblemAtOnce) {
+  const Problem problem = make("more-wild[case=linear-full-rank-bad-start]");
+  const Outcome outcome =
+      run(problem, "dfo-gn", {.iterations = 1000, .work = 3 * (problem.unknowns() + 1)});
+  EXPECT_EQ(outcome.status, Status::target);
+}
+
+TEST(Forward, CentralDifferencesGiveTheStepsOfExactDerivatives) {
+  constexpr int kSteps = 5;
+  for (const std::string spec : {"brown-dennis", "helical-valley", "wood", "burgers[N=16]"}) {
+    const Problem exact = make(spec);
+    const Outcome one = run(exact, "levenberg-marquardt", iterations(kSteps));
+    const auto expect_same = [&](const Outcome& other, const char* how) {
+      ASSERT_EQ(one.path.size(), other.path.size()) << spec;
+      for (std::size_t i = 0; i < one.path.size(); ++i)
+        expect_near(other.path[i], one.path[i], 1e-5, spec + how);
+    };
+    const Problem central = featured(spec, {{"derivatives", std::string("central")}});
+    expect_same(run(central, "levenberg-marquardt", iterations(kSteps)), ", problem");
+    expect_same(
+        run(exact, "levenberg-marquardt[jacobian=central,broyden=false]", iterations(kSteps)),
+        ", method");
+  }
+}
+
+TEST(Forward, WithoutDerivativesOnlyMethodsThatNeedNoneApply) {
+  const Problem problem = featured("brown-dennis", {{"derivatives", std::string("none")}});
+  EXPECT_NE(why("levenberg-marquardt", problem), "");
+  for (const char* method : {"dfo-gn", "levenberg-marquardt[jacobian=differences]",
+                             "gauss-newton[jacobian=central]", "nlopt-newuoa"})
+    EXPECT_EQ(why(method, problem), "") << method;
+}
+
+TEST(Forward, DerivativeFreeGaussNewtonEndsWhereNoResidualIsFinite) {
+  const Problem problem =
+      linear(Eigen::Matrix2d{{1, 0}, {0, 1e200}}, Eigen::Vector2d(1, 1e200), Eigen::Vector2d(0, 0));
+  const Outcome outcome = run(problem, "dfo-gn", {.iterations = 1000, .work = 1000});
+  EXPECT_EQ(outcome.status, Status::diverged);
+}
+
+// Four members around a start of more unknowns: their mean moves in a space of three dimensions.
+TEST(Forward, EnsembleInversionStaysInTheSpanOfItsFirstEnsemble) {
+  const Problem problem = make("variably-dimensioned");
+  const Index n = problem.unknowns();
+  for (const char* method : {"eki[members=4]", "etki[members=4]"}) {
+    const Outcome outcome = run(problem, method, iterations(12));
+    ASSERT_EQ(outcome.path.size(), 12U) << method;
+    Matrix steps(n, 11);  // relative to the first mean
+    for (Index i = 0; i < 11; ++i)
+      steps.col(i) = outcome.path[static_cast<std::size_t>(i + 1)] - outcome.path[0];
+    Vector sigma;
+    ASSERT_TRUE(singular_values(steps, sigma));
+    ASSERT_GT(n, 3);
+    EXPECT_GT(sigma[0], 0) << method;
+    EXPECT_LE(sigma[3], 1e-12 * sigma[0]) << method;
+  }
+}
+
+TEST(Forward, UnscentedInversionFindsTheLeastSquaresSolutionOfALinearProblem) {
+  RandomStream stream(0, "uki", "matrix");
+  const Matrix M = stream.normal_vector(24).reshaped(8, 3);
+  const Vector target = stream.normal_vector(8), start = Vector::Ones(3);
+  const Problem problem = linear(M, start, target);
+  const Outcome outcome = run(problem, "uki", iterations(60));
+  Vector best;
+  ASSERT_TRUE(least_squares(M, target, 0, best));
+  EXPECT_GT((M * best - target).norm(), 0.1);
+  expect_near(outcome.theta, best, 1e-8, "uki");
+}
+
+// With the covariance matrix adapted, its condition number no longer matters.
+TEST(Forward, EvolutionStrategyAdaptsToAnIllConditionedProblem) {
+  const Problem problem =
+      linear(Eigen::Matrix2d{{1000, 0}, {0, 1}}, Eigen::Vector2d(1, 1), Eigen::Vector2d(3000, -2));
+  const Outcome outcome = run(problem, "cma-es", {.iterations = 400, .target = 0});
+  expect_near(outcome.theta, Eigen::Vector2d(3, -2), 1e-6, "cma-es");
+}
+
+}  // namespace
+}  // namespace isoline::optimizers
