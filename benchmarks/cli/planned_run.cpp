@@ -136,7 +136,7 @@ void declare_run(VerbArguments& verb, RunArguments& given) {
   verb.text(
       "--shard", given.shard,
       "Run only one shard, such as 3/16; its records are written to shards/3-of-16 in the result "
-      "folder. auto: take the shard from ISOLINE_SHARD or from the task of the SLURM array");
+      "folder. auto: take the shard from ISOLINE_SHARD or from the task of a scheduler's array");
   const Argument dry =
       verb.flag("--dry-run", given.is_dry,
                 "Only print the plan: its cells, their states and the predicted time");

@@ -377,6 +377,44 @@ TEST(Shard, IsReadAsAFractionAndAsTheTaskOfAnArray) {
       "2/5");
 }
 
+// Each with its own variables; PBS and Kubernetes do not set the number of tasks.
+TEST(Shard, IsTheTaskOfAnArrayOfAnyScheduler) {
+  const auto shard = [](const std::map<std::string, std::string>& variables) {
+    return shard_of("auto", environment_of(variables)).text();
+  };
+  EXPECT_EQ(shard({{"PBS_ARRAY_INDEX", "4"}, {"ISOLINE_SHARDS", "4"}}), "4/4");
+  EXPECT_EQ(shard({{"PBS_ARRAYID", "1"}, {"ISOLINE_SHARDS", "4"}}), "1/4");
+  EXPECT_EQ(shard({{"LSB_JOBINDEX", "5"}, {"LSB_JOBINDEX_END", "9"}, {"LSB_JOBINDEX_STEP", "2"}}),
+            "3/5");
+  EXPECT_EQ(shard({{"SGE_TASK_ID", "12"},
+                   {"SGE_TASK_FIRST", "10"},
+                   {"SGE_TASK_LAST", "13"},
+                   {"SGE_TASK_STEPSIZE", "2"}}),
+            "2/2");
+  EXPECT_EQ(shard({{"_CONDOR_PROCNO", "0"}, {"_CONDOR_NPROCS", "4"}}), "1/4");
+  EXPECT_EQ(shard({{"JOB_COMPLETION_INDEX", "3"}, {"ISOLINE_SHARDS", "4"}}), "4/4");
+  EXPECT_EQ(shard({{"LSB_JOBINDEX", "0"},
+                   {"SGE_TASK_ID", "undefined"},
+                   {"JOB_COMPLETION_INDEX", "0"},
+                   {"ISOLINE_SHARDS", "2"}}),
+            "1/2")
+      << "jobs of LSF and SGE that are not arrays have these values";
+}
+
+TEST(Shard, IsNotGuessedFromTwoSchedulersOrWithoutTheNumberOfTasks) {
+  const auto complaint = [](const std::map<std::string, std::string>& variables) {
+    return refusal([&] { shard_of("auto", environment_of(variables)); });
+  };
+  const std::string two =
+      complaint({{"PBS_ARRAY_INDEX", "1"}, {"SGE_TASK_ID", "2"}, {"ISOLINE_SHARDS", "4"}});
+  EXPECT_NE(two.find("PBS_ARRAY_INDEX=1, SGE_TASK_ID=2"), two.npos) << two;
+  const std::string uncounted = complaint({{"PBS_ARRAY_INDEX", "1"}});
+  EXPECT_NE(uncounted.find("set ISOLINE_SHARDS"), uncounted.npos) << uncounted;
+  EXPECT_NE(complaint({{"PBS_ARRAY_INDEX", "0"}, {"ISOLINE_SHARDS", "4"}}), "");
+  EXPECT_NE(complaint({{"JOB_COMPLETION_INDEX", "4"}, {"ISOLINE_SHARDS", "4"}}), "");
+  EXPECT_NE(complaint({{"SGE_TASK_ID", "1"}, {"SGE_TASK_LAST", "4"}}), "");
+}
+
 TEST(Shard, ThatDoesNotExistIsRefused) {
   for (const char* text : {"", "3", "0/4", "5/4", "a/4", "1/", "/4", "1/0", "-1/4", "1/1000000",
                            "1/4 ", "99999999999/99999999999"})

@@ -76,7 +76,7 @@ const std::vector<std::pair<std::string, std::string>> kMistakes = {
     {"claims zzzz", "`isoline claims --list --all`"},
     {"run quick --in-process --dry-run", "--dry-run"},
     {"run quick --shard 5/4", "1 ≤ I ≤ N"},
-    {"run quick --shard auto", "ISOLINE_SHARD or SLURM_ARRAY_TASK_ID"},
+    {"run quick --shard auto", "ISOLINE_SHARD, SLURM_ARRAY_TASK_ID"},
     {"plan quick --shards 0", "--shards"},
     {"status absent", "absent contains neither"},
     {"run quik", "did you mean 'quick'"},
