@@ -169,7 +169,7 @@ PlannedRun planned_run(const RunArguments& given, const Catalog& catalog) {
   require(size.cells <= most, [&] {
     return too_large(size, most) + (given.allow_large ? "" : "; --allow-large lifts the limit");
   });
-  PlannedRun all{suite.name, expand(catalog, suite, rates, most), given.out, std::move(rates)};
+  PlannedRun all{suite.label(), expand(catalog, suite, rates, most), given.out, std::move(rates)};
   if (is_suite && is_limited)
     all.requests = filtered(catalog, std::move(all.requests), given.problem, given.optimizer);
   if (!all.folder.empty()) return all;

@@ -16,6 +16,7 @@
 #include "core/json.h"
 #include "core/random.h"
 #include "core/records/json_view.h"
+#include "core/records/suites.h"
 #include "core/spec.h"
 #include "core/text.h"
 #include "problems/problem.h"
@@ -51,6 +52,34 @@ TEST(Suites, OfTheTreeAreWellFormedAndPlanEachCellOnceByWorkAndIterations) {
       EXPECT_TRUE(std::isinf(cell.budget.seconds)) << cell.problem.spec;
     }
   }
+}
+
+// Optimizers are not part of the version: "*" selects new ones, too.
+TEST(Suites, WhoseSettingsChangeHaveANewVersion) {
+  for (const auto& [name, text] : builtin_suites()) {
+    const Json suite = parse_json(std::string(text), name);
+    std::set<std::string> settings;
+    for (Request cell : cells_of(name)) {
+      cell.optimizer = {};
+      settings.insert(cell_digest(cell));
+    }
+    std::string all = read_suite(name).label();
+    for (const std::string& setting : settings) all += "\n" + setting;
+    EXPECT_EQ(suite.value("settings", ""), digest(all))
+        << "the settings of " << name
+        << " are not those of its version; raise \"version\", and set "
+        << "\"settings\" to the digest above, which belongs to " << read_suite(name).label();
+  }
+}
+
+TEST(Suites, OfTwoVersionsAreNotCombined) {
+  std::vector<std::string> suites = {"quick", "nist@3"};
+  add_suite(suites, "quick@1");
+  add_suite(suites, "notebook@1");
+  EXPECT_EQ(suites, (std::vector<std::string>{"quick@1", "nist@3", "notebook@1"}));
+  const std::string reason = refusal([&] { add_suite(suites, "nist@4"); });
+  EXPECT_NE(reason.find("nist@3 and nist@4"), reason.npos) << reason;
+  EXPECT_NE(refusal([&] { add_suite(suites, "nist"); }), "") << "it is version 1";
 }
 
 Json good_suite() {
