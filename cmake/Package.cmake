@@ -1,6 +1,24 @@
 # In the portable build, `cpack` makes a Debian package of the program for machines without a compiler.
 # It depends on the libraries that the program links.
 install(TARGETS isoline COMPONENT program)
+
+# Completions and the manual page, written by the installed program. Debian's zsh reads the
+# completions of packages from a folder of their own.
+set(zsh share/zsh/site-functions/_isoline)
+if(ISOLINE_PORTABLE)
+  set(zsh share/zsh/vendor-completions/_isoline)
+endif()
+foreach(file "completion;bash;share/bash-completion/completions/isoline" "completion;zsh;${zsh}"
+             "completion;fish;share/fish/vendor_completions.d/isoline.fish"
+             "man;share/man/man1/isoline.1")
+  list(POP_BACK file path)
+  install(CODE "
+    set(file \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${path}\")
+    get_filename_component(folder \"\${file}\" DIRECTORY)
+    file(MAKE_DIRECTORY \"\${folder}\")
+    execute_process(COMMAND \"$<TARGET_FILE:isoline>\" ${file} OUTPUT_FILE \"\${file}\"
+                    COMMAND_ERROR_IS_FATAL ANY)" COMPONENT program)
+endforeach()
 if(NOT ISOLINE_PORTABLE)  # a program for this machine's processor may not run on another
   return()
 endif()

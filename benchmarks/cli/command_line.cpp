@@ -38,6 +38,23 @@ constexpr const char* kExamples =
     "Exit codes: 0 success, 1 usage error, 2 failed cells or a regression, 3 improvements only, "
     "4 not comparable, 130 interrupted.";
 
+// The groups of verbs in the help: the greatest help_position of each.
+struct VerbGroup {
+  int last;
+  const char* title;
+};
+constexpr VerbGroup kGroups[] = {{29, "Run cells"},
+                                 {129, "Read results"},
+                                 {189, "Problems and optimizers"},
+                                 {229, "Tune and train"},
+                                 {299, "The program itself"}};
+
+const char* group_of(const Verb& verb) {
+  return std::ranges::find_if(
+             kGroups, [&](const VerbGroup& group) { return verb.help_position <= group.last; })
+      ->title;
+}
+
 template <class Number>
 std::optional<Number> number_in(std::string_view text) {
   Number value{};
@@ -256,7 +273,7 @@ void CommandLine::declare(const Verb& verb) {
   if (verb.declare) verb.declare(arguments);
   const char* between = verb.notes.empty() ? "" : "\n\n";
   declared.footer(fmt::format("Examples:\n{}{}{}", verb.examples, between, verb.notes))
-      ->group("Commands");
+      ->group(group_of(verb));
   declared.callback([this, &verb] {
     if (!helped_.empty()) require_verb(helped_);
     if (runs_) exit_code_ = verb.run(session_);
@@ -296,6 +313,10 @@ std::string CommandLine::complaint(const CLI::ParseError& error) const {
 }
 
 int CommandLine::read(int count, char** arguments) {
+  if (count == 1) {
+    if (runs_) say(stdout, help_text());
+    return kGood;
+  }
   if (count > 1 && arguments[1][0] != '-') require_verb(arguments[1]);
   try {
     app_.parse(count, arguments);
@@ -324,9 +345,11 @@ std::vector<Verb> all_verbs() {
   for (const auto& [name, verb] : registry) verbs.push_back(verb);
   std::ranges::stable_sort(verbs, {}, &Verb::help_position);
   verbs.push_back({.name = "help",
+                   .help_position = 280,
                    .summary = "Print the help of the program or of a command",
                    .examples = "  isoline help\n  isoline help run"});
   verbs.push_back({.name = "version",
+                   .help_position = 290,
                    .summary = "Print the version",
                    .examples = "  isoline version",
                    .run = [](Session&) {
@@ -337,6 +360,25 @@ std::vector<Verb> all_verbs() {
 }
 
 std::string program_examples() { return kExamples; }
+std::string program_summary() { return kAbout; }
+
+std::vector<ArgumentText> arguments_of(const Verb& verb) {
+  Session none("", {});
+  CLI::App declared(verb.summary, verb.name);
+  VerbArguments arguments(declared, none);
+  if (verb.declare) verb.declare(arguments);
+  std::vector<ArgumentText> all;
+  for (const CLI::Option* option : declared.get_options()) {
+    const auto choices = arguments.choices().find(option);
+    all.push_back({.name = option->get_name(true),
+                   .value = option->get_items_expected_max() > 0 ? option->get_type_name() : "",
+                   .about = option->get_description(),
+                   .choices = choices == arguments.choices().end() ? std::vector<std::string>()
+                                                                   : choices->second});
+    if (!option->get_lnames().empty()) all.back().name = "--" + option->get_lnames().front();
+  }
+  return all;
+}
 
 // --- arguments
 
@@ -361,6 +403,7 @@ Argument Argument::one_of(const std::vector<std::string>& names) const {
     return is_known ? "" : unknown_name("value", given, names);
   };
   option_->check(refuse);
+  (*choices_)[option_] = names;
   return *this;
 }
 
@@ -371,6 +414,11 @@ Argument Argument::between_commas() const {
 
 Argument Argument::one_each() const {
   option_->allow_extra_args(false);
+  return *this;
+}
+
+Argument Argument::may_be_empty() const {
+  option_->get_validator("")->active(false);  // refuse_empty, the first validator of every option
   return *this;
 }
 
@@ -390,16 +438,16 @@ Argument Argument::excludes(const Argument& other) const {
 }
 
 Argument VerbArguments::text(const char* name, std::string& value, const char* about) {
-  return Argument(*option(verb_, name, value, about));
+  return argument(*option(verb_, name, value, about));
 }
 
 Argument VerbArguments::texts(const char* name, std::vector<std::string>& values,
                               const char* about) {
-  return Argument(*option(verb_, name, values, about));
+  return argument(*option(verb_, name, values, about));
 }
 
 Argument VerbArguments::flag(const char* name, bool& value, const char* about) {
-  return Argument(*verb_.add_flag(name, value, about));
+  return argument(*verb_.add_flag(name, value, about));
 }
 
 void VerbArguments::whole(const char* name, int& value, const char* about, WholeRange range) {
@@ -419,7 +467,7 @@ void VerbArguments::whole_or_never(const char* name, std::int64_t& value, const 
 
 Argument VerbArguments::real(const char* name, double& value, const Range& range,
                              const char* about) {
-  return Argument(*number(verb_, name, "FLOAT", value, about,
+  return argument(*number(verb_, name, "FLOAT", value, about,
                           [range](auto& of, auto& text) { return read_real(of, text, range); }));
 }
 

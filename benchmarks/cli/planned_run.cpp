@@ -136,7 +136,7 @@ void declare_run(VerbArguments& verb, RunArguments& given) {
   verb.text(
       "--shard", given.shard,
       "Run only one shard, such as 3/16; its records are written to shards/3-of-16 in the result "
-      "folder. auto: take the shard from ISOLINE_SHARD or from the task of the SLURM array");
+      "folder. auto: take the shard from ISOLINE_SHARD or from the task of a scheduler's array");
   const Argument dry =
       verb.flag("--dry-run", given.is_dry,
                 "Only print the plan: its cells, their states and the predicted time");
@@ -169,7 +169,7 @@ PlannedRun planned_run(const RunArguments& given, const Catalog& catalog) {
   require(size.cells <= most, [&] {
     return too_large(size, most) + (given.allow_large ? "" : "; --allow-large lifts the limit");
   });
-  PlannedRun all{suite.name, expand(catalog, suite, rates, most), given.out, std::move(rates)};
+  PlannedRun all{suite.label(), expand(catalog, suite, rates, most), given.out, std::move(rates)};
   if (is_suite && is_limited)
     all.requests = filtered(catalog, std::move(all.requests), given.problem, given.optimizer);
   if (!all.folder.empty()) return all;

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -37,22 +38,26 @@ class Session {
   std::shared_ptr<const Catalog> catalog_;
 };
 
+using ListedValues = std::map<const CLI::Option*, std::vector<std::string>>;
+
 // One argument. Each function adds a property and returns the argument.
 class Argument {
  public:
-  explicit Argument(CLI::Option& option) : option_(&option) {}
+  Argument(CLI::Option& option, ListedValues& choices) : option_(&option), choices_(&choices) {}
   Argument required() const;
   Argument shown() const;  // its default, in the help
   Argument shown(const std::string& standard) const;
   Argument one_of(const std::vector<std::string>& names) const;
   Argument between_commas() const;
   Argument one_each() const;  // the option may occur more than once, with one value each
-  Argument joined() const;    // joined by commas, if it occurs more than once
+  Argument may_be_empty() const;
+  Argument joined() const;  // joined by commas, if it occurs more than once
   Argument needs(const Argument& other) const;
   Argument excludes(const Argument& other) const;
 
  private:
   CLI::Option* option_;
+  ListedValues* choices_;
 };
 
 struct WholeRange {
@@ -76,16 +81,20 @@ class VerbArguments {
   void seed(const char* name, std::uint64_t& value, const char* about);
   void time(const char* name, double& seconds, const char* about);
   void memory(const char* name, std::int64_t& bytes, const char* about, int least_megabytes = 16);
-  void plugins();  // --plugin, of the session
+  void plugins();                                           // --plugin, of the session
+  const ListedValues& choices() const { return choices_; }  // of the arguments with one_of()
 
  private:
+  Argument argument(CLI::Option& option) { return {option, choices_}; }
+
   CLI::App& verb_;
   Session& session_;
+  ListedValues choices_;
 };
 
 struct Verb {
   std::string name;
-  int help_position = 0;  // the help lists verbs in ascending order
+  int help_position = 0;  // the help lists verbs in ascending order, in groups (command_line.cpp)
   std::string summary;
   std::string examples;  // lines that begin with "  isoline "
   std::string notes = {};
@@ -108,6 +117,18 @@ void register_verbs(VerbRegistry& registry);  // generated: one call per file
 
 // All verbs, in the order of the help; `help` and `version` are the last.
 std::vector<Verb> all_verbs();
+
+// An argument as its declaration describes it, for completions and the manual.
+struct ArgumentText {
+  std::string name;   // "--seeds", or "SUITE" of a positional argument
+  std::string value;  // the type of its value, empty if it has none
+  std::string about;
+  std::vector<std::string> choices;  // all values that it can have; empty: not listed
+};
+std::vector<ArgumentText> arguments_of(const Verb& verb);
+
+// The first sentences of the help.
+std::string program_summary();
 
 // Runs the verb of the arguments and returns its exit code; UsageError if the arguments are wrong.
 // `program` is the name that the user called.

@@ -22,6 +22,7 @@
 #include "core/records/record.h"
 #include "core/records/request.h"
 #include "core/records/sheet.h"
+#include "core/records/suites.h"
 #include "core/seeds.h"
 #include "core/text.h"
 
@@ -128,19 +129,19 @@ void go_on() {
 
 // By cell; the least where a digest has two.
 Plan plan_union(const std::vector<Plan>& plans) {
-  std::set<std::string> suites;
+  Plan all;
   std::map<std::string, PlannedCell> cells;
   const auto key = [](const PlannedCell& cell) {
     return std::tie(cell.problem, cell.optimizer, cell.seed, cell.cell);
   };
   for (const Plan& plan : plans) {
-    suites.insert(plan.suites.begin(), plan.suites.end());
+    for (const std::string& suite : plan.suites) add_suite(all.suites, suite);
     for (const PlannedCell& cell : plan.cells) {
       const auto [at, is_first] = cells.emplace(cell.cell, cell);
       if (!is_first && key(cell) < key(at->second)) at->second = cell;
     }
   }
-  Plan all{.suites = {suites.begin(), suites.end()}, .cells = {}};
+  std::ranges::sort(all.suites);
   for (const auto& [digest, cell] : cells) all.cells.push_back(cell);
   std::ranges::sort(all.cells, {}, key);
   return all;

@@ -187,9 +187,16 @@ void require_valid(const Json& json, const std::string& schema, const std::strin
   });
 }
 
+std::string Suite::label() const {
+  return version > 0 ? fmt::format("{}@{}", name, version) : name;
+}
+
 Suite suite_from_json(const Json& json, const std::string& origin) {
   require_valid(json, "suite", origin);
-  Suite suite{.name = json.at("name"), .title = json.value("title", ""), .blocks = {}};
+  Suite suite{.name = json.at("name"),
+              .title = json.value("title", ""),
+              .version = amount_in(json, "version", 0),
+              .blocks = {}};
   if (json.contains("cells_of")) suite.blocks = builtin_suite(json["cells_of"]).blocks;
   try {
     for (const Json& block : json.value("matrix", Json::array()))

@@ -32,8 +32,11 @@ struct MatrixBlock {
 
 struct Suite {
   std::string name, title;
+  std::int64_t version = 0;  // 0: none is stated
   std::vector<MatrixBlock> blocks;
   OptionValues problem_options = {};  // of every problem, besides those of its spec
+
+  std::string label() const;  // "quick@1", as plans name it
 };
 
 // The spec's own options, and those of the row that it leaves open; the row may be null.

@@ -48,7 +48,15 @@ double seconds_since(std::int64_t nanoseconds) {
   return 1e-9 * static_cast<double>(monotonic_nanoseconds() - nanoseconds);
 }
 
-void clear_line() { std::fputs("\r\x1b[K", stderr); }  // the only control sequence that we emit
+// Besides these, the program emits no control sequences.
+void clear_line() { std::fputs("\r\x1b[K", stderr); }
+constexpr const char *kGreen = "\x1b[32m", *kUsualColour = "\x1b[0m";
+
+// no-color.org: any text in NO_COLOR but the empty one switches colours off.
+bool wants_colour() {
+  const char* refusal = std::getenv("NO_COLOR");
+  return refusal == nullptr || *refusal == 0;
+}
 
 }  // namespace
 
@@ -59,6 +67,15 @@ std::string duration_text(double seconds) {
   if (whole >= 3600) return fmt::format("{} h {:02} min", whole / 3600, whole / 60 % 60);
   if (whole >= 60) return fmt::format("{} min {:02} s", whole / 60, whole % 60);
   return fmt::format("{} s", whole);
+}
+
+std::string progress_bar(double part, std::size_t columns, bool has_colour) {
+  const auto done = static_cast<std::size_t>(std::clamp(part, 0.0, 1.0) * columns);
+  std::string text = has_colour ? kGreen : "";
+  for (std::size_t i = 0; i < done; ++i) text += "█";
+  if (has_colour) text += kUsualColour;
+  for (std::size_t i = done; i < columns; ++i) text += "░";
+  return text;
 }
 
 Progress::Style Progress::style_of(int descriptor) {
@@ -105,8 +122,15 @@ void Progress::show(bool now) {
   if (style_ == Style::silent || (!now && seconds_since(shown_) < pause)) return;
   shown_ = monotonic_nanoseconds();
   if (style_ == Style::live) {
+    constexpr std::size_t kBar = 20, kLeastText = 40;  // columns
+    std::size_t columns = terminal_width(STDERR_FILENO) - 1;
     clear_line();
-    say(stderr, cut(printable(line()), terminal_width(STDERR_FILENO) - 1));
+    if (total_ > 0 && columns > kBar + kLeastText) {
+      const double part = static_cast<double>(already_ + done_) / static_cast<double>(total_);
+      std::fputs((progress_bar(part, kBar, wants_colour()) + " ").c_str(), stderr);  // not escaped
+      columns -= kBar + 1;
+    }
+    say(stderr, cut(printable(line()), columns));
     std::fflush(stderr);
     is_dirty_ = true;
   } else {

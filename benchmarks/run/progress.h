@@ -57,6 +57,9 @@ class Progress {
   bool is_dirty_ = false;  // a live line stands on the terminal
 };
 
+// "██████░░░░" of 0.6, ten columns; in colour, the done part is green.
+std::string progress_bar(double part, std::size_t columns, bool has_colour);
+
 std::string duration_text(double seconds);  // "1 h 05 min", "3 min 20 s", "12 s", "0.3 s"
 
 }  // namespace isoline::benchmarks

@@ -23,6 +23,7 @@
 #include "core/json.h"
 #include "core/output.h"
 #include "core/records/request.h"
+#include "core/records/suites.h"
 #include "core/text.h"
 
 namespace isoline::benchmarks {
@@ -216,7 +217,7 @@ void Store::plan(const std::string& suite, const std::vector<PlannedCell>& cells
                                   "record are known)",
                                   error.what()));
     }
-  if (std::ranges::find(plan.suites, suite) == plan.suites.end()) plan.suites.push_back(suite);
+  add_suite(plan.suites, suite);
   std::set<std::string> known;
   for (const PlannedCell& cell : plan.cells) known.insert(cell.cell);
   for (const PlannedCell& cell : cells)

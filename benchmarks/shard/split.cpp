@@ -137,8 +137,27 @@ std::vector<double> weights_of(const std::vector<Request>& requests, const fs::p
 namespace {
 
 constexpr std::size_t kMostShards = 100'000;
-constexpr const char* kVariables[] = {"SLURM_ARRAY_TASK_ID", "SLURM_ARRAY_TASK_MIN",
-                                      "SLURM_ARRAY_TASK_COUNT", "SLURM_ARRAY_TASK_STEP"};
+// How a scheduler numbers the tasks of an array: the environment variables that hold the index of
+// this task, the least and the greatest index, the number of tasks, and the step between indices.
+// An empty name: the scheduler sets no such variable.
+struct Scheduler {
+  const char *name, *index, *first, *last, *count, *step;
+  std::size_t base;          // the least index if `first` is empty
+  const char* outside = "";  // the value of `index` in a job that is not an array
+};
+
+constexpr Scheduler kSchedulers[] = {
+    {"SLURM", "SLURM_ARRAY_TASK_ID", "SLURM_ARRAY_TASK_MIN", "", "SLURM_ARRAY_TASK_COUNT",
+     "SLURM_ARRAY_TASK_STEP", 0},
+    {"PBS", "PBS_ARRAY_INDEX", "", "", "", "", 1},
+    {"TORQUE", "PBS_ARRAYID", "", "", "", "", 1},
+    {"LSF", "LSB_JOBINDEX", "", "LSB_JOBINDEX_END", "", "LSB_JOBINDEX_STEP", 1, "0"},
+    {"SGE", "SGE_TASK_ID", "SGE_TASK_FIRST", "SGE_TASK_LAST", "", "SGE_TASK_STEPSIZE", 1,
+     "undefined"},
+    {"HTCondor", "_CONDOR_PROCNO", "", "", "_CONDOR_NPROCS", "", 0},
+    {"Kubernetes", "JOB_COMPLETION_INDEX", "", "", "", "", 0},
+};
+constexpr const char* kCount = "ISOLINE_SHARDS";  // for schedulers that do not set the number
 
 // A number of digits alone; nothing of anything else.
 std::optional<std::size_t> number_in(const std::string& text) {
@@ -158,22 +177,56 @@ std::optional<Shard> shard_in(const std::string& text) {
 }
 
 // The position of this task in its array, whose indices may begin anywhere and have even gaps.
-Shard shard_of_array(const Environment& environment) {
-  std::string told;
-  for (const char* variable : kVariables)
-    told += fmt::format("{}{}={}", told.empty() ? "" : " ", variable, environment(variable));
-  const auto id = number_in(environment(kVariables[0])),
-             least = number_in(environment(kVariables[1])),
-             count = number_in(environment(kVariables[2]));
-  const std::size_t step = number_in(environment(kVariables[3])).value_or(1);
-  const bool is_one = id && least && count && step > 0 && *id >= *least &&
-                      (*id - *least) % step == 0 && (*id - *least) / step < *count;
+Shard shard_of_array(const Scheduler& of, const Environment& environment) {
+  std::string found;
+  for (const char* variable : {of.index, of.first, of.last, of.count, of.step, kCount})
+    if (*variable != 0)
+      found += fmt::format("{}{}={}", found.empty() ? "" : " ", variable, environment(variable));
+  const auto number = [&](const char* variable) { return number_in(environment(variable)); };
+  const auto id = number(of.index), first = *of.first == 0 ? of.base : number(of.first),
+             last = number(of.last);
+  const std::size_t step = number(of.step).value_or(1);
+  auto count = number(of.count);
+  if (!count && first && last && *last >= *first && step > 0) count = (*last - *first) / step + 1;
+  if (!count) count = number(kCount);
+  require(count.has_value(), [&] {
+    return fmt::format(
+        "--shard auto requires the number of tasks, which {} does not set here; set {} to it, got "
+        "{}",
+        of.name, kCount, found);
+  });
+  const bool is_one = id && first && step > 0 && *id >= *first && (*id - *first) % step == 0 &&
+                      (*id - *first) / step < *count && *count <= kMostShards;
   require(is_one, [&] {
     return fmt::format(
-        "--shard auto requires a task of a SLURM array whose indices have equal steps, got {}",
-        told);
+        "--shard auto requires a task of a {} array whose indices have equal steps{}, got {}",
+        of.name, *of.first == 0 ? fmt::format(" and begin at {}", of.base) : "", found);
   });
-  return {(*id - *least) / step + 1, *count};
+  return {(*id - *first) / step + 1, *count};
+}
+
+// UsageError unless this process is a task of exactly one scheduler's array.
+const Scheduler& scheduler_of(const Environment& environment) {
+  std::vector<const Scheduler*> set;
+  std::string known, found;
+  for (const Scheduler& each : kSchedulers) {
+    known += fmt::format(", {}", each.index);
+    const std::string value = environment(each.index);
+    if (value.empty() || value == each.outside) continue;
+    set.push_back(&each);
+    found += fmt::format("{}{}={}", found.empty() ? "" : ", ", each.index, value);
+  }
+  require(!set.empty(), [&] {
+    return "--shard auto requires a task of an array, or the environment variable ISOLINE_SHARD; "
+           "none of these is set: ISOLINE_SHARD" +
+           known;
+  });
+  require(set.size() == 1, [&] {
+    return fmt::format(
+        "--shard auto found the variables of {} schedulers ({}); set ISOLINE_SHARD, such as 3/16",
+        set.size(), found);
+  });
+  return *set.front();
 }
 
 }  // namespace
@@ -192,13 +245,7 @@ std::string of_this_process(const char* variable) {
 Shard shard_of(const std::string& asked, const Environment& environment) {
   const bool is_automatic = asked == "auto";
   const std::string own = environment("ISOLINE_SHARD");
-  if (is_automatic && own.empty()) {
-    require(
-        !environment(kVariables[0]).empty(),
-        "--shard auto requires the environment variable ISOLINE_SHARD or SLURM_ARRAY_TASK_ID, and "
-        "neither is set");
-    return shard_of_array(environment);
-  }
+  if (is_automatic && own.empty()) return shard_of_array(scheduler_of(environment), environment);
   const std::string& text = is_automatic ? own : asked;
   const auto shard = shard_in(text);
   require(shard.has_value(), [&] {

@@ -55,8 +55,9 @@ struct Shard {
 using Environment = std::function<std::string(const char* variable)>;  // empty: not set
 std::string of_this_process(const char* variable);
 
-// "3/16"; or "auto": the text in ISOLINE_SHARD, or else the position of this task in SLURM's array.
-// UsageError, with the text, if both are missing.
+// "3/16"; or "auto": the text in ISOLINE_SHARD, or else the position of this task in the array of a
+// scheduler (docs/on-a-cluster.md). UsageError if none or two are set, or the number of tasks is
+// not.
 Shard shard_of(const std::string& asked, const Environment& environment = of_this_process);
 
 // The shard of each cell, from 0. The heaviest first, each to the shard that has least (Graham,

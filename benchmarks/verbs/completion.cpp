@@ -1,78 +1,152 @@
-// isoline completion bash: prints a script for the shell, with the names of problems and
-// optimizers.
+// isoline completion SHELL: prints a script for a shell. The script calls `isoline completion
+// words`, which completes the last of the given words by the declarations of the verbs.
 #include <fmt/format.h>
 
-#include <string_view>
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <set>
 
 #include "benchmarks/cli/verb.h"
+#include "benchmarks/plan/catalog.h"
+#include "benchmarks/plan/claim_cells.h"
 #include "core/status.h"
 #include "core/text.h"
+#include "networks/network_entry.h"
 
 namespace isoline::benchmarks {
 namespace {
 
 struct CompletionArguments {
   std::string shell = "bash";
+  std::vector<std::string> words;
 };
 
 void declare(VerbArguments& verb, CompletionArguments& given) {
-  verb.text("SHELL", given.shell, "bash").one_of({"bash"}).shown();
+  verb.text("SHELL", given.shell,
+            "The shell of the script; or words, which completes the last WORD after --")
+      .one_of({"bash", "zsh", "fish", "words"})
+      .shown();
+  verb.texts("WORD", given.words, "Words of a command line, without the name of the program")
+      .may_be_empty();
 }
 
-// Names come from the program at each completion, so that new components are known at once.
+// Each script completes files if the program does not know any candidate.
 constexpr const char* kBash = R"(# bash completion for isoline:  source <(./isoline completion bash)
 _isoline() {
-  local word=${COMP_WORDS[COMP_CWORD]} before=${COMP_WORDS[COMP_CWORD-1]} verb=${COMP_WORDS[1]}
-  local program=${COMP_WORDS[0]} list="" prefix=""
-  case $before in
-    --problem) list=$("$program" list problems --names 2>/dev/null) ;;
-    --optimizer) list=$("$program" list optimizers --names 2>/dev/null) ;;
-    --out|--from|--record) COMPREPLY=($(compgen -d -- "$word")); return ;;
-    --plugin) COMPREPLY=($(compgen -f -- "$word")); return ;;
-    --retry) list="@STATUSES@" ;;
-    --rates) COMPREPLY=($(compgen -W "builtin none" -- "$word") $(compgen -f -- "$word")); return ;;
-  esac
-  if [[ -n $list ]]; then
-    [[ $word == *,* ]] && prefix=${word%,*},
-    COMPREPLY=($(compgen -P "$prefix" -W "$list" -- "${word##*,}"))
-    return
-  fi
-  if [[ $COMP_CWORD -eq 1 ]]; then
-    COMPREPLY=($(compgen -W "@VERBS@ --help --version" -- "$word"))
-    return
-  fi
-  case $word in
-    -*) list=$("$program" "$verb" --help 2>/dev/null | grep -oE -- '--[a-z-]+' | sort -u) ;;
-    *) case $verb in
-         run|plan|submit) list=$("$program" list suites --names 2>/dev/null) ;;
-         describe) list=$("$program" list all --names 2>/dev/null) ;;
-         check) list=$("$program" list problems --names 2>/dev/null) ;;
-         claims) list=$("$program" claims --list --all 2>/dev/null | grep -oE '^  [a-z0-9-]+') ;;
-         help) list="@VERBS@" ;;
-         new) list="problem optimizer" ;;
-         list) list="problems networks optimizers suites all" ;;
-         completion) list=bash ;;
-         *) COMPREPLY=($(compgen -f -- "$word")); return ;;
-       esac ;;
-  esac
-  COMPREPLY=($(compgen -W "$list" -- "$word"))
+  local IFS=$'\n'
+  COMPREPLY=($("${COMP_WORDS[0]}" completion words -- "${COMP_WORDS[@]:1:COMP_CWORD}" 2>/dev/null |
+    cut -f 1))
 }
-complete -o nosort -F _isoline isoline ./isoline
+complete -o nosort -o default -F _isoline isoline ./isoline
 )";
 
-void put(std::string& script, std::string_view place, const std::string& text) {
-  for (std::size_t at; (at = script.find(place)) != std::string::npos;)
-    script.replace(at, place.size(), text);
+constexpr const char* kZsh = R"(#compdef isoline
+# zsh completion for isoline:  source <(./isoline completion zsh)
+_isoline() {
+  local -a names texts
+  local line
+  "$words[1]" completion words -- "${(@)words[2,CURRENT]}" 2>/dev/null |
+    while IFS= read -r line; do
+      names+=("${line%%$'\t'*}")
+      texts+=("${line/$'\t'/  -- }")
+    done
+  if (( $#names )); then compadd -l -d texts -a names; else _files; fi
+}
+if [[ $funcstack[1] == _isoline ]]; then _isoline; else compdef _isoline isoline; fi
+)";
+
+constexpr const char* kFish = R"(# fish completion for isoline:  ./isoline completion fish | source
+function __isoline_complete
+  set -l words (commandline -opc)
+  set -l found ($words[1] completion words -- $words[2..] (commandline -ct) 2>/dev/null)
+  if test (count $found) -gt 0
+    printf '%s\n' $found
+  else
+    __fish_complete_path (commandline -ct)
+  end
+end
+complete -c isoline -f -a '(__isoline_complete)'
+)";
+
+using Candidates = std::vector<std::pair<std::string, std::string>>;  // names and what they are
+
+template <class Registry>
+void add_names(Candidates& all, const Registry& registry) {
+  for (const auto& [name, entry] : registry) all.emplace_back(name, entry.title);
 }
 
-int run(const CompletionArguments&, Session&) {
-  std::string verbs, statuses, script = kBash;
-  for (const Verb& verb : all_verbs()) verbs += verb.name + " ";
-  for (const std::string_view status : kStatusNames)
-    if (status != name_of(Status::running)) statuses += fmt::format("{} ", status);
-  put(script, "@VERBS@", verbs);
-  put(script, "@STATUSES@", statuses);
-  say(stdout, script);
+Candidates verbs() {
+  Candidates all;
+  for (const Verb& verb : all_verbs()) all.emplace_back(verb.name, verb.summary);
+  return all;
+}
+
+// Values of an argument of the verb; none where they are files or free text.
+Candidates values_of(const Verb& verb, const ArgumentText& argument, Session& session) {
+  Candidates all;
+  const auto is = [&](std::initializer_list<const char*> names) {
+    return std::ranges::find(names, argument.name) != names.end();
+  };
+  for (const std::string& choice : argument.choices) all.emplace_back(choice, "");
+  const bool has_any = verb.name == "describe" && is({"NAME"});
+  if (has_any || is({"--problem", "PROBLEM", "SPEC"})) add_names(all, session.catalog().problems);
+  if (has_any || is({"--optimizer", "OPTIMIZER", "--peers"}))
+    add_names(all, session.catalog().optimizers);
+  if (has_any) add_names(all, networks::network_registry());
+  if (is({"SUITE", "--suite"}))
+    for (const auto& [name, text] : builtin_suites()) all.emplace_back(name, "");
+  if (verb.name == "claims" && is({"ID"}))
+    for (const Claim& claim : builtin_claims_of(session.catalog()))
+      all.emplace_back(claim.id, claim.sentence);
+  if (is({"--retry"}))
+    for (const std::string_view status : kStatusNames)
+      if (status != name_of(Status::running)) all.emplace_back(status, "");
+  if (is({"--rates"})) all = {{"builtin", ""}, {"none", ""}};
+  return all;
+}
+
+// The candidates for the last of the words, whatever it begins with.
+Candidates candidates_for(const std::vector<std::string>& words, Session& session) {
+  if (words.size() < 2) {
+    Candidates all = verbs();
+    all.insert(all.end(), {{"--help", ""}, {"--version", ""}});
+    return all;
+  }
+  if (words.front() == "help") return verbs();
+  const std::vector<Verb> known = all_verbs();
+  const auto verb = std::ranges::find(known, words.front(), &Verb::name);
+  if (verb == known.end()) return {};
+  const std::vector<ArgumentText> arguments = arguments_of(*verb);
+  const auto before = std::ranges::find(arguments, words[words.size() - 2], &ArgumentText::name);
+  if (words.size() > 2 && before != arguments.end() && !before->value.empty())
+    return values_of(*verb, *before, session);
+  Candidates all;
+  for (const ArgumentText& argument : arguments) {
+    const bool is_option = argument.name.starts_with("--");
+    if (is_option && words.back().starts_with('-')) all.emplace_back(argument.name, argument.about);
+    if (!is_option && !words.back().starts_with('-'))
+      return values_of(*verb, argument, session);  // of the first positional argument
+  }
+  return all;
+}
+
+// One line for each candidate that the last word begins: its name, a tab, and what it is. Of a list
+// such as gd,adam, the last name is completed.
+int print_candidates(std::vector<std::string> words, Session& session) {
+  if (words.empty()) words.emplace_back();
+  const std::string& last = words.back();
+  const Candidates all = candidates_for(words, session);
+  const std::size_t comma = last.rfind(',');
+  const std::string list = comma == last.npos ? "" : last.substr(0, comma + 1);
+  for (const auto& [name, about] : all)
+    if ((list + name).starts_with(last))
+      say(stdout, fmt::format("{}{}\t{}\n", list, name, printable(about)));
+  return kGood;
+}
+
+int run(const CompletionArguments& given, Session& session) {
+  if (given.shell == "words") return print_candidates(given.words, session);
+  say(stdout, given.shell == "bash" ? kBash : given.shell == "zsh" ? kZsh : kFish);
   return kGood;
 }
 
@@ -81,8 +155,9 @@ int run(const CompletionArguments&, Session&) {
 void register_completion(VerbRegistry& registry) {
   registry.add(verb_of({.name = "completion",
                         .help_position = 240,
-                        .summary = "Print the completion script for a shell",
-                        .examples = "  isoline completion bash > ~/.isoline-completion"},
+                        .summary = "Print the completion script for bash, zsh or fish",
+                        .examples = "  isoline completion bash > ~/.isoline-completion\n"
+                                    "  isoline completion words -- run --optimizer newt"},
                        declare, run));
 }
 

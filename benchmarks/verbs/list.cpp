@@ -51,7 +51,9 @@ Json listing(Session& session, const std::string& kind) {
                                    {"source", entry.source}});
   if (kind == "all" || kind == "suites")
     for (const auto& [name, text] : builtin_suites())
-      all["suites"].push_back({{"name", name}, {"title", read_suite(name).title}});
+      all["suites"].push_back({{"name", name},
+                               {"title", read_suite(name).title},
+                               {"version", read_suite(name).version}});
   return all;
 }
 

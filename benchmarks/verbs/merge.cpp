@@ -50,7 +50,7 @@ int run(const MergeArguments& given, Session&) {
 void register_merge(VerbRegistry& registry) {
   registry.add(verb_of(
       {.name = "merge",
-       .help_position = 70,
+       .help_position = 26,
        .summary = "Merge result folders into a new one",
        .examples = "  isoline merge results/a results/b --out results/both",
        .notes =

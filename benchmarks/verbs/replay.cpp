@@ -146,7 +146,7 @@ int run(const ReplayArguments& given, Session& session) {
 void register_replay(VerbRegistry& registry) {
   registry.add(verb_of(
       {.name = "replay",
-       .help_position = 60,
+       .help_position = 28,
        .summary = "Run the cells of records again, and compare the results bit for bit",
        .examples = "  isoline replay results/quick/runs/03a4d51c22cbf199-821e62446af5cbbe.json\n"
                    "  isoline replay results/quick --sample 1%",

@@ -183,7 +183,7 @@ int run(const StatusArguments& given, Session&) {
 void register_status(VerbRegistry& registry) {
   registry.add(verb_of(
       {.name = "status",
-       .help_position = 90,
+       .help_position = 24,
        .summary = "Show the progress of a run",
        .examples = "  isoline status results/quick\n  isoline status results/quick --json",
        .notes = "`status` reads the records, the plan and the predictions, and changes nothing.\n"

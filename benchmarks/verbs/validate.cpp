@@ -217,7 +217,7 @@ int run(const ValidateArguments& given, Session&) {
 void register_validate(VerbRegistry& registry) {
   registry.add(verb_of(
       {.name = "validate",
-       .help_position = 190,
+       .help_position = 235,
        .summary = "Check records, suites and Isoline's other JSON files against their schemas",
        .examples = "  isoline validate results/quick my-suite.json"},
       declare, run));

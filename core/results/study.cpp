@@ -11,6 +11,7 @@
 #include "core/errors.h"
 #include "core/files.h"
 #include "core/records/fields.h"
+#include "core/records/suites.h"
 #include "core/results/statistics.h"
 #include "core/seeds.h"
 
@@ -131,11 +132,10 @@ std::vector<std::string> json_files(const fs::path& folder, std::vector<Unreadab
 
 // Plan, sheets, audit and rates of a folder; `known` has the cells and the sheets of those before.
 void read_rest(Study& study, const fs::path& folder, std::set<std::string>& known) {
+  std::vector<std::string> suites;
   read_file(study, folder / "plan.json", [&](const auto& text, const auto& name) {
     Plan plan = plan_from_text(text, name);
-    for (std::string& suite : plan.suites)
-      if (std::ranges::find(study.plan.suites, suite) == study.plan.suites.end())
-        study.plan.suites.push_back(std::move(suite));
+    suites.insert(suites.end(), plan.suites.begin(), plan.suites.end());
     for (PlannedCell& cell : plan.cells)
       if (known.insert(cell.cell).second) study.plan.cells.push_back(std::move(cell));
   });
@@ -153,6 +153,7 @@ void read_rest(Study& study, const fs::path& folder, std::set<std::string>& know
   read_file(study, folder / "rates.json", [&](const auto& text, const auto& name) {
     for (TunedRate& rate : rates_from_text(text, name)) study.rates.push_back(std::move(rate));
   });
+  for (const std::string& suite : suites) add_suite(study.plan.suites, suite);
 }
 
 // ISO times sort as text; the file name decides where they are absent or equal.

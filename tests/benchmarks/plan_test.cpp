@@ -16,6 +16,7 @@
 #include "core/json.h"
 #include "core/random.h"
 #include "core/records/json_view.h"
+#include "core/records/suites.h"
 #include "core/spec.h"
 #include "core/text.h"
 #include "problems/problem.h"
@@ -51,6 +52,34 @@ TEST(Suites, OfTheTreeAreWellFormedAndPlanEachCellOnceByWorkAndIterations) {
       EXPECT_TRUE(std::isinf(cell.budget.seconds)) << cell.problem.spec;
     }
   }
+}
+
+// Optimizers are not part of the version: "*" selects new ones, too.
+TEST(Suites, WhoseSettingsChangeHaveANewVersion) {
+  for (const auto& [name, text] : builtin_suites()) {
+    const Json suite = parse_json(std::string(text), name);
+    std::set<std::string> settings;
+    for (Request cell : cells_of(name)) {
+      cell.optimizer = {};
+      settings.insert(cell_digest(cell));
+    }
+    std::string all = read_suite(name).label();
+    for (const std::string& setting : settings) all += "\n" + setting;
+    EXPECT_EQ(suite.value("settings", ""), digest(all))
+        << "the settings of " << name
+        << " are not those of its version; raise \"version\", and set "
+        << "\"settings\" to the digest above, which belongs to " << read_suite(name).label();
+  }
+}
+
+TEST(Suites, OfTwoVersionsAreNotCombined) {
+  std::vector<std::string> suites = {"quick", "nist@3"};
+  add_suite(suites, "quick@1");
+  add_suite(suites, "notebook@1");
+  EXPECT_EQ(suites, (std::vector<std::string>{"quick@1", "nist@3", "notebook@1"}));
+  const std::string reason = refusal([&] { add_suite(suites, "nist@4"); });
+  EXPECT_NE(reason.find("nist@3 and nist@4"), reason.npos) << reason;
+  EXPECT_NE(refusal([&] { add_suite(suites, "nist"); }), "") << "it is version 1";
 }
 
 Json good_suite() {
@@ -375,6 +404,44 @@ TEST(Shard, IsReadAsAFractionAndAsTheTaskOfAnArray) {
       shard_of("auto", environment_of({{"ISOLINE_SHARD", "2/5"}, {"SLURM_ARRAY_TASK_ID", "1"}}))
           .text(),
       "2/5");
+}
+
+// Each with its own variables; PBS and Kubernetes do not set the number of tasks.
+TEST(Shard, IsTheTaskOfAnArrayOfAnyScheduler) {
+  const auto shard = [](const std::map<std::string, std::string>& variables) {
+    return shard_of("auto", environment_of(variables)).text();
+  };
+  EXPECT_EQ(shard({{"PBS_ARRAY_INDEX", "4"}, {"ISOLINE_SHARDS", "4"}}), "4/4");
+  EXPECT_EQ(shard({{"PBS_ARRAYID", "1"}, {"ISOLINE_SHARDS", "4"}}), "1/4");
+  EXPECT_EQ(shard({{"LSB_JOBINDEX", "5"}, {"LSB_JOBINDEX_END", "9"}, {"LSB_JOBINDEX_STEP", "2"}}),
+            "3/5");
+  EXPECT_EQ(shard({{"SGE_TASK_ID", "12"},
+                   {"SGE_TASK_FIRST", "10"},
+                   {"SGE_TASK_LAST", "13"},
+                   {"SGE_TASK_STEPSIZE", "2"}}),
+            "2/2");
+  EXPECT_EQ(shard({{"_CONDOR_PROCNO", "0"}, {"_CONDOR_NPROCS", "4"}}), "1/4");
+  EXPECT_EQ(shard({{"JOB_COMPLETION_INDEX", "3"}, {"ISOLINE_SHARDS", "4"}}), "4/4");
+  EXPECT_EQ(shard({{"LSB_JOBINDEX", "0"},
+                   {"SGE_TASK_ID", "undefined"},
+                   {"JOB_COMPLETION_INDEX", "0"},
+                   {"ISOLINE_SHARDS", "2"}}),
+            "1/2")
+      << "jobs of LSF and SGE that are not arrays have these values";
+}
+
+TEST(Shard, IsNotGuessedFromTwoSchedulersOrWithoutTheNumberOfTasks) {
+  const auto complaint = [](const std::map<std::string, std::string>& variables) {
+    return refusal([&] { shard_of("auto", environment_of(variables)); });
+  };
+  const std::string two =
+      complaint({{"PBS_ARRAY_INDEX", "1"}, {"SGE_TASK_ID", "2"}, {"ISOLINE_SHARDS", "4"}});
+  EXPECT_NE(two.find("PBS_ARRAY_INDEX=1, SGE_TASK_ID=2"), two.npos) << two;
+  const std::string uncounted = complaint({{"PBS_ARRAY_INDEX", "1"}});
+  EXPECT_NE(uncounted.find("set ISOLINE_SHARDS"), uncounted.npos) << uncounted;
+  EXPECT_NE(complaint({{"PBS_ARRAY_INDEX", "0"}, {"ISOLINE_SHARDS", "4"}}), "");
+  EXPECT_NE(complaint({{"JOB_COMPLETION_INDEX", "4"}, {"ISOLINE_SHARDS", "4"}}), "");
+  EXPECT_NE(complaint({{"SGE_TASK_ID", "1"}, {"SGE_TASK_LAST", "4"}}), "");
 }
 
 TEST(Shard, ThatDoesNotExistIsRefused) {

@@ -71,6 +71,14 @@ endfunction()
 
 run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${work}/prefix)
 
+foreach(file share/bash-completion/completions/isoline share/fish/vendor_completions.d/isoline.fish
+             share/man/man1/isoline.1)
+  file(SIZE ${work}/prefix/${file} size)
+  if(size EQUAL 0)
+    fail("${file} is empty")
+  endif()
+endforeach()
+
 file(COPY ${TREE}/tests/cli/own/ DESTINATION ${work}/own)
 commit(own)
 build_apart(own)

@@ -126,6 +126,25 @@ TEST_F(Shards, TogetherAreTheWholeBitForBit) {
   EXPECT_EQ(count_records(shell.folder() / "out/merged"), 24U) << "the union is a result folder";
 }
 
+TEST(Versions, OfOneSuiteAreNeitherRankedTogetherNorMergedNorKeptInOneFolder) {
+  const Shell shell;
+  const auto write = [&](int version) {
+    write_text(shell.folder() / "mine.json",
+               fmt::format(R"({{"schema": "isoline.suite/1", "name": "mine", "version": {},
+                               "matrix": [{{"problems": ["square"], "optimizers": ["gd"]}}]}})",
+                           version));
+  };
+  write(1);
+  shell.expect("./isoline run mine.json --out one --quiet");
+  write(2);
+  shell.expect("./isoline run mine.json --out two --quiet");
+  EXPECT_EQ(read_json(shell.folder() / "two/plan.json").at("suites"), Json({"mine@2"}));
+  for (const char* command : {"report one two", "merge one two --out both", "choose one two",
+                              "run mine.json --out one --force"})
+    shell.expect(std::string("./isoline ") + command,
+                 {.exit_code = 1, .err = {"mine@1 and mine@2"}});
+}
+
 TEST_F(Shards, ThatAreMissingAreMissedByTheUnion) {
   run("--out out --shard 1/3 --quiet");
   EXPECT_FALSE(fs::exists(shell.folder() / "out/shards/1-of-3/report"));

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <regex>
 #include <sstream>
@@ -15,8 +16,8 @@ namespace isoline::benchmarks {
 namespace {
 
 const std::string kVerbs =
-    "run score plan report compare choose solution baseline replay merge status best claims export list describe "
-    "check audit new validate tune train infer completion help version ";
+    "run score plan status merge replay report compare choose solution baseline best claims export "
+    "list describe check audit new tune train infer validate completion man help version ";
 
 TEST(Help, OfTheProgramAndOfEveryVerbIsWrittenOutAndGood) {
   const Shell shell;
@@ -36,9 +37,10 @@ TEST(Help, OfTheProgramAndOfEveryVerbIsWrittenOutAndGood) {
                   std::ranges::count_if(line, [](char c) { return (c & 0xC0) != 0x80; }) <= 80)
           << line;
   }
-  shell.expect("./isoline completion bash",
-               {.out = {fmt::format("\"{} --help --version\"", kVerbs)}});
+  EXPECT_EQ(shell("./isoline completion words | cut -f 1 | tr '\\n' ' '").out,
+            kVerbs + "--help --version ");
   EXPECT_EQ(shell.expect("./isoline help").out, program.out);
+  EXPECT_EQ(shell.expect("./isoline").out, program.out);
 }
 
 TEST(Help, OfTuneAsksForTheProblemsOnce) {
@@ -58,7 +60,6 @@ TEST(Help, VersionIsOneLine) {
 const std::vector<std::pair<std::string, std::string>> kMistakes = {
     {"rnu", "did you mean 'run'"},
     {"import", "unknown command 'import'; known: "},
-    {"", "`isoline help` lists"},
     {"--verson", "did you mean --version"},
     {"run --problm square", "did you mean --problem"},
     {"run quick twice", "run: unexpected argument 'twice'"},
@@ -76,7 +77,7 @@ const std::vector<std::pair<std::string, std::string>> kMistakes = {
     {"claims zzzz", "`isoline claims --list --all`"},
     {"run quick --in-process --dry-run", "--dry-run"},
     {"run quick --shard 5/4", "1 ≤ I ≤ N"},
-    {"run quick --shard auto", "ISOLINE_SHARD or SLURM_ARRAY_TASK_ID"},
+    {"run quick --shard auto", "ISOLINE_SHARD, SLURM_ARRAY_TASK_ID"},
     {"plan quick --shards 0", "--shards"},
     {"status absent", "absent contains neither"},
     {"run quik", "did you mean 'quick'"},
@@ -140,7 +141,7 @@ const std::vector<std::pair<std::string, std::string>> kMistakes = {
     {"compare . . --allow wrong.json", "wrong.json violates the schema"},
     {"merge nowhere --out results", "nowhere"},
     {"claims --no-run --out nowhere", "nowhere"},
-    {"completion fish", "fish"},
+    {"completion tcsh", "tcsh"},
     {"export . --format tsv --out x", "tsv"},
     {"export . --out x.csv", "no records in .; "},
     {"export nowhere.tar.gz --out x.csv", "nowhere.tar.gz"},
@@ -212,13 +213,31 @@ TEST(Check, OfASoundProblemPassesWithFigures) {
   EXPECT_GE(json.at("rosenbrock").size(), 3U);
 }
 
-TEST(Completion, IsValidBashAndCompletesNames) {
+// By the program, and by the scripts in their shells. zsh completes in a terminal only, so its
+// script meets functions in place of its builtins.
+TEST(Completion, CompletesNamesInEveryShell) {
   const Shell shell;
-  shell.expect("./isoline completion bash > c.bash && bash -n c.bash");
+  shell.expect(
+      "for each in bash zsh fish; do ./isoline completion $each > c.$each || exit; done; "
+      "bash -n c.bash");
+  const std::map<std::string, std::string> shells = {
+      {"bash",
+       "source c.bash; COMP_WORDS=(./isoline {}); COMP_CWORD=$((${{#COMP_WORDS[@]}} - 1)); "
+       "_isoline; echo ${{COMPREPLY[@]}}"},
+      {"zsh",
+       "compdef() {{ }}; compadd() {{ echo $names }}; source ./c.zsh; words=(./isoline {}); "
+       "CURRENT=$#words; _isoline"},
+      {"fish", "source c.fish; echo (complete -C \"./isoline {}\" | string split -f1 \\t)"}};
   const auto complete = [&](const std::string& words) {
-    return shell("bash -c 'source c.bash; COMP_WORDS=(./isoline " + words +
-                 "); COMP_CWORD=$((${#COMP_WORDS[@]} - 1)); _isoline; echo ${COMPREPLY[@]}'")
-        .out;
+    std::string first;
+    for (const auto& [name, script] : shells) {
+      if (shell("command -v " + name).exit_code != 0) continue;
+      write_text(shell.folder() / "complete", fmt::format(fmt::runtime(script), words) + "\n");
+      const Finished found = shell(name + " complete");
+      if (first.empty()) first = found.out;
+      EXPECT_EQ(found.out, first) << name << ": " << found.err;
+    }
+    return first;
   };
   for (const auto& [words, completion] : std::vector<std::pair<std::string, std::string>>{
            {"run --problem rosen", "rosenbrock"},
@@ -233,8 +252,23 @@ TEST(Completion, IsValidBashAndCompletesNames) {
            {"list netw", "networks"},
            {"describe fn", "fno"},
            {"run --retry f", "failed"},
+           {"completion z", "zsh"},
+           {"export results --format cs", "csv"},
            {"run --dry", "--dry-run"}})
     EXPECT_EQ(complete(words), completion + "\n") << words;
+}
+
+TEST(Manual, HasEveryVerbAndOptionAndIsCleanRoff) {
+  const Shell shell;
+  const std::string page = shell.expect("./isoline man > isoline.1; cat isoline.1").out;
+  std::istringstream verbs(kVerbs);
+  for (std::string verb; verbs >> verb;) EXPECT_TRUE(contains(page, ".SS isoline " + verb));
+  EXPECT_TRUE(contains(page, ".TP\n\\fB\\-\\-shard\\fR TEXT\n"));
+  EXPECT_TRUE(contains(page, "Values: csv, coco."));
+  if (shell("command -v groff").exit_code != 0) return;
+  const Finished shown = shell.expect("groff -man -Kutf8 -Tutf8 -P-cbou -ww isoline.1",
+                                      {.out = {"NAME", "--keep-state"}});
+  EXPECT_EQ(shown.err, "");
 }
 
 // Foreign text is printed without its control sequences, and paths may have any bytes.
@@ -308,6 +342,25 @@ TEST(Terminal, ARunSaysHowLongItTook) {
   EXPECT_TRUE(
       std::regex_search(result.out, std::regex(R"(^1 cell: 1 new, 0 reused\. .* \d+\.\d s\n)")))
       << result.out;
+}
+
+// The command `script` is a terminal; every run shows its progress once it has ended.
+TEST(Terminal, AProgressBarIsInColourWhereThatIsWanted) {
+  const Shell shell;
+  if (shell("command -v script").exit_code != 0) GTEST_SKIP() << "no program `script`";
+  const auto output = [&](const std::string& settings) {
+    return shell("env -u NO_COLOR " + settings +
+                 " script -qec './isoline run --problem square --optimizer gd --no-report "
+                 "--force --out out' /dev/null")
+        .out;
+  };
+  const std::string bar = "████████████████████", green = "\x1b[32m";
+  EXPECT_TRUE(contains(output("TERM=xterm"), green + bar));
+  const std::string plain = output("TERM=xterm NO_COLOR=1");
+  EXPECT_TRUE(contains(plain, bar)) << plain;
+  EXPECT_FALSE(contains(plain, green)) << plain;
+  EXPECT_TRUE(contains(output("TERM=xterm NO_COLOR="), green + bar)) << "empty: not set";
+  EXPECT_FALSE(contains(output("TERM=dumb"), kEscape));
 }
 
 TEST(Terminal, AnOptionOfSpecificationsMayBeRepeated) {

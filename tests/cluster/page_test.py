@@ -66,6 +66,37 @@ class Page(unittest.TestCase):
             self.run_line(line)
         self.assert_is_the_whole("results/notebook/merged")
 
+    def test_every_other_scheduler_does_the_shards(self):
+        """The four tasks of an array, numbered as each scheduler numbers them."""
+        condor = dict(line.split(" = ", 1) for line in slurm.block("shell shard.condor")[:-1])
+        job = "\n".join(slurm.block("yaml shard.yaml"))
+        name, value = re.search(r'env: \[\{name: (\w+), value: "(\d+)"\}\]', job).groups()
+        self.assertIn(f"completions: {value},", job)
+        self.assertIn("-v ISOLINE_SHARDS=4", slurm.block("shell shard.pbs")[1])
+        scripts = {
+            "\n".join(slurm.block("shell shard.pbs")):
+                {"PBS_ARRAY_INDEX": "{1}", "PBS_O_WORKDIR": self.folder, "ISOLINE_SHARDS": "4"},
+            "\n".join(slurm.block("shell shard.lsf")):
+                {"LSB_JOBINDEX": "{1}", "LSB_JOBINDEX_END": "4", "LSB_JOBINDEX_STEP": "1"},
+            "\n".join(slurm.block("shell shard.sge")):
+                {"SGE_TASK_ID": "{1}", "SGE_TASK_FIRST": "1", "SGE_TASK_LAST": "4"},
+            f"{condor['executable']} {condor['arguments']}":
+                dict(one.replace("$(Process)", "{0}").split("=")
+                     for one in condor["environment"].strip('"').split()),
+            re.search(r"command: \[(.*?)\]", job)[1].replace(",", ""):
+                {"JOB_COMPLETION_INDEX": "{0}", name: value},
+        }
+        self.assertEqual(len(scripts), 5)
+        for script, variables in scripts.items():
+            self.run_line("rm -rf results merged; isoline plan notebook --shards 4")
+            pathlib.Path(self.folder, "results/notebook/isoline").symlink_to(sys.argv[1])
+            for task in range(4):
+                self.run_line(script, **{variable: text.format(task, task + 1)
+                                         for variable, text in variables.items()})
+            self.run_line("isoline merge results/notebook/shards/* --out merged")
+            self.run_line("isoline report merged")
+            self.assert_is_the_whole("merged")
+
     def test_a_workflow_does_the_shards(self):
         lines = commands_of("yaml")
         self.assertLessEqual(len(lines), 12)

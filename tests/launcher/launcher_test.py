@@ -108,7 +108,7 @@ class Questions(WithTree):
 
     QUESTIONS = [('--help',), ('-h',), ('--version',), ('help', 'run'), ('version',), ('list',),
                  ('list', 'problems'),
-                 ('completion', 'bash'), ('run', '--help'), ()]
+                 ('completion', 'bash'), ('man',), ('run', '--help'), ()]
 
     def test_an_existing_program_answers_them_alone(self):
         tree = Tree(self.folder)
