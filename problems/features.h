@@ -19,6 +19,7 @@ struct Features {
   Real tikhonov = 0;
   Index order = 0;
   std::string bounds = "none";
+  Real fail = 0;
 };
 inline void fields(Features& o, auto& field) {
   field("noise", o.noise, between(0, 10),
@@ -35,6 +36,9 @@ inline void fields(Features& o, auto& field) {
   field("bounds", o.bounds, {"none", "wide", "active"},
         "a box around x*: wide, or with one upper bound in three below x*, so that the solution "
         "lies on bounds");
+  field(
+      "fail", o.fail, between(0, 0.5),
+      "share of all x at which the evaluation fails: parallel layers that hold neither x₀ nor x*");
 }
 
 // Whether f_L is the loss of a fit from x*, which a run may better from elsewhere.
