@@ -1,16 +1,19 @@
-// Any direct problem with noise, another model, scaled and rotated unknowns, few digits, or a
-// penalty.
+// Any direct problem with noise, another model, scaled and rotated unknowns, few digits, a penalty,
+// or evaluations that fail.
 #include "problems/features.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numbers>
 #include <set>
 #include <utility>
 
 #include "core/decompose.h"
 #include "core/errors.h"
+#include "core/failures.h"
 #include "problems/differences.h"
 
 namespace isoline::problems {
@@ -72,19 +75,57 @@ void round_values(BatchOut y, Index digits) {
   }
 }
 
+constexpr Real kNaN = std::numeric_limits<Real>::quiet_NaN();
+
 // The workspace of the physics inside, at x.
 struct Inside final : Scratch, Pieces {
   Workspace w;
+  bool has_failed = false;  // the last forward pass
   void add_choices(PieceDigest& digest) override {
     if (auto* pieces = dynamic_cast<Pieces*>(w.own.get())) pieces->add_choices(digest);
   }
 };
 
+// Where the evaluation fails: in layers, where sin(wᵀ(x − c) + φ) exceeds cos(π share), with w in a
+// random direction. c is x*, or x₀ where no x* is known; a layer and its distance to the next one
+// are as thick together as c is large. They do not depend on the method.
+struct FailingLayers {
+  Vector w;       // (k); empty: none
+  Vector centre;  // c, (k)
+  Real phase = 0, least = 1;
+
+  bool hold(VectorRef x) const {
+    return w.size() > 0 && std::sin(w.dot(x - centre) + phase) > least;
+  }
+};
+
+// `free` are points that no layer may hold.
+FailingLayers layers_of(Real share, const Vector& centre, const std::vector<Vector>& free,
+                        RandomStream stream) {
+  if (share == 0) return {};
+  constexpr int kMostDraws = 10'000;
+  const Real common = centre.norm() / std::sqrt(static_cast<Real>(centre.size()));
+  FailingLayers layers{.w = stream.normal_vector(centre.size()).normalized(),
+                       .centre = centre,
+                       .least = std::cos(std::numbers::pi * share)};
+  for (Index i = 0; i < centre.size(); ++i) {
+    const Real size = std::max(std::abs(centre[i]), common);
+    layers.w[i] *= 2 * std::numbers::pi / (size > 0 ? size : 1);
+  }
+  for (int draw = 0; draw < kMostDraws; ++draw) {
+    layers.phase = 2 * std::numbers::pi * stream.uniform();
+    if (std::ranges::none_of(free, [&](const Vector& x) { return layers.hold(x); })) return layers;
+  }
+  throw UsageError(
+      fmt::format("fail={} leaves no region without failures around x₀ and x*", share));
+}
+
 class Featured final : public Physics {
  public:
-  Featured(std::unique_ptr<Physics> inside, Map map, const Features& features)
+  Featured(std::unique_ptr<Physics> inside, Map map, FailingLayers layers, const Features& features)
       : inside_(std::move(inside)),
         map_(std::move(map)),
+        layers_(std::move(layers)),
         digits_(features.digits),
         order_(features.order),
         weight_(std::sqrt(features.tikhonov)) {}
@@ -100,15 +141,29 @@ class Featured final : public Physics {
     in.context = c;
     in.saved_is_current = false;
     inside_->forward(in.x, c, y.topRows(m()), in);
+    w.as<Inside>().has_failed = layers_.hold(in.x.col(0));
+    if (has_failed(w)) {
+      failed_evaluations().add(z.col(0), "x lies in a layer of fail=");
+      y.setConstant(kNaN);
+      return;
+    }
     if (digits_ > 0) round_values(y.topRows(m()), digits_);
     penalize(in.x, y);
   }
   void pushforward(BatchRef v, BatchOut Jv, Workspace& w) const override {
+    if (has_failed(w)) {
+      Jv.setConstant(kNaN);
+      return;
+    }
     const Matrix dx = map_.to_x(v);
     inside_->pushforward(dx, Jv.topRows(m()), w.as<Inside>().w);
     penalize(dx, Jv);
   }
   void pullback(BatchRef u, BatchOut JTu, Workspace& w) const override {
+    if (has_failed(w)) {
+      JTu.setConstant(kNaN);
+      return;
+    }
     Matrix dx(inputs(), u.cols());
     inside_->pullback(u.topRows(m()), dx, w.as<Inside>().w);
     const auto rows = u.bottomRows(penalties());
@@ -119,6 +174,10 @@ class Featured final : public Physics {
     JTu = map_.transposed(dx);
   }
   void jacobian(BatchOut J, Workspace& w) const override {
+    if (has_failed(w)) {
+      J.setConstant(kNaN);
+      return;
+    }
     const Index k = inputs();
     inside_->jacobian(J.topRows(m()), w.as<Inside>().w);
     for (Index b = 0; b < J.cols() / k; ++b) {
@@ -148,17 +207,20 @@ class Featured final : public Physics {
   Inverse inverse_kind() const override {
     if (weight_ > 0) return Inverse::none;
     const Inverse kind = inside_->inverse_kind();
-    return digits_ > 0 && kind == Inverse::exact ? Inverse::approximate : kind;
+    return (digits_ > 0 || layers_.w.size() > 0) && kind == Inverse::exact ? Inverse::approximate
+                                                                           : kind;
   }
   Index inverse_price() const override { return inside_->inverse_price(); }
   Success local_inverse(BatchRef y, BatchRef z0, BatchRef c, BatchOut z) const override {
-    const Success success = inside_->local_inverse(y, map_.to_x(z0), c, z);
+    Success success = inside_->local_inverse(y, map_.to_x(z0), c, z);
+    for (Index b = 0; b < z.cols(); ++b) success(b) = success(b) && !layers_.hold(z.col(b));
     z = map_.to_z(z);
     return success;
   }
 
  private:
   Index m() const { return inside_->outputs(); }
+  static bool has_failed(Workspace& w) { return w.as<Inside>().has_failed; }
   // The rows √α D x below those of P.
   void penalize(BatchRef x, BatchOut y) const {
     if (penalties() == 0) return;
@@ -169,13 +231,15 @@ class Featured final : public Physics {
 
   std::unique_ptr<Physics> inside_;
   Map map_;
+  FailingLayers layers_;
   Index digits_, order_;
   Real weight_;  // √α
 };
 
 // The parts of the problem in z, with the penalty. Pictures and series of x do not fit it.
-void wrap(ProblemParts& parts, Map map, const Features& features) {
-  auto physics = std::make_unique<Featured>(std::move(parts.physics), std::move(map), features);
+void wrap(ProblemParts& parts, Map map, FailingLayers layers, const Features& features) {
+  auto physics = std::make_unique<Featured>(std::move(parts.physics), std::move(map),
+                                            std::move(layers), features);
   const Map& to = physics->map();
   parts.start = {to.to_z(parts.start.drawn).reshaped(), to.to_z(parts.start.standard).reshaped()};
   for (auto* each : {&parts.truth, &parts.made_from})
@@ -349,6 +413,7 @@ Problem with_other_data(Problem plain, const Features& features, const Draw& dra
                         const std::optional<Matrix>& target) {
   require(features.tikhonov == 0 || plain.is_least_squares(),
           "tikhonov requires a least-squares loss, which this problem does not have");
+  require(features.fail == 0 || plain.samples() == 1, "fail requires a problem of one sample");
   require(features.tikhonov > 0 || features.order == 0, "order=1 requires tikhonov above 0");
   require(features.noise > 0 || features.noise_kind == "gaussian",
           "noise-kind requires noise above 0");
@@ -395,8 +460,11 @@ Problem with_other_data(Problem plain, const Features& features, const Draw& dra
   }
   Map map = map_of(features, k, draw);
   const bool is_mapped = !map.is_identity();
-  if (is_mapped || features.digits > 0 || features.tikhonov > 0)
-    wrap(parts, std::move(map), features);
+  std::vector<Vector> free{parts.start.drawn, parts.start.standard};
+  if (truth.size() > 0) free.push_back(truth);
+  FailingLayers layers = layers_of(features.fail, free.back(), free, draw.stream("fail"));
+  if (is_mapped || features.digits > 0 || features.tikhonov > 0 || features.fail > 0)
+    wrap(parts, std::move(map), std::move(layers), features);
   if (features.noise == 0 && !target && features.tikhonov == 0 && !is_bound)
     return Problem(std::move(parts));
   parts.minimum.reset();
@@ -417,8 +485,8 @@ Problem with_features(Problem plain, const OptionValues& options, const Draw& dr
   const Features features =
       read_options<Features>(complete_options(option_table<Features>(), "features", options));
   require(!plain.is_learned(),
-          "noise, model, scale, rotate, digits, tikhonov, order, jitter and derivatives require "
-          "mode=direct");
+          "noise, model, scale, rotate, digits, tikhonov, order, fail, jitter and derivatives "
+          "require mode=direct");
   Problem featured = with_other_data(std::move(plain), features, draw, target);
   if (features.jitter == 0 && features.derivatives == "exact") return featured;
   ProblemParts parts = std::move(featured).parts();

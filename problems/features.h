@@ -21,6 +21,7 @@ struct Features {
   std::string bounds = "none";
   Real jitter = 0;
   std::string derivatives = "exact";
+  Real fail = 0;
 };
 inline void fields(Features& o, auto& field) {
   field("noise", o.noise, between(0, 10),
@@ -42,6 +43,9 @@ inline void fields(Features& o, auto& field) {
   field("derivatives", o.derivatives, {"exact", "forward", "central", "none"},
         "those of the problem; by forward or central differences, at the cost of their calls; or "
         "none");
+  field(
+      "fail", o.fail, between(0, 0.5),
+      "share of all x at which the evaluation fails: parallel layers that hold neither x₀ nor x*");
 }
 
 // Whether f_L is the loss of a fit from x*, which a run may better from elsewhere.

@@ -1,10 +1,13 @@
 // A problem that another program computes, over frames on a private socket (docs/wire-format.md):
 // process[command="python3 mine.py"]. Each problem object has its own program, which ends with it.
 // A point needs one forward; the products there use its results.
+#include <fmt/format.h>
+
 #include <array>
 #include <limits>
 
 #include "core/array.h"
+#include "core/failures.h"
 #include "core/foreign/handshake.h"
 #include "problems/problem.h"
 
@@ -18,30 +21,84 @@ Inverse inverse_of(const std::string& kind) {
   return kind.empty() ? Inverse::none : Inverse::approximate;
 }
 
-// The line to a program, and the points that it remembers, by number: one for every workspace that
-// is linearized at.
-struct Session {
-  explicit Session(const std::string& command) : line(door_to(command)) {}
+constexpr Real kNaN = std::numeric_limits<Real>::quiet_NaN();
 
-  std::uint32_t take_point() {
-    if (free_points.empty()) return points++;
-    const std::uint32_t point = free_points.back();
-    free_points.pop_back();
-    return point;
+// The line to a program, and the points that it remembers, by number: one for every workspace that
+// is linearized at. A program that ended, or was late, is started again and remembers no point.
+class Session {
+ public:
+  Session(SimulatorOptions given, std::uint64_t seed, OptionValues declared)
+      : given_(std::move(given)), seed_(seed), declared_(std::move(declared)) {
+    said_ = start();
   }
 
-  Line line;
-  std::uint32_t points = 0;
-  std::vector<std::uint32_t> free_points;
+  const ProblemHandshake& said() const { return said_; }
+  int starts() const { return starts_; }
+
+  // Why the call failed; empty if it did not. LineError where too many of its kind have in a row.
+  std::string call(Verb verb, std::uint32_t number, std::span<const std::span<const Real>> numbers,
+                   std::span<Real> answer) {
+    Index& in_a_row = failures_.at(static_cast<std::size_t>(verb));
+    const auto note = [&](const FailedCall& error) {
+      if (++in_a_row < given_.failures) return;
+      throw LineError(in_a_row == 1 ? error.what()
+                                    : fmt::format("{} calls in a row failed; the last: {}",
+                                                  in_a_row, error.what()));
+    };
+    try {
+      line_->send(verb, number, numbers);
+      line_->receive_answer(verb, answer, given_.call_time > 0 ? given_.call_time : kNoDeadline);
+      in_a_row = 0;
+      return "";
+    } catch (const LostProgram& error) {
+      note(error);
+      const std::string why = error.reason;
+      const ProblemHandshake now = start();
+      if (now.inputs != said_.inputs || now.outputs != said_.outputs)
+        line_->fail("has other numbers of inputs and outputs now that it was started again");
+      return why;
+    } catch (const FailedCall& error) {
+      note(error);
+      return error.reason.empty() ? "the program names no reason" : error.reason;
+    }
+  }
+
+  std::uint32_t take_point() {
+    if (free_points_.empty()) return points_++;
+    const std::uint32_t point = free_points_.back();
+    free_points_.pop_back();
+    return point;
+  }
+  void give_back(std::uint32_t point) { free_points_.push_back(point); }
+
+ private:
+  ProblemHandshake start() {
+    line_.reset();  // the old program ends before the new one begins
+    line_ = std::make_unique<Line>(door_to(given_.command));
+    ++starts_;
+    return greet_problem(*line_, seed_, given_.startup, declared_);
+  }
+
+  SimulatorOptions given_;
+  std::uint64_t seed_;
+  OptionValues declared_;
+  ProblemHandshake said_;
+  std::unique_ptr<Line> line_;
+  int starts_ = 0;
+  std::array<Index, static_cast<std::size_t>(Verb::x_error) + 1> failures_{};  // in a row, by verb
+  std::uint32_t points_ = 0;
+  std::vector<std::uint32_t> free_points_;
 };
 
 // Per workspace: the point of its products, and buffers for data that is not contiguous.
 struct OwnPoint final : Scratch {
   ~OwnPoint() override {
-    if (session) session->free_points.push_back(number);
+    if (session) session->give_back(number);
   }
   std::shared_ptr<Session> session;
   std::uint32_t number = 0;
+  int start = 0;            // of the program that knows the point
+  bool has_failed = false;  // the forward pass
   Matrix in, out, within;
 };
 
@@ -86,19 +143,19 @@ class ProcessPhysics final : public ByJacobian {
   // Outside the bounds P has no value; the program computes the nearest x inside.
   void forward(BatchRef x, BatchRef, BatchOut y, Workspace& w) const override {
     OwnPoint& point = point_of(w);
-    if (!bounds_) return ask(Verb::linearize, x, y, point);
+    point.start = session_->starts();
+    if (!bounds_) return ask(Verb::linearize, x, y, w);
     point.within.resize(x.rows(), x.cols());
     for (Index b = 0; b < x.cols(); ++b) point.within.col(b) = bounds_->nearest(x.col(b));
-    ask(Verb::linearize, point.within, y, point);
+    ask(Verb::linearize, point.within, y, w);
     for (Index b = 0; b < x.cols(); ++b)
-      if (!bounds_->hold(x.col(b))) y.col(b).setConstant(std::numeric_limits<Real>::quiet_NaN());
+      if (!bounds_->hold(x.col(b))) y.col(b).setConstant(kNaN);
   }
   void pushforward(BatchRef v, BatchOut Jv, Workspace& w) const override {
-    asks_pushforward_ ? ask(Verb::pushforward, v, Jv, point_of(w))
-                      : ByJacobian::pushforward(v, Jv, w);
+    asks_pushforward_ ? ask(Verb::pushforward, v, Jv, w) : ByJacobian::pushforward(v, Jv, w);
   }
   void pullback(BatchRef u, BatchOut JTu, Workspace& w) const override {
-    asks_pullback_ ? ask(Verb::pullback, u, JTu, point_of(w)) : ByJacobian::pullback(u, JTu, w);
+    asks_pullback_ ? ask(Verb::pullback, u, JTu, w) : ByJacobian::pullback(u, JTu, w);
   }
   void jacobian(BatchOut J, Workspace& w) const override {
     has_jacobian_ ? ByJacobian::jacobian(J, w) : Physics::jacobian(J, w);
@@ -108,9 +165,9 @@ class ProcessPhysics final : public ByJacobian {
     const Matrix targets = y, starts = x0;  // each in one piece
     Vector answer(x.size() + y.cols());     // x, then one success flag per sample
     const std::array<std::span<const Real>, 2> given = {numbers_of(targets), numbers_of(starts)};
-    session_->line.send(Verb::inverse, 0, given);
-    session_->line.receive_answer(Verb::inverse,
-                                  {answer.data(), static_cast<std::size_t>(answer.size())});
+    const std::span<Real> numbers(answer.data(), static_cast<std::size_t>(answer.size()));
+    if (!session_->call(Verb::inverse, 0, given, numbers).empty())
+      return Success::Constant(y.cols(), false);
     x = answer.head(x.size()).reshaped(x.rows(), x.cols());
     return answer.tail(y.cols()).array() == 1;
   }
@@ -126,22 +183,42 @@ class ProcessPhysics final : public ByJacobian {
   }
 
   // Straight from the caller's arrays and into them, where each lies in one piece.
-  void ask(Verb verb, BatchRef given, BatchOut answer, OwnPoint& point) const {
+  void ask(Verb verb, BatchRef given, BatchOut answer, Workspace& w) const {
+    OwnPoint& point = point_of(w);
+    const bool is_forward = verb == Verb::linearize;
+    if (!is_forward && !point.has_failed && point.start != session_->starts()) remember(point, w);
+    if (!is_forward && point.has_failed) {
+      answer.setConstant(kNaN);
+      return;
+    }
     const bool is_whole = given.outerStride() == given.rows();
     if (!is_whole) point.in = given;
     const Real* const from = is_whole ? given.data() : point.in.data();
-    Line& line = session_->line;
-    line.send(verb, point.number, std::span(from, static_cast<std::size_t>(given.size())));
+    const std::span<const Real> numbers(from, static_cast<std::size_t>(given.size()));
     const auto count = static_cast<std::size_t>(answer.size());
-    if (answer.outerStride() == answer.rows())
-      return line.receive_answer(verb, {answer.data(), count});
-    point.out.resize(answer.rows(), answer.cols());
-    line.receive_answer(verb, {point.out.data(), count});
-    answer = point.out;
+    const bool is_direct = answer.outerStride() == answer.rows();
+    if (!is_direct) point.out.resize(answer.rows(), answer.cols());
+    Real* const to = is_direct ? answer.data() : point.out.data();
+    const std::string why = session_->call(verb, point.number, std::span(&numbers, 1), {to, count});
+    if (is_forward) point.has_failed = !why.empty();
+    if (!why.empty()) {
+      failed_evaluations().add((bounds_ ? point.within : w.x).reshaped(),
+                               is_forward ? why : fmt::format("{}: {}", name_of(verb), why));
+      answer.setConstant(kNaN);
+    } else if (!is_direct)
+      answer = point.out;
+  }
+
+  // The forward pass again, in a program that was started since.
+  void remember(OwnPoint& point, Workspace& w) const {
+    const Matrix& x = bounds_ ? point.within : w.x;
+    Matrix y(outputs_, x.cols());
+    point.start = session_->starts();
+    ask(Verb::linearize, x, y, w);
   }
 
   void form_jacobian(Matrix& J, Workspace& w) const override {
-    ask(Verb::jacobian, Matrix(0, 0), J, point_of(w));
+    ask(Verb::jacobian, Matrix(0, 0), J, w);
   }
 
   std::shared_ptr<Session> session_;
@@ -171,30 +248,29 @@ ProblemParts process_parts(const ProblemHandshake& said, const std::shared_ptr<S
     parts.x_error = [session](BatchRef x, const Batch&) {
       const Matrix whole = x;  // in one piece
       Real error = 0;
-      session->line.send(Verb::x_error, 0, numbers_of(whole));
-      session->line.receive_answer(Verb::x_error, {&error, 1});
-      return error;
+      const std::span<const Real> numbers = numbers_of(whole);
+      const std::string why =
+          session->call(Verb::x_error, 0, std::span(&numbers, 1), std::span(&error, 1));
+      return why.empty() ? error : kNaN;
     };
   if (!said.truth.empty()) parts.truth = vector_of(said.truth);
   return parts;
 }
 
 Problem make_process(const OptionValues& options, const Draw& draw) {
-  const auto given = read_options<ProcessOptions>(options);
-  auto session = std::make_shared<Session>(given.command);
+  const auto given = read_options<SimulatorOptions>(options);
   const OptionValues declared = declared_values(options);
-  ProblemHandshake said =
-      greet_problem(session->line, draw.instance_seed(), given.startup, declared);
+  const auto session = std::make_shared<Session>(given, draw.instance_seed(), declared);
+  ProblemHandshake said = session->said();
   if (!said.drawn.empty() && draw.start_seed() != draw.instance_seed()) {  // it samples its starts
-    Session other(given.command);
-    said.drawn = greet_problem(other.line, draw.start_seed(), given.startup, declared).drawn;
+    said.drawn = Session(given, draw.start_seed(), declared).said().drawn;
   }
   return Problem(process_parts(said, session, draw));
 }
 
 Foreign introduce(const OptionValues& options) {
   static Introductions<ProblemHandshake> all;
-  const auto given = read_options<ProcessOptions>(options);
+  const auto given = read_options<SimulatorOptions>(options);
   const OptionValues declared = declared_values(options);
   Foreign foreign =
       all.of(given.command, declared,
@@ -211,7 +287,7 @@ void register_process(ProblemRegistry& registry) {
                 .title = "A problem that another program computes",
                 .formula = "y = P(x) and its products, by frames over a private socket",
                 .source = "see the record",
-                .options = option_table<ProcessOptions>(),
+                .options = option_table<SimulatorOptions>(),
                 .in_all = false,
                 .needs_argument = "process[command=…]",
                 .introduce = introduce,

@@ -19,6 +19,7 @@
 #include "benchmarks/run/store.h"
 #include "core/clock.h"
 #include "core/errors.h"
+#include "core/failures.h"
 #include "core/files.h"
 #include "core/foreign/handshake.h"
 #include "core/foreign/line.h"
@@ -34,6 +35,16 @@ namespace isoline::benchmarks {
 namespace {
 
 volatile std::sig_atomic_t stop_requested = 0;
+
+void note_failures(Trace& trace) {
+  const FailedEvaluations& failed = failed_evaluations();
+  if (failed.total == 0 || trace.message[0] != '\0') return;
+  const std::span<const Real> x(failed.x[0].data(), std::min<std::size_t>(failed.x[0].size(), 8));
+  set_text(trace.message,
+           fmt::format("{} evaluation{} failed, the first at x = ({:.10g}{}): {}", failed.total,
+                       failed.total == 1 ? "" : "s", fmt::join(x, ", "),
+                       failed.x[0].size() > 8 ? ", …" : "", failed.reasons[0]));
+}
 
 void run(const Catalog& catalog, const Request& request, Trace& trace, Checkpoint& checkpoint,
          Vector* returned, int perturbation) {
@@ -52,7 +63,9 @@ void run(const Catalog& catalog, const Request& request, Trace& trace, Checkpoin
   if (returned && returned->size() > 0) start = *returned;
   if (perturbation != 0) start = perturbed_start(std::move(start), request, perturbation);
   checkpoint.watch(trace, request.budget);
+  failed_evaluations() = {};
   const Vector theta = drive(*method, meter, std::move(start), checkpoint);
+  note_failures(trace);
   if (trace.status == Status::budget && !trace.stopped_by_clock) checkpoint.keep_end();
   if (returned) *returned = theta;
 }

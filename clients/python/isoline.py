@@ -14,9 +14,13 @@ import atexit
 import json
 import os
 import platform
+import re
+import shlex
 import socket
 import struct
+import subprocess
 import sys
+import tempfile
 
 try:
     import numpy
@@ -502,6 +506,88 @@ def problem(
         },
     )
     _serve(line, products, inverse, x_error, len(start), len(y))
+
+
+class command:
+    """forward(x) by a program of any language, which reads a file and writes numbers.
+
+    run: the command, such as "./model in.txt". It runs in a new, empty folder for each call. Words of
+        it that name files in the present folder are passed with their full paths.
+    template: a file with "~ name ~" where the value of that unknown goes, as of PEST, whose first line
+        "ptf ~" may be there. `names` are in the order of their first occurrence. Its result is the
+        file `input` in the new folder; by default the name of the template with the suffix .txt.
+    read: the name of the file that contains the results, of which all words that are numbers count;
+        or a function that gets the new folder and returns numbers. Default: what the program prints.
+    files: further files of the present folder that the program finds in its own.
+    seconds: after so long, the program is killed.
+
+    If the program exits with a code other than 0, is killed, or leaves no numbers, the call raises
+    RuntimeError: a failed evaluation.
+    """
+
+    def __init__(self, run, template, read=None, input=None, files=(), seconds=None):
+        self.read, self.seconds = read, seconds
+        self.files = [os.path.abspath(each) for each in files]
+        self.input = input or os.path.splitext(os.path.basename(template))[0] + ".txt"
+        self.words = [
+            os.path.abspath(word) if os.path.isfile(word) and word != self.input else word
+            for word in shlex.split(run)
+        ]
+        with open(template, encoding="utf-8") as file:
+            text = file.read()
+        marked = re.match(r"ptf\s+(\S)[^\n]*\n", text)
+        self.mark, self.text = (marked[1], text[marked.end() :]) if marked else ("~", text)
+        self.parts = self.text.split(self.mark)
+        if len(self.parts) < 3 or len(self.parts) % 2 == 0:
+            raise Refused(f"{template} must contain each unknown as {self.mark} name {self.mark}")
+        self.names = list(dict.fromkeys(name.strip() for name in self.parts[1::2]))
+
+    def __call__(self, x):
+        values = dict(zip(self.names, map(float, x)))
+        parts = [
+            f"{values[part.strip()]:.17g}" if i % 2 else part for i, part in enumerate(self.parts)
+        ]
+        with tempfile.TemporaryDirectory(prefix="isoline-") as folder:
+            for path in self.files:
+                os.symlink(path, os.path.join(folder, os.path.basename(path)))
+            with open(os.path.join(folder, self.input), "w", encoding="utf-8") as file:
+                file.write("".join(parts))
+            return self._results(folder, self._printed(folder))
+
+    def _printed(self, folder):
+        child = subprocess.Popen(
+            self.words, cwd=folder, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE, text=True, errors="replace",
+        )
+        try:
+            printed, complaints = child.communicate(timeout=self.seconds)
+        except subprocess.TimeoutExpired:
+            child.kill()
+            child.communicate()
+            raise RuntimeError(f"the program ran for more than {self.seconds} s") from None
+        if child.returncode != 0:
+            last = (complaints.strip() or printed.strip() or "no output").splitlines()[-1]
+            raise RuntimeError(f"exit code {child.returncode}: {last}")
+        return printed
+
+    def _results(self, folder, printed):
+        if callable(self.read):
+            return self.read(folder)
+        if self.read is not None:
+            path = os.path.join(folder, self.read)
+            if not os.path.isfile(path):
+                raise RuntimeError(f"the program did not write {self.read}")
+            with open(path, encoding="utf-8", errors="replace") as file:
+                printed = file.read()
+        numbers = []
+        for word in printed.replace(",", " ").split():
+            try:
+                numbers.append(float(word))
+            except ValueError:
+                pass  # a word between the numbers
+        if not numbers:
+            raise RuntimeError(f"{self.read or 'the output'} contains no numbers")
+        return numbers
 
 
 def _bound(side, start):

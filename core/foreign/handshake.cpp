@@ -33,7 +33,7 @@ Foreign foreign_of_command(const std::string& command) {
 }
 
 OptionValues declared_values(OptionValues complete) {
-  for (const OptionField& field : option_table<ProcessOptions>()) complete.erase(field.name);
+  for (const OptionField& field : option_table<SimulatorOptions>()) complete.erase(field.name);
   for (const char* of_harness : {kStartOption, kTargetOption}) complete.erase(of_harness);
   return complete;
 }
@@ -166,7 +166,7 @@ class Said {
         kMostPackages);
     const Json& list = json_[name];
     if (!list.is_array() || list.size() > kMostPackages) refuse(name, law);
-    OptionTable table = option_table<ProcessOptions>();
+    OptionTable table = option_table<SimulatorOptions>();
     const std::size_t ours = table.size();
     for (const Json& each : list) {
       const bool is_whole = each.is_object() && each.contains("name") && each.contains("default") &&

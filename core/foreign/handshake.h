@@ -27,6 +27,20 @@ void fields(ProcessOptions& o, auto& field) {
   field("startup", o.startup, above(0), "seconds until it must introduce itself");
 }
 
+// When a call of a problem has failed, and how often that may happen in a row.
+struct SimulatorOptions : ProcessOptions {
+  Real call_time = 0;
+  Index failures = 10;
+};
+
+void fields(SimulatorOptions& o, auto& field) {
+  fields(static_cast<ProcessOptions&>(o), field);
+  field("call-time", o.call_time, between(0, 1e9),
+        "seconds after which a call has failed, and the program is started again; 0: no limit");
+  field("failures", o.failures, between(1, 1'000'000),
+        "failed calls of one kind in a row that end the run");
+}
+
 // The values of the options that a program has declared, out of all of a component.
 OptionValues declared_values(OptionValues complete);
 

@@ -97,15 +97,23 @@ Line::Line(int socket) : socket_(socket), sender_("the other program") {}
 
 Line::~Line() { close(socket_); }
 
+std::string Line::state_text() const {
+  if (!child_) return "";
+  const std::string end = child_->end_in_words(), words = child_->last_words();
+  return fmt::format("; {}{}", end,
+                     words.empty() ? ", and printed nothing" : "; its last output was: " + words);
+}
+
 void Line::fail(const std::string& what) {
-  std::string text = fmt::format("{} {}", sender_, what);
-  if (child_) {
-    text += fmt::format("; {}", child_->end_in_words());
-    const std::string words = child_->last_words();
-    text += words.empty() ? ", and printed nothing" : "; its last output was: " + words;
-    if (child_->was_killed()) throw KilledProgram(text);
-  }
+  const std::string text = fmt::format("{} {}{}", sender_, what, state_text());
+  if (child_ && child_->was_killed()) throw KilledProgram(text);
+  if (child_ && child_->has_ended()) throw LostProgram(text, child_->end_in_words());
   throw LineError(text);
+}
+
+void Line::fail_at(Verb verb, const std::string& why) {
+  throw FailedCall(fmt::format("{} failed at {}: {}{}", sender_, name_of(verb), why, state_text()),
+                   why);
 }
 
 // Reads the program's output while waiting, so that a full pipe does not block the program.
@@ -115,7 +123,9 @@ void Line::wait(short events, const Deadline& deadline) {
   poll(watched.data(), watched.size(), deadline.milliseconds_left());
   if (child_ && watched[1].revents != 0) child_->drain();
   if (watched[0].revents == 0 && deadline.is_over())
-    fail(fmt::format("did not answer within {} s", deadline.seconds));
+    throw LostProgram(
+        fmt::format("{} did not answer within {} s{}", sender_, deadline.seconds, state_text()),
+        fmt::format("it did not answer within {} s", deadline.seconds));
 }
 
 void Line::send_pieces(const FrameHead& head, std::span<const Piece> pieces) {
@@ -236,8 +246,7 @@ void Line::receive_answer(Verb verb, std::span<Real> numbers, double seconds) {
   if (head.verb != static_cast<std::uint32_t>(verb))
     fail(fmt::format("answered {} with a frame of verb {}", name_of(verb), head.verb));
   if (head.status != static_cast<std::uint32_t>(Answer::done))
-    fail(fmt::format("failed at {}: {}", name_of(verb),
-                     message_text(head, {bytes.data(), got}, kMostWireText, deadline)));
+    fail_at(verb, message_text(head, {bytes.data(), got}, kMostWireText, deadline));
   if (head.bytes != bytes.size())
     fail(fmt::format("answered {} with {} bytes instead of {}", name_of(verb), head.bytes,
                      bytes.size()));
@@ -251,8 +260,7 @@ std::string Line::receive_text(Verb verb, std::uint64_t most_bytes, double secon
   if (head.verb != static_cast<std::uint32_t>(verb))
     fail(fmt::format("answered {} with a frame of verb {}", name_of(verb), head.verb));
   const std::string text = message_text(head, "", most_bytes, deadline);
-  if (head.status != static_cast<std::uint32_t>(Answer::done))
-    fail(fmt::format("failed at {}: {}", name_of(verb), text));
+  if (head.status != static_cast<std::uint32_t>(Answer::done)) fail_at(verb, text);
   return text;
 }
 

@@ -75,6 +75,17 @@ struct KilledProgram : LineError {
   using LineError::LineError;
 };
 
+// The call failed, for this short reason, and the program waits for the next one.
+struct FailedCall : LineError {
+  FailedCall(const std::string& text, std::string why) : LineError(text), reason(std::move(why)) {}
+  std::string reason;
+};
+
+// The program ended by itself or was late, so that it must be started again.
+struct LostProgram : FailedCall {
+  using FailedCall::FailedCall;
+};
+
 inline constexpr double kNoDeadline = std::numeric_limits<double>::infinity();
 
 // A socket that frames go over, and the program at its other end, where this one started it.
@@ -103,6 +114,7 @@ class Line {
   std::string receive_text(Verb verb, std::uint64_t most_bytes, double seconds = kNoDeadline);
 
   [[noreturn]] void fail(const std::string& what);  // with its name and its state
+  [[noreturn]] void fail_at(Verb verb, const std::string& why);
 
  private:
   struct Deadline;
@@ -115,6 +127,7 @@ class Line {
   void receive_rest(char* bytes, std::size_t count, const Deadline& deadline);
   std::string message_text(const FrameHead& head, std::string begun, std::uint64_t most,
                            const Deadline& deadline);
+  std::string state_text() const;
   void wait(short events, const Deadline& deadline);
   std::size_t receive_some(std::span<const std::span<char>> parts, const Deadline& deadline);
 

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <map>
 #include <regex>
 
 #include "benchmarks/plan/catalog.h"
@@ -54,14 +55,85 @@ class ForeignCells : public testing::Test {
 
 TEST_F(ForeignCells, FailWithWhatTheOtherDid) {
   expect_failed("closes", "; it is still running");
-  expect_failed("leaves", "code 3; its last output");
-  expect_failed("half-a-frame", "it exited with code 0");
   expect_failed("a-huge-frame", "9223372036854775808 bytes instead of 16");
   expect_failed("a-huge-complaint", "9223372036854775808 bytes; at most 65536");
   expect_failed("another-verb", "a frame of verb 99");
   expect_failed("two-answers", "sent data that was");
-  expect_failed("raises", "linearize: ValueError: the mesh");
-  expect_failed("raises-at-length", "linearize: ValueError: the mesh");
+}
+
+// One call of the run fails, which the record states.
+TEST_F(ForeignCells, WhoseCallFailedSayWhereAndWhy) {
+  for (const char* misdeed : {"raises", "raises-at-length"}) {
+    const Record record = record_after(misdeed);
+    EXPECT_FALSE(is_failure(record.status)) << misdeed << ": " << record.message;
+    for (const char* part : {"the first at x = (1.2, 1)", "ValueError: the mesh"})
+      EXPECT_NE(record.message.find(part), std::string::npos) << record.message;
+  }
+}
+
+// Rosenbrock's valley where x₂ > 1.2 fails: by an exception, by the end of the script, or by a call
+// that takes too long.
+TEST_F(ForeignCells, GoOnAfterAFailedCallHoweverItFailed) {
+  const auto script = folder.path() / "fails.py";
+  write_text(script,
+             "import os, sys, time, isoline\n"
+             "def fail():\n"
+             "    if sys.argv[1] == 'raises': raise KeyError('mesh')\n"
+             "    if sys.argv[1] == 'exits': os._exit(7)\n"
+             "    time.sleep(600)\n"
+             "def forward(x):\n"
+             "    return fail() if x[1] > 1.2 else [10 * (x[1] - x[0] * x[0]), 1 - x[0]]\n"
+             "isoline.problem(forward, [-1.2, 1], truth=[1, 1],\n"
+             "                jacobian=lambda x: [[-20 * x[0], 10], [-1, 0]])\n");
+  const auto record_with = [&](const std::string& how, const std::string& method) {
+    const std::string command = "python3 " + script.string() + " " + how;
+    return record_of(request_of(process_of(command, ",call-time=0.3"), method));
+  };
+  const std::map<std::string, std::string> reasons = {
+      {"raises", "KeyError"}, {"exits", "code 7"}, {"hangs", "within 0.3 s"}};
+  for (const char* method : {"nlopt-neldermead", "nlopt-bobyqa", "levenberg-marquardt"}) {
+    std::vector<Real> losses;
+    for (const auto& [how, reason] : reasons) {
+      const Record record = record_with(how, method);
+      EXPECT_FALSE(is_failure(record.status)) << method << " " << how << ": " << record.message;
+      EXPECT_LT(record.summary.loss, 0.5 * record.summary.start_loss) << method << " " << how;
+      if (!losses.empty()) {
+        EXPECT_EQ(record.curve.loss, losses) << method << " " << how;
+      }
+      losses = record.curve.loss;
+      if (record.message.empty()) continue;  // a method that went around the region
+      EXPECT_NE(record.message.find(reason), std::string::npos) << record.message;
+    }
+  }
+  EXPECT_NE(record_with("exits", "nlopt-neldermead").message, "") << "the region was visited";
+}
+
+TEST_F(ForeignCells, EndAfterTooManyFailedCallsInARow) {
+  const auto script = folder.path() / "fails.py";
+  write_text(script,
+             "import isoline\n"
+             "def forward(x):\n"
+             "    if list(x) != [1.0, 2.0]: raise KeyError('mesh')\n"
+             "    return x\n"
+             "isoline.problem(forward, [1.0, 2.0])\n");
+  const std::string command = "python3 " + script.string();
+  const Record ten = record_of(request_of(process_of(command), "nlopt-neldermead"));
+  EXPECT_EQ(ten.status, Status::failed);
+  EXPECT_NE(ten.message.find("10 calls in a row"), std::string::npos) << ten.message;
+  const Record one = record_of(request_of(process_of(command, ",failures=1"), "nlopt-neldermead"));
+  EXPECT_EQ(one.status, Status::failed);
+  EXPECT_NE(one.message.find("KeyError"), std::string::npos) << one.message;
+}
+
+// Layers that are too thin for any point to lie in one.
+TEST_F(ForeignCells, OrOthersAreTheSameWhereTheRegionOfFailuresIsNeverVisited) {
+  for (const char* method : {"levenberg-marquardt", "nlopt-neldermead", "gd"}) {
+    const Record plain = record_of(request_of("rosenbrock", method));
+    const Record failing = record_of(request_of("rosenbrock[fail=1e-15]", method));
+    EXPECT_EQ(failing.curve.loss, plain.curve.loss) << method;
+    EXPECT_EQ(failing.curve.work, plain.curve.work) << method;
+    EXPECT_EQ(failing.message, plain.message) << method;
+  }
 }
 
 TEST_F(ForeignCells, WhoseProgramWasKilledAreInterrupted) {
@@ -141,10 +213,10 @@ TEST_F(ForeignCells, AreRunOnlyWhereTheProblemIsCertified) {
   const std::string sign = complaint("has-a-wrong-sign"), random = complaint("is-random");
   EXPECT_NE(sign.find("'the remainder of the"), std::string::npos) << sign;
   EXPECT_NE(random.find("gives the same bits"), std::string::npos) << random;
-  EXPECT_NE(complaint("raises").find("cannot be checked"), std::string::npos)
+  EXPECT_NE(complaint("raises").find("gives the same bits"), std::string::npos)
+      << "one call failed, and the same one later did not";
+  EXPECT_NE(complaint("two-answers").find("cannot be checked"), std::string::npos)
       << "no certificate, no cells";
-  const Request raises = request_of(process_of(misbehaving("misbehaving.py raises")), "gd");
-  EXPECT_NE(record_of(raises).message.find("ValueError: the mesh is tangled"), std::string::npos);
   EXPECT_EQ(complaint("is-sound"), "");
 }
 

@@ -232,6 +232,50 @@ p.finish([5, 6], "done")
 """
 
 
+class Commands(unittest.TestCase):
+    """isoline.command, with a program of the shell."""
+
+    TEMPLATE = "ptf ~\nk ~ k ~\nc ~c~ and ~ k ~\n"
+
+    def ask(self, program, call, more=""):
+        text = (
+            "import isoline\n"
+            f"model = isoline.command('sh program.sh in.txt', 'in.tpl'{more})\n"
+            "try:\n"
+            f"    print({call})\n"
+            "except RuntimeError as error:\n"
+            "    print(error)\n"
+        )
+        with tempfile.TemporaryDirectory() as folder:
+            for name, content in {"program.sh": program, "in.tpl": self.TEMPLATE, "ask.py": text}.items():
+                with open(os.path.join(folder, name), "w") as file:
+                    file.write(content)
+            environment = dict(os.environ, PYTHONPATH=CLIENT, PYTHONDONTWRITEBYTECODE="1")
+            ran = subprocess.run(
+                [sys.executable, "ask.py"], cwd=folder, env=environment, capture_output=True, text=True
+            )
+            left = sorted(os.listdir(folder))
+        self.assertEqual(left, ["ask.py", "in.tpl", "program.sh"])  # it runs in another folder
+        self.assertEqual(ran.stderr, "")
+        return ran.stdout.strip()
+
+    def test_fills_the_template_and_reads_numbers(self):
+        self.assertEqual(self.ask("true", "model.names"), "['k', 'c']")
+        self.assertEqual(self.ask("cat $1; ls", "model([0.1, 2])"), "[0.1, 2.0, 0.1]")
+        self.assertEqual(
+            self.ask("echo 5,6 > out.csv; echo 7", "model([1, 2])", ", read='out.csv'"), "[5.0, 6.0]"
+        )
+        self.assertEqual(
+            self.ask("cp $1 out", "model([1, 2])", ", read=lambda folder: len(folder) > 1"), "True"
+        )
+
+    def test_fails_where_the_program_does(self):
+        self.assertEqual(self.ask("echo 1; echo no mesh >&2; exit 3", "model([1, 2])"), "exit code 3: no mesh")
+        self.assertIn("did not write", self.ask("true", "model([1, 2])", ", read='out'"))
+        self.assertIn("no numbers", self.ask("echo none", "model([1, 2])"))
+        self.assertIn("0.2 s", self.ask("exec sleep 60", "model([1, 2])", ", seconds=0.2"))
+
+
 class Optimizers(unittest.TestCase):
     has_numpy = True
 

@@ -161,6 +161,38 @@ TEST(Features, ActiveBoundsHaveTheLeastLossWithinThem) {
   EXPECT_FALSE(wide.bounds()->are_needed);
 }
 
+// The standard error of a share of 0.05 among 4,000 points is 0.0034.
+TEST(Features, AShareOfAllXFailsButNeitherTheStartNorTheTruth) {
+  for (const std::uint64_t seed : {0U, 1U, 2U}) {
+    const Problem plain = make("burgers[N=16]", seed);
+    const Problem failing = featured("burgers[N=16]", {{"fail", 0.05}}, seed);
+    EXPECT_EQ(loss_at_start(failing), loss_at_start(plain));
+    EXPECT_TRUE(std::isfinite(loss_at(failing, failing.truth()->reshaped())));
+    RandomStream stream(seed, "burgers", "points of a test");
+    constexpr int kPoints = 4000;
+    int failed = 0;
+    for (int i = 0; i < kPoints; ++i) {
+      const Vector x = 20 * stream.normal_vector(16);
+      const Real loss = loss_at(failing, x);
+      failed += std::isnan(loss);
+      if (i < 100 && !std::isnan(loss)) {
+        EXPECT_EQ(loss, loss_at(plain, x));
+      }
+    }
+    EXPECT_NEAR(static_cast<Real>(failed) / kPoints, 0.05, 5 * 0.0034);
+  }
+}
+
+TEST(Features, AFailedEvaluationHasNoDerivatives) {
+  const Problem failing = featured("burgers[N=16]", {{"fail", 0.5}});
+  Vector x = failing.start();
+  for (int i = 0; std::isfinite(loss_at(failing, x)); ++i) {
+    ASSERT_LT(i, 100);
+    x.array() += 0.1;
+  }
+  EXPECT_TRUE(gradient_at(failing, x).array().isNaN().all());
+}
+
 TEST(Features, AreForDirectProblemsOfLeastSquares) {
   EXPECT_THROW(featured("sine[mode=learn]", {{"noise", 0.1}}), UsageError);
   EXPECT_THROW(featured("poisson[N=4]", {{"order", Index{1}}}), UsageError);
