@@ -153,6 +153,9 @@ std::string nearest_name(std::string_view wrong, const std::vector<std::string>&
 
 std::string unknown_name(std::string_view what, std::string_view wrong,
                          const std::vector<std::string>& known) {
+  if ((what == "problem" || what == "optimizer") && wrong.find_first_of(" ./") != wrong.npos)
+    return fmt::format("unknown {} '{}'; a script is process[command=\"python3 mine.py\"]", what,
+                       wrong);
   const std::string nearest = nearest_name(wrong, known);
   if (!nearest.empty())
     return fmt::format("unknown {} '{}'; did you mean '{}'?", what, wrong, nearest);

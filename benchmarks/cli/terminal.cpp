@@ -91,9 +91,10 @@ void print_outcome(const Outcome& outcome, const std::filesystem::path& folder, 
   std::string counts;
   for (const auto& [status, count] : outcome.statuses)
     counts += fmt::format("{}{} {}", counts.empty() ? "" : ", ", count, name_of(status));
-  say(stdout, fmt::format("{}: {} new, {} reused. Status: {}. Time: {}\n",
+  say(stdout, fmt::format("{}: {} new, {} reused.{} Time: {}\n",
                           reports::counted(std::size_t(outcome.planned), "cell"), outcome.run,
-                          outcome.reused, counts, duration_text(outcome.seconds)));
+                          outcome.reused, counts.empty() ? "" : " Status: " + counts + ".",
+                          duration_text(outcome.seconds)));
 }
 
 int exit_code_of(const Outcome& outcome) {

@@ -69,6 +69,8 @@ BuildParts build_parts(const Request& request) {
       {"problem", problem.sources},
       {"optimizer", problem.is_learned ? optimizer.learning_sources : optimizer.sources}};
   if (problem.is_learned) parts["network"] = problem.learning_sources;
+  const std::string best = BestLosses::known().losses_text(problem);
+  if (!best.empty()) parts["best"] = digest(best);
   return parts;
 }
 
@@ -312,8 +314,6 @@ Component complete_problem(const Catalog& catalog, const std::string& name,
                                  : networks::network_registry().at(parse_spec(network).name).file;
     problem.learning_sources = source_digest(file);
   }
-  const std::string best = BestLosses::known().losses_text(problem);
-  if (!best.empty()) problem.sources = digest(problem.sources + best);
   return problem;
 }
 

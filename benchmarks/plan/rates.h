@@ -59,7 +59,7 @@ class BestLosses {
 
   std::optional<Real> find(const Component& problem, std::uint64_t seed) const;
 
-  // The row of a problem at all seeds, as text, which digests of the problem include. Empty: none.
+  // The row of a problem at all seeds, as text, for a part of the digest of a build. Empty: none.
   std::string losses_text(const Component& problem) const;
 
   // The lesser of what is known and the best loss that the record has seen; whether that changed.

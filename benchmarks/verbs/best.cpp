@@ -5,6 +5,8 @@
 #include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <set>
+#include <utility>
 
 #include "benchmarks/cli/verb.h"
 #include "benchmarks/plan/catalog.h"
@@ -12,6 +14,7 @@
 #include "core/errors.h"
 #include "core/files.h"
 #include "core/json.h"
+#include "core/seeds.h"
 #include "core/text.h"
 
 namespace isoline::benchmarks {
@@ -56,16 +59,17 @@ int run(const BestArguments& given, Session& session) {
   BestLosses best;
   if (fs::exists(given.out)) best = BestLosses::from_json(read_json(given.out), given.out);
   std::map<std::string, bool> declares;  // by problem, whether it knows its least loss
-  std::size_t improved = 0;
+  std::set<std::pair<std::string, std::uint64_t>> improved;  // problems and instances
   for (const Record& record : records_under(given.folders)) {
     const Component& problem = record.request.problem;
     if (!session.catalog().problems.contains(problem.name)) continue;
     const auto [known, is_new] = declares.try_emplace(problem.spec, false);
     if (is_new) known->second = record.minimum && !record.is_best_known;  // nothing is started
-    if (!known->second) improved += best.add(record);
+    if (!known->second && best.add(record))
+      improved.emplace(problem.spec, instance_of(record.request.seed));
   }
   write_text(given.out, best_losses_text(best.to_json()));
-  say(stdout, fmt::format("{}: best losses new or improved: {}\n", given.out, improved));
+  say(stdout, fmt::format("{}: best losses new or improved: {}\n", given.out, improved.size()));
   return kGood;
 }
 

@@ -83,7 +83,9 @@ void print_scores(const results::Table& table, const std::string& suite) {
   std::vector<Score> scores;
   for (std::size_t s = 0; s < table.optimizers.size(); ++s)
     if (Score score = score_of(table, s); score.runs > 0) scores.push_back(std::move(score));
-  require(!scores.empty(), "no run has a problem with a known solution");
+  require(!scores.empty(),
+          "no digits to count: none of these problems has a known solution. Declare its x, in a "
+          "script as the argument truth of isoline.problem");
   std::ranges::stable_sort(scores, [](const Score& a, const Score& b) {
     return std::pair(a.solved, a.digits) > std::pair(b.solved, b.digits);
   });

@@ -293,7 +293,7 @@ void register_solution(VerbRegistry& registry) {
        .notes =
            "`returned` is the point that the run returned, and `best` the evaluated point of least "
            "loss, where that is another one. Standard deviations belong to the returned point of "
-           "a least-squares problem. The file of --format npy holds the point of least loss; "
+           "a least-squares problem that offers derivatives. The file of --format npy holds the point of least loss; "
            "`isoline run --start FILE` starts from it."},
       declare, run));
 }

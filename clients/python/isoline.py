@@ -111,9 +111,18 @@ def _by_columns(matrix, rows, columns):
     count = len(flat) if numpy is None else flat.size
     if count != rows * columns:
         raise Refused(f"jacobian must return {rows} × {columns} numbers, got {count}")
+    if rows != columns and _shape(matrix) == (columns, rows):
+        raise Refused(f"jacobian must return {rows} rows of {columns} numbers, got its transpose")
     if numpy is not None:
         return flat.reshape(rows, columns).T.reshape(-1)
     return array.array("d", (flat[i * columns + j] for j in range(columns) for i in range(rows)))
+
+
+def _shape(matrix):
+    """Of an array, or of a list of lists."""
+    if hasattr(matrix, "shape"):
+        return tuple(matrix.shape)
+    return (len(matrix), len(matrix[0])) if hasattr(matrix[0], "__len__") else (len(matrix),)
 
 
 def _json_numbers(values, name):

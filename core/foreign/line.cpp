@@ -46,10 +46,6 @@ constexpr std::array<std::pair<Verb, std::string_view>, 19> kNames{{
 constexpr std::int64_t kSpinNanoseconds = 20'000;
 constexpr std::size_t kMostPieces = 5;
 
-double seconds_since(std::int64_t begin) {
-  return 1e-9 * static_cast<double>(monotonic_nanoseconds() - begin);
-}
-
 std::span<char> bytes_of(std::span<Real> numbers) {
   return {reinterpret_cast<char*>(numbers.data()), numbers.size_bytes()};
 }
@@ -65,15 +61,23 @@ std::string_view name_of(Verb verb) {
 // Frames over a socket of the Unix domain: whole in one call where the system lets it, waited for
 // by a short spin and then by poll.
 
+// Waits in short turns. One that lasted much longer was a pause (Ctrl-Z), which hardly counts.
 struct Line::Deadline {
-  double seconds;
-  std::int64_t begin = monotonic_nanoseconds();
+  static constexpr double kTurn = 0.1, kMostCounted = 1;  // seconds
 
-  int milliseconds_left() const {  // −1: for ever
+  double seconds, waited = 0;
+  std::int64_t last = monotonic_nanoseconds();
+
+  int milliseconds_to_wait() const {  // −1: for ever
     if (seconds == kNoDeadline) return -1;
-    return std::max(0, static_cast<int>(1e3 * (seconds - seconds_since(begin)) + 1));
+    return static_cast<int>(1e3 * std::clamp(seconds - waited, 0.0, kTurn) + 1);
   }
-  bool is_over() const { return seconds != kNoDeadline && seconds_since(begin) > seconds; }
+  void count() {
+    const std::int64_t now = monotonic_nanoseconds();
+    waited += std::min(1e-9 * static_cast<double>(now - last), kMostCounted);
+    last = now;
+  }
+  bool is_over() const { return seconds != kNoDeadline && waited > seconds; }
 };
 
 Line::Line(ChildProgram::Start start) : sender_("`" + start.command + "`") {
@@ -117,10 +121,11 @@ void Line::fail_at(Verb verb, const std::string& why) {
 }
 
 // Reads the program's output while waiting, so that a full pipe does not block the program.
-void Line::wait(short events, const Deadline& deadline) {
+void Line::wait(short events, Deadline& deadline) {
   std::array<pollfd, 2> watched{
       {{socket_, events, 0}, {child_ ? child_->output() : -1, POLLIN, 0}}};
-  poll(watched.data(), watched.size(), deadline.milliseconds_left());
+  poll(watched.data(), watched.size(), deadline.milliseconds_to_wait());
+  deadline.count();
   if (child_ && watched[1].revents != 0) child_->drain();
   if (watched[0].revents == 0 && deadline.is_over())
     throw LostProgram(
@@ -137,7 +142,7 @@ void Line::send_pieces(const FrameHead& head, std::span<const Piece> pieces) {
   left[count++] = {&head, sizeof head};
   for (const Piece& piece : pieces)
     if (piece.count > 0) left.at(count++) = piece;
-  const Deadline forever{kNoDeadline};
+  Deadline forever{kNoDeadline};
   for (std::size_t first = 0; first < count;) {
     std::array<iovec, kMostPieces> parts{};
     for (std::size_t i = first; i < count; ++i)
@@ -175,7 +180,7 @@ void Line::send_text(Verb verb, std::uint32_t status, std::string_view text) {
 }
 
 // At least a byte of them.
-std::size_t Line::receive_some(std::span<const std::span<char>> parts, const Deadline& deadline) {
+std::size_t Line::receive_some(std::span<const std::span<char>> parts, Deadline& deadline) {
   std::array<iovec, 2> room{};
   for (std::size_t i = 0; i < parts.size(); ++i) room.at(i) = {parts[i].data(), parts[i].size()};
   msghdr message{};
@@ -192,8 +197,7 @@ std::size_t Line::receive_some(std::span<const std::span<char>> parts, const Dea
 }
 
 // The header, and the bytes that arrive with it in `room`: `got` bytes of the payload.
-FrameHead Line::receive_head(void* room, std::size_t most, std::size_t& got,
-                             const Deadline& deadline) {
+FrameHead Line::receive_head(void* room, std::size_t most, std::size_t& got, Deadline& deadline) {
   FrameHead head;
   char* const bytes = reinterpret_cast<char*>(&head);
   std::size_t read = 0;
@@ -207,7 +211,7 @@ FrameHead Line::receive_head(void* room, std::size_t most, std::size_t& got,
   return head;
 }
 
-void Line::receive_rest(char* bytes, std::size_t count, const Deadline& deadline) {
+void Line::receive_rest(char* bytes, std::size_t count, Deadline& deadline) {
   while (count > 0) {
     const std::array<std::span<char>, 1> part{{{bytes, count}}};
     const std::size_t got = receive_some(part, deadline);
@@ -217,7 +221,7 @@ void Line::receive_rest(char* bytes, std::size_t count, const Deadline& deadline
 }
 
 std::string Line::message_text(const FrameHead& head, std::string begun, std::uint64_t most,
-                               const Deadline& deadline) {
+                               Deadline& deadline) {
   if (head.bytes > most)
     fail(fmt::format("sent a string of {} bytes; at most {} bytes are allowed", head.bytes, most));
   const std::size_t got = begun.size();
@@ -227,7 +231,7 @@ std::string Line::message_text(const FrameHead& head, std::string begun, std::ui
 }
 
 FrameHead Line::receive(std::span<Real> room, double seconds) {
-  const Deadline deadline{seconds};
+  Deadline deadline{seconds};
   const std::span<char> bytes = bytes_of(room);
   std::size_t got = 0;
   const FrameHead head = receive_head(bytes.data(), bytes.size(), got, deadline);
@@ -239,7 +243,7 @@ FrameHead Line::receive(std::span<Real> room, double seconds) {
 }
 
 void Line::receive_answer(Verb verb, std::span<Real> numbers, double seconds) {
-  const Deadline deadline{seconds};
+  Deadline deadline{seconds};
   const std::span<char> bytes = bytes_of(numbers);
   std::size_t got = 0;
   const FrameHead head = receive_head(bytes.data(), bytes.size(), got, deadline);
@@ -254,7 +258,7 @@ void Line::receive_answer(Verb verb, std::span<Real> numbers, double seconds) {
 }
 
 std::string Line::receive_text(Verb verb, std::uint64_t most_bytes, double seconds) {
-  const Deadline deadline{seconds};
+  Deadline deadline{seconds};
   std::size_t got = 0;
   const FrameHead head = receive_head(nullptr, 0, got, deadline);
   if (head.verb != static_cast<std::uint32_t>(verb))

@@ -123,13 +123,13 @@ class Line {
     std::size_t count;
   };
   void send_pieces(const FrameHead& head, std::span<const Piece> pieces);
-  FrameHead receive_head(void* room, std::size_t most, std::size_t& got, const Deadline& deadline);
-  void receive_rest(char* bytes, std::size_t count, const Deadline& deadline);
+  FrameHead receive_head(void* room, std::size_t most, std::size_t& got, Deadline& deadline);
+  void receive_rest(char* bytes, std::size_t count, Deadline& deadline);
   std::string message_text(const FrameHead& head, std::string begun, std::uint64_t most,
-                           const Deadline& deadline);
+                           Deadline& deadline);
   std::string state_text() const;
-  void wait(short events, const Deadline& deadline);
-  std::size_t receive_some(std::span<const std::span<char>> parts, const Deadline& deadline);
+  void wait(short events, Deadline& deadline);
+  std::size_t receive_some(std::span<const std::span<char>> parts, Deadline& deadline);
 
   int socket_ = -1;
   std::unique_ptr<ChildProgram> child_;

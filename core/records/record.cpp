@@ -288,8 +288,9 @@ void fields(Like<Record> auto& record, auto& field) {
   field.constant("schema", kRunSchema);
   field("cell", record.cell, kDigestLaw);
   field("build", record.build, kDigestLaw);
-  field.optional("build_parts", record.build_parts,
-                 R"({"description": "By part: platform, harness, problem, optimizer, network"})");
+  field.optional(
+      "build_parts", record.build_parts,
+      R"({"description": "By part: platform, harness, problem, optimizer, network, best"})");
   field("request", record.request);
   field("status", record.status);
   field("message", record.message);

@@ -344,14 +344,18 @@ std::vector<std::string> changed_parts(const ComparedCell& before, const Compare
   if (before.build == after.build) return {};
   std::vector<std::string> changes;
   for (const auto& [part, text] :
-       {std::pair("platform", "a change of the platform (compiler, flags, libraries or kernel)"),
+       {std::pair(std::string("platform"),
+                  "a change of the platform (compiler, flags, libraries or kernel)"),
         {"harness", "a change of the harness (core, meter or run loop)"},
         {"problem", "a change of the problem's source"},
         {"network", "a change of the network's source"},
-        {"optimizer", "a change of the optimizer's source"}}) {
+        {"optimizer", "a change of the optimizer's source"},
+        {"best", "a change of the lowest known loss"}}) {
     const auto old = before.parts->find(part), now = after.parts->find(part);
-    if (old != before.parts->end() && now != after.parts->end() && old->second != now->second)
-      changes.emplace_back(text);
+    const bool was = old != before.parts->end(), is = now != after.parts->end();
+    // A loss may have become known; digests of sources are missing only in older records.
+    const bool differs = was && is ? old->second != now->second : was != is && part == "best";
+    if (differs) changes.emplace_back(text);
   }
   if (changes.empty()) changes.emplace_back("a change of the build");
   return changes;

@@ -64,8 +64,9 @@ std::string wrapped(const std::string& text) {
   return out + "\n";
 }
 
-// "sine             sip † 2", two a line where they fit.
+// "sine             sip † 2", two a line where they fit. Empty if no least loss is known.
 std::string best_of_each(const Comparison& c) {
+  if (std::ranges::all_of(c.problems, &ProblemAxis::lacks_least_loss)) return "";
   std::vector<std::string> lines;
   std::size_t width = 0, longest = 0;
   for (const ProblemAxis& problem : c.problems)
@@ -73,11 +74,10 @@ std::string best_of_each(const Comparison& c) {
   for (std::size_t p = 0; p < c.problems.size(); ++p) {
     const std::vector<std::size_t> order = ranking(c, p);
     const bool is_solved = !order.empty() && c.cell(p, order[0]).headline[kTightest].is_solved();
-    const bool is_unknown = !order.empty() && c.problems[p].lacks_least_loss();
-    const std::string best = is_solved || is_unknown
-                                 ? fmt::format("{} {}", label_of(c.optimizers[order[0]]),
-                                               matrix_text(c, c.cell(p, order[0]), kTightest))
-                                 : "none";
+    const std::string best = is_solved ? fmt::format("{} {}", label_of(c.optimizers[order[0]]),
+                                                     matrix_text(c, c.cell(p, order[0]), kTightest))
+                             : c.problems[p].lacks_least_loss() ? "least loss unknown"
+                                                                : "none";
     lines.push_back("  " + left(label_of(c.problems[p]), width) + "  " + best);
     longest = std::max(longest, width_of(lines.back()));
   }

@@ -201,11 +201,14 @@ TEST(Best, GiveRunsWithoutADeclaredMinimumHitsThatAreExact) {
   EXPECT_NEAR(*record.scale, std::min(silent, record.summary.start_loss - *record.minimum), 1e-15);
 }
 
-TEST(Best, ArePartOfTheDigestOfTheirProblem) {
-  const Component learned = problem("exponential[mode=learn]");
-  EXPECT_NE(BestLosses::known().losses_text(learned), "");
-  EXPECT_NE(learned.sources, problem("exponential").sources);
-  EXPECT_EQ(problem("exponential").sources, tree_sources().at("problems/exponential.cpp"));
+TEST(Best, AreAPartOfTheBuildBesideTheSourcesOfTheirProblem) {
+  const auto parts_of = [](const std::string& spec) { return build_parts(cell_of(spec, "gd")); };
+  const BuildParts learned = parts_of("exponential[mode=learn]"), direct = parts_of("exponential");
+  EXPECT_EQ(learned.at("best"),
+            digest(BestLosses::known().losses_text(problem("exponential[mode=learn]"))));
+  EXPECT_FALSE(direct.contains("best"));
+  for (const BuildParts& parts : {learned, direct})
+    EXPECT_EQ(parts.at("problem"), tree_sources().at("problems/exponential.cpp"));
 }
 
 // Tuning: one option per method, on an equal number of values, scored by the criterion of the

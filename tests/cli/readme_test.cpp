@@ -125,7 +125,8 @@ TEST(Guide, ADataSetOfOnesOwnHasTheDigitsOfTheSameOneOfNist) {
     expect_scored(own, name, 6);
     expect_scored(nist, name, 8);
   }
-  shell.expect("./isoline score --problem more-wild --peers ceres-lm", {.exit_code = 1});
+  shell.expect("./isoline score --problem more-wild --peers ceres-lm",
+               {.exit_code = 1, .err = {"argument truth"}});
 }
 
 TEST_P(Page, LinksToFilesOfTheTreeThatExist) {

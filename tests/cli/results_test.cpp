@@ -406,7 +406,7 @@ TEST(BestVerb, KeepsTheLeastLossOfRunsThatDeclareNoneAndNoOther) {
   shell.expect(
       "./isoline run --problem 'brown-dennis[m=10],rosenbrock' --optimizer gd,levenberg-marquardt "
       "--rates none --work 500 --seeds 2 --quiet --no-report --out out");
-  shell.expect("./isoline best out --out best.json");
+  shell.expect("./isoline best out --out best.json", {.out = {"improved: 2\n"}});
   const Json table = read_json(shell.folder() / "best.json");
   ASSERT_EQ(table.at("rows").size(), 1U);
   const Json& row = table["rows"][0];
@@ -429,6 +429,9 @@ TEST(BestVerb, KeepsTheLeastLossOfRunsThatDeclareNoneAndNoOther) {
   };
   EXPECT_EQ(solved_with("", "plain"), 0U);
   EXPECT_EQ(solved_with(" --best best.json", "known"), 1U);
+  const std::string differences = shell("./isoline compare plain known").out;
+  EXPECT_NE(differences.find("the lowest known"), std::string::npos) << differences;
+  EXPECT_EQ(differences.find("problem's source"), std::string::npos) << differences;
 }
 
 // A record may come from someone else.

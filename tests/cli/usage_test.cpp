@@ -66,6 +66,7 @@ const std::vector<std::pair<std::string, std::string>> kMistakes = {
     {"run --problem", "--problem needs a value"},
     {"run --seeds 3 --seeds 4", "--seeds occurs more than once"},
     {"describe adan", "did you mean 'adam'"},
+    {"run --problem 'python3 mine.py' --optimizer gd", "process[command="},
     {"describe zzzz", "`isoline list` "},
     {"audit zzzz", "unknown optimizer 'zzzz'; "},
     {"report . --by tim", "did you mean 'time'"},

@@ -189,6 +189,15 @@ class Problems(unittest.TestCase):
             self.assertEqual(status, 1)
             self.assertIn(b"this script is a problem", payload)
 
+    def test_refuses_the_transpose_of_a_jacobian(self):
+        text = "import isoline\n" \
+            "isoline.problem(lambda x: [*x, x[0]], [1, 2], jacobian=lambda x: [[1, 0, 1], [0, 1, 0]])"
+        with self.program(text) as program:
+            program.greet("problem", seed=0)
+            program.ask(2, 0, [1, 2])
+            with self.assertRaisesRegex(RuntimeError, "3 rows of 2 numbers"):
+                program.ask(5, 0, [])
+
 
 class ProblemsWithoutNumPy(Problems):
     has_numpy = False

@@ -2,11 +2,13 @@
 // with its connection.
 #include <gtest/gtest.h>
 #include <sys/socket.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <csignal>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
@@ -124,6 +126,32 @@ TEST(Line, ADeadlineIsKept) {
   const auto begin = std::chrono::steady_clock::now();
   EXPECT_NE(said_of(frame(4, 0, 16, "1234"), false, 0.05).find("0.05 s"), std::string::npos);
   EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(20));
+}
+
+TEST(Line, APauseOfTheWaitingProcessDoesNotCountTowardItsDeadline) {
+  BothEnds ends;
+  const pid_t waiting = fork();
+  if (waiting == 0) {
+    raise(SIGSTOP);
+    std::array<double, 2> numbers{};
+    try {
+      ends.line->receive_answer(Verb::pullback, numbers, 3);
+    } catch (const LineError&) {
+      _exit(1);
+    }
+    _exit(numbers == kNumbers ? 0 : 2);
+  }
+  int status = 0;
+  ASSERT_EQ(waitpid(waiting, &status, WUNTRACED), waiting);
+  kill(waiting, SIGCONT);
+  usleep(200'000);  // it waits
+  kill(waiting, SIGSTOP);
+  usleep(3'500'000);
+  kill(waiting, SIGCONT);
+  usleep(200'000);
+  ends.write(frame(4, 0, 16, bytes_of(kNumbers)));
+  ASSERT_EQ(waitpid(waiting, &status, 0), waiting);
+  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << status;
 }
 
 TEST(Line, AQuestionLongerThanItsRoomIsRefusedBeforeItIsRead) {

@@ -241,6 +241,16 @@ TEST(Comparison, WithoutAKnownLeastLossNothingIsSolvedAndLossesAreCompared) {
   EXPECT_EQ(at(standings.tables[0], "b", "square"), "0.1 (+9 %)");  // 0.09 of 1 − 0.01
   EXPECT_TRUE(has(standings.readings.at(0).text, "0.01 (not")) << standings.readings[0].text;
   EXPECT_FALSE(has(terminal_table(document), "/1"));
+  Study larger;
+  for (int i = 0; i < 40; ++i)
+    for (const Record& record : study.runs) {
+      larger.runs.push_back(record);
+      larger.runs.back().request.optimizer.name += std::to_string(i);
+      larger.runs.back().request.optimizer.spec = larger.runs.back().request.optimizer.name;
+    }
+  const std::string matrix = terminal_table(document_of(compare_optimizers(larger)));
+  EXPECT_TRUE(has(matrix, "a39")) << matrix;
+  EXPECT_FALSE(has(matrix, "\nSmallest median")) << matrix;
   // One that knows f_L, as of a later table of best losses, is not enough; a cell that failed
   // before it had any loss takes nothing away.
   study.runs[0].minimum = 0.01;
