@@ -65,11 +65,17 @@ std::string goal_text(const Comparison& c, std::size_t problem, std::size_t meth
 }
 
 std::string unsolved_reading(const Comparison& c, std::size_t problem,
-                               const std::vector<std::size_t>& order) {
+                             const std::vector<std::size_t>& order) {
   const bool is_in_x = c.problems[problem].aim == Aim::x;
   const auto end_of = [&](std::size_t s) {
     const Cell& cell = c.cell(problem, s);
-    return is_in_x ? cell.x_error.median : cell.loss.median;
+    if (!is_in_x) return cell.loss.median;
+    return c
+        .aggregate(cell.runs,
+                   [](const Run& run) {
+                     return run.record->summary.x_error / run.record->x_scale.value_or(1);
+                   })
+        .median;
   };
   const std::size_t best = *std::ranges::min_element(order, {}, end_of);
   const Real least = end_of(best);
