@@ -22,19 +22,19 @@ namespace isoline::benchmarks {
 namespace {
 
 constexpr const char* kAbout =
-    "Isoline compares optimizers on physical inverse problems. It runs every optimizer on every "
+    "Isoline compares optimizers on inverse problems in physics. It runs every optimizer on every "
     "problem, writes one JSON record per run, and reports the results.";
 constexpr const char* kExamples =
     "Examples:\n"
-    "  isoline run                            the default suite, then its report\n"
-    "  isoline run --problem 'sine[xi=1|32]' --optimizer 'adam[rate=1e-3],ceres-lm' --seeds 5\n"
-    "  isoline run quick --optimizer adam     the cells of a suite with this optimizer\n"
-    "  isoline describe sip                   formula, options, required derivatives, source\n"
-    "  isoline check rosenbrock               are the derivatives of this problem right?\n"
-    "  isoline audit gd adam sip              measured scaling, invariance and order of methods\n"
+    "  isoline run                        the default suite, then its report\n"
+    "  isoline run --problem 'sine[xi=1|32]' --optimizer adam,ceres-lm --seeds 5\n"
+    "  isoline run quick --optimizer adam     only the cells with this optimizer\n"
+    "  isoline describe sip               formula, options, required derivatives\n"
+    "  isoline check rosenbrock           are the derivatives of a problem correct?\n"
+    "  isoline audit gd adam sip          measured scaling, invariance and order\n"
     "  isoline compare results/old results/new    what is worse than before?\n"
-    "  isoline claims notebook                do the claims of the notebook hold?\n"
-    "  isoline help run                       the options of a command, with examples\n\n"
+    "  isoline claims notebook            do the claims of the notebook hold?\n"
+    "  isoline help run                   the options of a command, with examples\n\n"
     "Exit codes: 0 success, 1 usage error, 2 failed cells or a regression, 3 improvements only, "
     "4 not comparable, 130 interrupted.";
 
@@ -126,7 +126,7 @@ std::int64_t read_bytes(const std::string& option, const std::string& text, int 
   const auto value = number_in<double>(amount);
   const double bytes = value ? *value * unit : -1;
   require(bytes >= least && bytes <= most, [&] {
-    return fmt::format("{} must be between {}MB and 1024TB, for example 2GB, got '{}'", option,
+    return fmt::format("{} must be a size between {}MB and 1024TB, such as 2GB, got '{}'", option,
                        least_megabytes, text);
   });
   return static_cast<std::int64_t>(bytes);

@@ -174,6 +174,7 @@ static Suite builtin_suite(const std::string& name) {
   const auto& builtin = builtin_suites();
   if (const auto found = builtin.find(name); found != builtin.end())
     return suite_from_json(parse_json(std::string(found->second), name), name);
+  require(!name.ends_with(".json"), [&] { return name + ": no such file"; });
   std::vector<std::string> names;
   for (const auto& [known, text] : builtin) names.push_back(known);
   throw UsageError(unknown_name("suite", name, names));

@@ -92,6 +92,8 @@ int run(const ChooseArguments& given, Session&) {
                     one.is_in_group ? '*' : ' ', comparison.optimizers[one.optimizer].name_of_all(),
                     one.solved, advice.settings.size(),
                     one.work < results::kNever ? reports::figure(one.work) : "–", one.score));
+  if (!advice.ranked.empty()) say(stdout, reports::words("advice.legend") + "\n");
+  if (given.unknowns > 0) say(stdout, reports::words("advice.size-class") + "\n");
   return kGood;
 }
 

@@ -148,10 +148,10 @@ void register_claims(VerbRegistry& registry) {
       {.name = "claims",
        .help_position = 110,
        .summary = "Judge the claims of papers by runs, after running the missing cells",
-       .examples = R"(  isoline claims --list                        the claims and their sources
-  isoline claims exponential                   one group of claims
-  isoline claims sip-better-in-x-worse-in-loss     one claim, with its evidence
-  isoline claims --no-run --out results/quick      the claims that the runs of a suite decide)",
+       .examples = R"(  isoline claims --list                          the claims and their sources
+  isoline claims exponential                     one group of claims
+  isoline claims sip-better-in-x-worse-in-loss   one claim, with its evidence
+  isoline claims --no-run --out results/quick    only from the runs of a suite)",
        .notes =
            "A claim is reproduced if the measured values agree with the published one within its "
            "uncertainty, and partly reproduced if only the direction holds. With fewer than six "

@@ -69,7 +69,7 @@ void register_compare(VerbRegistry& registry) {
        .summary = "Compare two result folders and list regressions",
        .examples = R"(  isoline compare results/old results/new
   isoline compare baseline.json results/quick --tolerance 1e-6 --all
-  isoline compare results/old results/new --markdown     for the summary of a job)",
+  isoline compare results/old results/new --markdown   for a job summary)",
        .notes =
            "A cell is one problem, one optimizer and one seed. Exit codes: 0 no differences; 2 "
            "regressions, or NEW lacks a cell of BASE; 3 improvements and no regressions; 4 not "

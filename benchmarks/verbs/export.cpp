@@ -73,8 +73,8 @@ void register_export(VerbRegistry& registry) {
        .help_position = 120,
        .summary = "Write curves as CSV or as COCO data",
        .examples =
-           R"(  isoline export results/quick --out curves.csv             one row per stored iteration
-  isoline export results/quick --format coco --out exdata   for COCO's post-processing)",
+           R"(  isoline export results/quick --out curves.csv
+  isoline export results/quick --format coco --out exdata)",
        .notes =
            "Reading the numbers back gives the same bits. Non-finite values are written as inf, "
            "-inf and nan."},

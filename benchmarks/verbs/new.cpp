@@ -171,11 +171,9 @@ void register_new(VerbRegistry& registry) {
       {.name = "new",
        .help_position = 180,
        .summary = "Write a template of your own problem or optimizer",
-       .examples =
-           "  isoline new problem my-chain                 problems/my_chain.cpp, for a program "
-           "of your own\n"
-           "  isoline new optimizer my-method --c          my_method.c, for a library\n"
-           "  isoline new problem my-simulator --python    my_simulator.py, for a process",
+       .examples = "  isoline new problem my-chain                C++: problems/my_chain.cpp\n"
+                   "  isoline new optimizer my-method --c         C: my_method.c, for --plugin\n"
+                   "  isoline new problem my-simulator --python   Python: my_simulator.py",
        .notes = "The template builds and passes its checks. `new` also writes CMakeLists.txt or "
                 "isoline.h "
                 "if it is missing, and does not overwrite any file."},

@@ -130,9 +130,9 @@ void register_plan(VerbRegistry& registry) {
        .help_position = 20,
        .summary = "Print what a run would do, its predicted time, and its division into shards",
        .examples =
-           R"(  isoline plan quick                           cells, finished cells, predicted time
-  isoline plan quick --shards 16 --from results/before     sixteen shards of equal time
-  isoline plan quick --shards 16 --json        for the matrix of a workflow)",
+           R"(  isoline plan quick                      the cells and their predicted time
+  isoline plan quick --shards 16 --from results/before     shards of equal time
+  isoline plan quick --shards 16 --json   for the matrix of a workflow)",
        .notes =
            "The predicted time of a cell is its time in records of the result folder and of --from "
            "or, without such a record, the time of the same cell with other seeds. Other cells "

@@ -126,13 +126,13 @@ void register_run(VerbRegistry& registry) {
        .help_position = 10,
        .summary = "Run a suite or your own study; finished cells do not run again",
        .examples =
-           R"(  isoline run                                  the suite quick, then its report
-  isoline run notebook --seeds 5 --jobs 4      another suite, on five seeds
-  isoline run --problem 'sine[xi=1|32],heat' --optimizer 'adam[rate=1e-3],ceres-lm'
-  isoline run quick --optimizer adam --dry-run     which cells would run, and how long
-  isoline run quick --retry failed,crashed     failed cells again
-  isoline run quick --shard 3/16               one shard; `isoline merge` joins them
-  isoline run --problem square --optimizer gd --seeds =3 --in-process     for a debugger)",
+           R"(  isoline run                                the suite quick, then its report
+  isoline run notebook --seeds 5 --jobs 4    another suite, on five seeds
+  isoline run --problem 'sine[xi=1|32],heat' --optimizer 'adam[rate=1e-3]'
+  isoline run quick --optimizer adam --dry-run     only print its cells
+  isoline run quick --retry failed,crashed   failed cells again
+  isoline run quick --shard 3/16             one shard, for `isoline merge`
+  isoline run --problem square --optimizer gd --seeds =3 --in-process   to debug)",
        .notes =
            "A cell is one problem, one optimizer and one seed, with a budget. Each cell runs in "
            "its own process, so a crash ends only its own cell (not with --in-process).\nRepeat "

@@ -29,8 +29,8 @@ std::string published_means() {
 }
 
 constexpr const char* kMeaning =
-    "LRE: the log relative error, the correct digits of the worst parameter, from 0 to 11; "
-    "forwards: residual\nevaluations of all runs.\n";
+    "LRE: the log relative error, about the number of correct digits of the least accurate "
+    "parameter,\nfrom 0 to 11; forwards: the forward solves of all runs.\n";
 
 struct ScoreArguments {
   std::string suite = "nist", problem, optimizer, out;
@@ -135,11 +135,11 @@ void register_score(VerbRegistry& registry) {
       {.name = "score",
        .help_position = 15,
        .summary =
-           "Count how many digits an optimizer gets right, next to other optimizers (on NIST's "
-           "regressions by default)",
+           "Count the correct digits of an optimizer's results, and compare them with those of "
+           "other optimizers",
        .examples = R"(  isoline score --optimizer 'process[command="python3 mine.py"]'
   isoline score --optimizer 'minpack-lmder[ftol=1e-8,xtol=1e-8]' --peers none)",
-       .notes = "Finished cells do not run again."},
+       .notes = "The default problems are NIST's regressions. Finished cells do not run again."},
       declare, run));
 }
 

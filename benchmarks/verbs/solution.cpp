@@ -287,13 +287,14 @@ void register_solution(VerbRegistry& registry) {
        .help_position = 47,
        .summary = "Print the unknowns x that runs found, and the command that repeats each run",
        .examples =
-           R"(  isoline solution results/quick    of each problem the run of least loss
+           R"(  isoline solution results/quick     for each problem, the run of least loss
   isoline solution results/quick --problem rosenbrock --optimizer ceres-bfgs
   isoline solution results/quick --problem rosenbrock --format npy --out x.npy)",
        .notes =
            "`returned` is the point that the run returned, and `best` the evaluated point of least "
-           "loss, where that is another one. Standard deviations belong to the returned point of "
-           "a least-squares problem that offers derivatives. The file of --format npy holds the point of least loss; "
+           "loss, if it is a different point. Standard deviations belong to the returned point of "
+           "a least-squares problem that offers derivatives. With --format npy, the file contains the "
+           "point of least loss; "
            "`isoline run --start FILE` starts from it."},
       declare, run));
 }

@@ -249,13 +249,13 @@ std::string tuning_text(const TuningResult& result, bool lists_all) {
       .id = "tuning", .title = "Tuning", .otherwise = "No pair could be tuned."};
   section.readings = {{"", tuning_summary(result)}};
   reports::Table table{
-      .columns = {"problem", "optimizer", "option", "best", "grid", "work", "left", ""},
+      .columns = {"problem", "optimizer", "option", "best", "grid", "work", "final", ""},
       .align = "lllrlrrl",
       .names = 2};
   table.caption =
       "Grid: one bar per value, from the lowest value to the highest; the tallest bar marks the "
-      "best value, and · marks a value whose runs failed. Work: the median work needed to reach "
-      "1e-6 with the best value; ✗: at most half of the runs reached 1e-6. Left: the median final "
+      "best value, and · marks a value whose runs diverged or failed. Work: the median work needed to reach "
+      "1e-6 with the best value; ✗: at most half of the runs reached 1e-6. Final: the median final "
       "loss, or the median final error in x if success is judged by x.";
   for (const TunedOption& tuned : result.tuned) table.rows.push_back(tuning_row(tuned));
   if (!result.left_out_rows->empty()) table = left_out_table(*result.left_out_rows);

@@ -155,7 +155,7 @@ void Line::send_pieces(const FrameHead& head, std::span<const Piece> pieces) {
       wait(POLLOUT, forever);
       continue;
     }
-    if (sent < 0) fail("closed its socket");
+    if (sent < 0) fail("closed the connection");
     auto taken = static_cast<std::size_t>(sent);
     for (; first < count && taken >= left[first].count; ++first) taken -= left[first].count;
     if (first < count)
@@ -190,8 +190,8 @@ std::size_t Line::receive_some(std::span<const std::span<char>> parts, Deadline&
   for (;;) {
     const ssize_t got = recvmsg(socket_, &message, MSG_DONTWAIT);
     if (got > 0) return static_cast<std::size_t>(got);
-    if (got == 0) fail("closed its socket");
-    if (errno != EAGAIN && errno != EINTR) fail("closed its socket");
+    if (got == 0) fail("closed the connection");
+    if (errno != EAGAIN && errno != EINTR) fail("closed the connection");
     if (monotonic_nanoseconds() - begin > kSpinNanoseconds) wait(POLLIN, deadline);
   }
 }

@@ -64,19 +64,31 @@ std::string goal_text(const Comparison& c, std::size_t problem, std::size_t meth
              : words("curve.solve", methods, setting_noun(c), tau_name(c));
 }
 
-std::string least_loss_reading(const Comparison& c, std::size_t problem,
-                               const std::vector<std::size_t>& order) {
-  const auto loss_of = [&](std::size_t s) { return c.cell(problem, s).loss.median; };
-  const std::size_t best = *std::ranges::min_element(order, {}, loss_of);
-  const Real loss = loss_of(best);
-  if (c.problems[problem].lacks_least_loss() && loss < kNever)  // in order of their losses
-    return words("curve.unknown", name_in_sentence(c.optimizers[best]), loss,
+std::string unsolved_reading(const Comparison& c, std::size_t problem,
+                             const std::vector<std::size_t>& order) {
+  const bool is_in_x = c.problems[problem].aim == Aim::x;
+  const auto end_of = [&](std::size_t s) {
+    const Cell& cell = c.cell(problem, s);
+    if (!is_in_x) return cell.loss.median;
+    return c
+        .aggregate(cell.runs,
+                   [](const Run& run) {
+                     return run.record->summary.x_error / run.record->x_scale.value_or(1);
+                   })
+        .median;
+  };
+  const std::size_t best = *std::ranges::min_element(order, {}, end_of);
+  const Real least = end_of(best);
+  if (c.problems[problem].lacks_least_loss() && least < kNever)  // in order of their losses
+    return words("curve.unknown", name_in_sentence(c.optimizers[best]), least,
                  order.size() < 2
                      ? ""
                      : words("curve.next-loss", name_in_sentence(c.optimizers[order[1]]),
-                             reached_figure(loss_of(order[1]))));
-  return words(loss == kNever ? "curve.none-finite" : "curve.least-loss", goal_text(c, problem, 1),
-               name_in_sentence(c.optimizers[best]), loss);
+                             reached_figure(end_of(order[1]))));
+  return words(!(least < kNever) ? "curve.none-finite"
+               : is_in_x         ? "curve.least-error"
+                                 : "curve.least-loss",
+               goal_text(c, problem, 1), name_in_sentence(c.optimizers[best]), least);
 }
 
 // "; next is adam, with 1.3× the median work", and on how many of the seeds that both ran the first
@@ -177,7 +189,7 @@ std::string curve_reading(const Comparison& c, std::size_t problem) {
   std::ranges::stable_sort(order, {}, [&](std::size_t s) { return work(s).median; });
   const auto solved = static_cast<std::size_t>(
       std::ranges::count_if(order, [&](std::size_t s) { return work(s).is_solved(); }));
-  if (solved == 0) return least_loss_reading(c, problem, order);
+  if (solved == 0) return unsolved_reading(c, problem, order);
   const Spread first = work(order[0]);
   std::vector<std::string> tied;
   for (const std::size_t s : order) {

@@ -223,12 +223,18 @@ std::vector<Reading> ranking_facts(const Comparison& c) {
 std::string left_out_text(const Comparison& c) {
   std::vector<std::string> parts, ill_posed, unknown;
   std::size_t sanity = 0;
+  bool has_regressions = false;
   for (std::size_t p = 0; p < c.problems.size(); ++p) {
     sanity += is_sanity(c, p);
+    has_regressions = has_regressions || c.problems[p].name == "nist";
     if (is_ill_posed(c, p)) ill_posed.push_back(problem_name(c.problems[p]));
     if (c.problems[p].lacks_least_loss()) unknown.push_back(problem_name(c.problems[p]));
   }
-  if (sanity > 0) parts.push_back(words("ranking.sanity", sanity));
+  std::string tables;
+  if (!c.sanity.settings.empty())
+    tables += " " + words("ranking.sanity-table", c.sanity.settings.size());
+  if (has_regressions) tables += " " + words("ranking.certified-table");
+  if (sanity > 0) parts.push_back(words("ranking.sanity", sanity, tables));
   if (!ill_posed.empty())
     parts.push_back(words("ranking.ill-posed", ill_posed.size(), first_of(ill_posed, 4)));
   if (!unknown.empty())

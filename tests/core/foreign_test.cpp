@@ -105,9 +105,9 @@ TEST(Line, AFrameThatComesByTheByteIsTheSame) {
 }
 
 TEST(Line, WhatBreaksTheLawOfFramesIsRefused) {
-  expect_said("", "closed its socket");
-  expect_said(frame(4, 0, 16, "").substr(0, 9), "closed its socket");
-  expect_said(frame(4, 0, 16, "12345678"), "closed its socket");
+  expect_said("", "closed the connection");
+  expect_said(frame(4, 0, 16, "").substr(0, 9), "closed the connection");
+  expect_said(frame(4, 0, 16, "12345678"), "closed the connection");
   expect_said(frame(4, 0, std::uint64_t{1} << 63, bytes_of(kNumbers)),
               "pullback with 9223372036854775808 bytes instead");
   expect_said(frame(4, 0, 8, "12345678"), "8 bytes instead of 16");

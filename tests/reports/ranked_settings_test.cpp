@@ -50,7 +50,8 @@ TEST(RankedSettings, AreThoseOfPhysicsAloneWhereThereAreAny) {
   EXPECT_EQ(at(sanity, "c", "median work"), "30");
   EXPECT_EQ(at(sanity, "a", "solved"), "1/2");
   EXPECT_EQ(at(sanity, "a", "median work"), "✗");
-  EXPECT_TRUE(has(joined(verdict(c)), words("ranking.sanity", 2)));
+  EXPECT_TRUE(
+      has(joined(verdict(c)), words("ranking.sanity", 2, " " + words("ranking.sanity-table", 2))));
   Study study = physics_and_others();
   for (Sheet& sheet : study.sheets) sheet.group = "classical";
   const Compared others(std::move(study));
@@ -78,8 +79,8 @@ TEST(RankedSettings, LeaveOutAnIllPosedOneAndShowItsErrorsAgainstWork) {
   EXPECT_EQ(Compared(with_floors({0.09, 0.09, 0.9})).order.settings.size(), 6U);
   const Compared c(with_floors({0.01, 0.092, 0.9}));
   EXPECT_EQ(c.order.settings.size(), 5U);
-  EXPECT_EQ(left_out_text(c),
-            words("ranking.sanity", 2) + " " + words("ranking.ill-posed", 1, "u"));
+  EXPECT_EQ(left_out_text(c), words("ranking.sanity", 2, " " + words("ranking.sanity-table", 2)) +
+                                  " " + words("ranking.ill-posed", 1, "u"));
   const Section section = standings_section(c);
   const Table& table = table_of(section, "ill-posed");
   ASSERT_EQ(table.rows.size(), 3U);
