@@ -15,7 +15,7 @@ namespace isoline::benchmarks {
 namespace {
 
 const std::string kVerbs =
-    "run score plan report compare choose solution baseline replay merge status best claims export list describe "
+    "run score plan report figures site compare choose solution baseline replay merge status best claims export list describe "
     "check audit new validate tune train infer completion help version ";
 
 TEST(Help, OfTheProgramAndOfEveryVerbIsWrittenOutAndGood) {
