@@ -28,11 +28,15 @@ std::string_view embedded_@name@() {
   target_sources(${target} PRIVATE ${stem}.S ${stem}.cpp)
 endfunction()
 
-# isoline_embed_folder(target function folder): every *.json of `folder`, by name, as
+# isoline_embed_folder(target function folder [ending]): every *.json, or *.ending, of `folder`, by name, as
 # `const std::map<std::string, std::string_view>& <function>()`.
 function(isoline_embed_folder target function folder)
   string(REPLACE "isoline_" "" module ${target})
-  file(GLOB files CONFIGURE_DEPENDS ${folder}/*.json)
+  set(ending json)
+  if(ARGC GREATER 3)
+    set(ending ${ARGV3})
+  endif()
+  file(GLOB files CONFIGURE_DEPENDS ${folder}/*.${ending})
   foreach(file IN LISTS files)
     cmake_path(GET file STEM stem)
     string(MAKE_C_IDENTIFIER "${function}_${stem}" name)

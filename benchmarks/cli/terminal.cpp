@@ -1,11 +1,16 @@
 // Prints progress, outcomes and reports on a terminal.
 #include "benchmarks/cli/terminal.h"
 
-#include <fmt/format.h>
+#include <fcntl.h>
+#include <fmt/ranges.h>
+#include <spawn.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "benchmarks/plan/claim_cells.h"
 #include "benchmarks/run/progress.h"
@@ -50,6 +55,32 @@ std::string debugging_advice(const Crash& crash, const fs::path& folder) {
 }
 
 }  // namespace
+
+void run_program(std::vector<std::string> command, const char* package, const fs::path& output) {
+  std::vector<char*> words;
+  for (std::string& word : command) words.push_back(word.data());
+  words.push_back(nullptr);
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  constexpr int kMode = 0644;
+  if (!output.empty())
+    posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, output.c_str(),
+                                     O_WRONLY | O_CREAT | O_TRUNC, kMode);
+  pid_t child = 0;
+  const int failed = posix_spawnp(&child, words[0], &actions, nullptr, words.data(), environ);
+  posix_spawn_file_actions_destroy(&actions);
+  require(failed == 0, [&] {
+    return fmt::format(
+        "this needs the program {0}, which does not start; on Debian, "
+        "`apt-get install {1}` installs it",
+        command[0], package);
+  });
+  int status = 0;
+  while (waitpid(child, &status, 0) < 0 && errno == EINTR) continue;
+  require(WIFEXITED(status) && WEXITSTATUS(status) == 0, [&] {
+    return fmt::format("the program {} failed: {}", command[0], fmt::join(command, " "));
+  });
+}
 
 Listener progress_on_terminal(const char* what) {
   if (Progress::style_of(STDERR_FILENO) != Progress::Style::live) return {};
@@ -114,13 +145,35 @@ int exit_code_of(const Outcome& outcome) {
   return is_whole && outcome.failures.empty() && outcome.conflicts.empty() ? kGood : kWorse;
 }
 
-void write_and_print(const reports::Study& study, const std::filesystem::path& out,
-                     Session& session, const Reporting& how) {
+reports::Study study_of_report(const std::vector<std::string>& folders, Session& session) {
+  std::set<std::string> claimed;
+  for (const Request& request : cells_of(builtin_claims_of(session.catalog()), true))
+    claimed.insert(request.cell);
+  reports::Study study = reports::read_study(
+      folders, progress_on_terminal("reading records"),
+      [&](Record& record) { reports::trim_for_report(record, claimed.contains(record.cell)); });
+  require(!study.runs.empty(), [&] {
+    const std::string damaged =
+        study.unreadable.empty() ? ""
+                                 : fmt::format(", and {} that cannot be read",
+                                               reports::counted(study.unreadable.size(), "file"));
+    return fmt::format("no records in {}{}; `isoline run --out FOLDER` creates some",
+                       fmt::join(folders, ", "), damaged);
+  });
+  return study;
+}
+
+reports::Document document_of_report(const reports::Study& study, Session& session,
+                                     const reports::Yardstick& yardstick) {
   std::vector<reports::Judgement> claims =
       reports::judge(json_of(builtin_claims_of(session.catalog())), study.runs);
   std::erase_if(claims, [](const reports::Judgement& judgement) { return !judgement.is_covered; });
-  reports::Document document =
-      reports::document_of(reports::compare_optimizers(study, how.yardstick), std::move(claims));
+  return reports::document_of(reports::compare_optimizers(study, yardstick), std::move(claims));
+}
+
+void write_and_print(const reports::Study& study, const std::filesystem::path& out,
+                     Session& session, const Reporting& how) {
+  reports::Document document = document_of_report(study, session, how.yardstick);
   document.out = out.string();
   reports::write_report(document, out);
   if (!how.is_quiet)

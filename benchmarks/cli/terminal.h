@@ -26,12 +26,21 @@ void print_outcome(const Outcome& outcome, const std::filesystem::path& folder, 
 // The exit code of the runs: interrupted, with a message; worse if a run failed; good.
 int exit_code_of(const Outcome& outcome);
 
+// Runs another program and waits for it; its output goes to a file where one is named. UsageError
+// with the Debian package where it is not installed, or where it fails.
+void run_program(std::vector<std::string> command, const char* package,
+                 const std::filesystem::path& output = {});
+
 // Writes a report of a study in every format, with the claims that its runs decide, and prints the
 // main table unless quiet.
 struct Reporting {
   bool is_quiet = false;
   reports::Yardstick yardstick = {};
 };
+// The records of result folders without what no report reads; UsageError where there are none.
+reports::Study study_of_report(const std::vector<std::string>& folders, Session& session);
+reports::Document document_of_report(const reports::Study& study, Session& session,
+                                     const reports::Yardstick& yardstick = {});
 void write_and_print(const reports::Study& study, const std::filesystem::path& out,
                      Session& session, const Reporting& how = {});
 

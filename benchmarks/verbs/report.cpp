@@ -95,21 +95,8 @@ std::string format_names() {
 }
 
 int run(const ReportArguments& given, Session& session) {
-  std::set<std::string> claimed;
-  for (const Request& request : cells_of(builtin_claims_of(session.catalog()), true))
-    claimed.insert(request.cell);
-  reports::Study study = reports::read_study(
-      given.folders, progress_on_terminal("reading records"),
-      [&](Record& record) { reports::trim_for_report(record, claimed.contains(record.cell)); });
+  reports::Study study = study_of_report(given.folders, session);
   if (!given.problem.empty()) keep_problems(study, given.problem);
-  require(!study.runs.empty(), [&] {
-    const std::string damaged =
-        study.unreadable.empty() ? ""
-                                 : fmt::format(", and {} that cannot be read",
-                                               reports::counted(study.unreadable.size(), "file"));
-    return fmt::format("no records in {}{}; `isoline run --out FOLDER` creates some",
-                       fmt::join(given.folders, ", "), damaged);
-  });
   const reports::Yardstick yardstick = yardstick_of(given);
   const fs::path out =
       given.out.empty() ? given.folders.front() / fs::path("report") : fs::path(given.out);

@@ -13,7 +13,7 @@
 namespace isoline::reports {
 
 std::string markdown_report(const Document& document);  // short enough for the summary of a CI job
-std::string latex_report(const Document& document);     // tables ready to paste
+std::string latex_report(const Document& document);     // a document, and for \\input in a paper
 std::string csv_report(const Document& document);       // one row a run
 std::string statistics_csv(const Document& document);   // table,row,column,value
 std::string json_report(const Document& document);      // schema isoline.report/1
@@ -74,6 +74,7 @@ std::vector<Part> table_parts(const Table& table, std::size_t most);
 std::string html_text(std::string_view text);
 std::string markdown_text(std::string_view text);
 std::string latex_text(std::string_view text);
+std::string latex_words(std::string_view text);      // Greek letters and marks as commands
 std::string csv_field(std::string_view text);        // no spreadsheet runs it
 std::string exact_csv_field(std::string_view text);  // to the byte, for programs
 std::string terminal_text(std::string_view text);    // no escape sequence passes

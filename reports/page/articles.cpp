@@ -81,31 +81,6 @@ std::string values_of(const Comparison& c, std::size_t s, const std::string& opt
   return fmt::format("{} to {}, {} values", texts.front(), texts.back(), texts.size());
 }
 
-std::string options_html(const Comparison& c, std::size_t s, const Sheet& sheet) {
-  const Json options =
-      sheet.options_text.empty() ? Json() : parse_json(sheet.options_text, "sheet");
-  if (!options.is_array() || options.empty()) return "";
-  const auto text_at = [](const Json& option, const char* key) {
-    const auto at = option.find(key);
-    if (at == option.end()) return std::string();
-    return at->is_string()   ? at->get<std::string>()
-           : at->is_number() ? figure(at->get<Real>())
-                             : json_text(*at);
-  };
-  std::string rows;
-  for (const Json& option : options)
-    rows += fmt::format("<tr><th scope=row>{}<td>{}<td>{}<td class=text>{}<td class=text>{}\n",
-                        html_text(text_at(option, "name")), html_text(text_at(option, "default")),
-                        html_text(values_of(c, s, text_at(option, "name"))),
-                        html_text(text_at(option, "doc")), html_text(text_at(option, "range")));
-  return fmt::format(
-      "<details><summary>Options</summary><div class=scroll tabindex=0 role=region "
-      "aria-label=\"Options of {}\"><table><thead><tr><th scope=col>option<th scope=col>default"
-      "<th scope=col>in these runs<th scope=col>meaning<th scope=col>range<tbody>{}</table>"
-      "</div></details>",
-      html_text(sheet.name), rows);
-}
-
 // "3rd of 36 on the 17 settings that all ranked methods ran on", or that it is not ranked.
 std::string place_text(const Comparison& c, std::size_t s) {
   if (!c.order.has(s)) return "Not ranked";
@@ -138,7 +113,18 @@ std::string reading(const Comparison& c, std::size_t s) {
              axis.failed > 0 ? fmt::format("; {} runs on any problem failed", axis.failed) : "");
 }
 
-std::string sheet_html(const Sheet* sheet, const std::string& facts = "") {
+std::string optimizer_html(const Comparison& c, std::size_t s) {
+  const OptimizerAxis& axis = c.optimizers[s];
+  return fmt::format(
+      "<article class=\"optimizer one\" id=optimizer-{0} data-s={0}><noscript><h3>{1}{2}</h3>{3}{4}{5}"
+      "</noscript></article>\n",
+      s, html_text(shown_spec(axis.label)), marks_html(axis), sheet_html(axis.sheet),
+      method_facts_html(c, s), axis.sheet == nullptr ? "" : options_html(c, s, *axis.sheet));
+}
+
+}  // namespace
+
+std::string sheet_html(const Sheet* sheet, const std::string& facts) {
   if (sheet == nullptr) return "";
   std::string html = fmt::format("<p class=about>{} <cite>{}</cite>{}</p><p class=formula>{}</p>",
                                  html_text(sheet->title), html_text(sheet->source),
@@ -147,23 +133,41 @@ std::string sheet_html(const Sheet* sheet, const std::string& facts = "") {
   return html;
 }
 
-std::string optimizer_html(const Comparison& c, std::size_t s) {
+std::string options_html(const Comparison& c, std::size_t s, const Sheet& sheet) {
+  const Json options =
+      sheet.options_text.empty() ? Json() : parse_json(sheet.options_text, "sheet");
+  if (!options.is_array() || options.empty()) return "";
+  const auto text_at = [](const Json& option, const char* key) {
+    const auto at = option.find(key);
+    if (at == option.end()) return std::string();
+    return at->is_string()   ? at->get<std::string>()
+           : at->is_number() ? figure(at->get<Real>())
+                             : json_text(*at);
+  };
+  std::string rows;
+  for (const Json& option : options)
+    rows += fmt::format("<tr><th scope=row>{}<td>{}<td>{}<td class=text>{}<td class=text>{}\n",
+                        html_text(text_at(option, "name")), html_text(text_at(option, "default")),
+                        html_text(values_of(c, s, text_at(option, "name"))),
+                        html_text(text_at(option, "doc")), html_text(text_at(option, "range")));
+  return fmt::format(
+      "<details><summary>Options</summary><div class=scroll tabindex=0 role=region "
+      "aria-label=\"Options of {}\"><table><thead><tr><th scope=col>option<th scope=col>default"
+      "<th scope=col>in these runs<th scope=col>meaning<th scope=col>range<tbody>{}</table>"
+      "</div></details>",
+      html_text(sheet.name), rows);
+}
+
+std::string method_facts_html(const Comparison& c, std::size_t s) {
   const OptimizerAxis& axis = c.optimizers[s];
-  std::string html = fmt::format(
-      "<article class=\"optimizer one\" id=optimizer-{0} data-s={0}><noscript><h3>{1}{2}</h3>{3}"
-      "<p class=reading>{4}</p><dl>",
-      s, html_text(shown_spec(axis.label)), marks_html(axis), sheet_html(axis.sheet),
-      html_text(reading(c, s)));
+  std::string html = "<p class=reading>" + html_text(reading(c, s)) + "</p><dl>";
   html += row("kind", kind_title(axis.mathematics()));
   html += row("required derivatives", html_text(counted_oracles(c, s)));
   if (!axis.privileges.empty())
     html += row("extra information",
                 "<span class=privilege>" + html_text(joined(axis.privileges)) + "</span>");
-  return html + deeds_html(c, s) + "</dl>" +
-         (axis.sheet == nullptr ? "" : options_html(c, s, *axis.sheet)) + "</noscript></article>\n";
+  return html + deeds_html(c, s) + "</dl>";
 }
-
-}  // namespace
 
 std::string counted_oracles(const Comparison& c, std::size_t s) {
   std::array<std::size_t, kOracles> asked{};  // problems on which a run called the oracle
@@ -207,6 +211,14 @@ std::string facts_text(const Sheet& sheet) {
   return facts + (has_inverse ? sheet.inverse : "no") + " inverse";
 }
 
+}  // namespace
+
+std::string problem_sheet_html(const ProblemAxis& problem) {
+  return sheet_html(problem.sheet, problem.sheet == nullptr ? "" : facts_text(*problem.sheet));
+}
+
+namespace {
+
 std::string problem_html(const Comparison& c, std::size_t p,
                          const std::optional<FoundFields>& fields) {
   const ProblemAxis& problem = c.problems[p];
@@ -214,8 +226,7 @@ std::string problem_html(const Comparison& c, std::size_t p,
              "<article class=\"problem one\" id=problem-{0} data-p={0}><noscript><h3>{1}</h3>{2}"
              "<p class=reading>{3}</p><div class=solve><div class=curves>{4}</div><div "
              "class=reached></div></div>",
-             p, html_text(problem_name(problem)),
-             sheet_html(problem.sheet, problem.sheet == nullptr ? "" : facts_text(*problem.sheet)),
+             p, html_text(problem_name(problem)), problem_sheet_html(problem),
              html_text(curve_reading(c, p)), curves_html(c, p)) +
          planes_html(c, p) + (fields ? fields_html(c, *fields) : "") + "</noscript></article>\n";
 }

@@ -105,9 +105,7 @@ class Curves {
   std::string html() const {
     if (curves_.empty()) return "";
     const bool is_of_x = is_x_sought() || c_.problems[p_].is_learned;
-    const bool has_x = std::ranges::any_of(curves_, [](const MedianCurve& curve) {
-      return std::ranges::any_of(curve.x_error, [](Real error) { return std::isfinite(error); });
-    });
+    const bool has_x = this->has_x();
     std::string html;
     for (const Vertical& vertical : kVerticals) {
       const bool is_of_error = &vertical == &kVerticals[1];
@@ -123,7 +121,19 @@ class Curves {
     return html;
   }
 
+  // The report's own.
+  std::optional<Drawing> own() const {
+    if (curves_.empty()) return std::nullopt;
+    const bool is_of_error = is_x_sought() || (c_.problems[p_].is_learned && has_x());
+    return drawing_of(kVerticals[is_of_error ? 1 : 0], c_.yardstick.by, is_of_error);
+  }
+
  private:
+  bool has_x() const {
+    return std::ranges::any_of(curves_, [](const MedianCurve& curve) {
+      return std::ranges::any_of(curve.x_error, [](Real error) { return std::isfinite(error); });
+    });
+  }
   bool is_x_sought() const { return c_.problems[p_].aim == Aim::x && !scales_.empty(); }
 
   // What the medians of the tables are of: a staircase to them.
@@ -298,6 +308,43 @@ std::string figure_html(const Comparison& c, const Figure& figure) {
 }  // namespace
 
 std::string curves_html(const Comparison& c, std::size_t p) { return Curves(c, p).html(); }
+
+std::optional<Drawing> own_curves(const Comparison& c, std::size_t p) { return Curves(c, p).own(); }
+
+std::string file_name_of(std::string_view title) {
+  std::string name;
+  for (const char letter : title) {
+    const bool is_plain = std::isalnum(static_cast<unsigned char>(letter)) != 0;
+    if (is_plain)
+      name += letter;
+    else if (!name.empty() && name.back() != '-')
+      name += '-';
+  }
+  while (name.ends_with('-')) name.pop_back();
+  return name.empty() ? "figure" : name;
+}
+
+std::vector<NamedDrawing> drawings_of(const Document& document) {
+  const Comparison& c = document.comparison;
+  std::vector<NamedDrawing> all;
+  std::map<std::string, int> counts;
+  const auto add = [&](std::string name, Drawing drawing, std::optional<std::size_t> problem = {}) {
+    const int count = ++counts[name];
+    if (count > 1) name += fmt::format("-{}", count);
+    all.push_back({std::move(name), std::move(drawing), problem});
+  };
+  for (const Section& section : document.sections)
+    for (const Plot& plot : section.plots) add(file_name_of(plot.id), drawing_of(plot));
+  for (std::size_t p = 0; p < c.problems.size(); ++p)
+    if (std::optional<Drawing> curves = own_curves(c, p))
+      add("curves-" + file_name_of(problem_name(c.problems[p])), std::move(*curves), p);
+  for (const Figure& one : document.figures)
+    if (one.pictures.empty()) add("figure-" + file_name_of(one.title), figure_drawing(c, one));
+  for (const Judgement& one : document.claims)
+    for (const Plot& plot : claim_section(one).plots)
+      add("claim-" + file_name_of(one.id), drawing_of(plot));
+  return all;
+}
 
 std::string figures_html(const Document& document) {
   std::string html;

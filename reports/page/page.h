@@ -2,6 +2,7 @@
 // problem, is hidden where the reader filters that one out; with both, where either is.
 #pragma once
 
+#include <map>
 #include <optional>
 #include <set>
 #include <string>
@@ -9,6 +10,7 @@
 #include <vector>
 
 #include "core/results/ranking.h"
+#include "reports/sections/claims.h"
 #include "reports/sections/figures.h"
 #include "reports/sections/sections.h"
 
@@ -26,6 +28,16 @@ std::string optimizers_html(const Comparison& comparison);  // one article each
 // What its runs asked for, as counted, not the least that it can do with: "forward, jacobian,
 // inverse (on 3 of 20)" settings.
 std::string counted_oracles(const Comparison& comparison, std::size_t optimizer);
+// Parts of the articles: formula, source and note of component metadata; a method's results in
+// these runs, its options, and which measured properties it has.
+std::string sheet_html(const Sheet* sheet, const std::string& facts = "");
+std::string problem_sheet_html(const ProblemAxis& problem);
+std::string method_facts_html(const Comparison& comparison, std::size_t optimizer);
+std::string options_html(const Comparison& comparison, std::size_t optimizer, const Sheet& sheet);
+std::string properties_html(const Comparison& comparison, std::size_t optimizer);
+// A row per pair of a problem and an optimizer; the last column has the command that repeats it.
+Table cells_table(const Comparison& comparison,
+                  const std::vector<std::pair<std::size_t, std::size_t>>& cells);
 std::string claims_html(const Document& document);  // verdicts, and each claim with its evidence
 
 // Drawings with their words.
@@ -107,6 +119,8 @@ struct Frame {
 // Round values within, at most some ten of them: powers of two or ten where logarithmic.
 std::vector<Real> ticks_of(Real low, Real high, bool is_logarithmic);
 
+std::string tick_text(Real value);
+
 std::string x_axis(const Frame& frame, const std::string& label);  // with a grid line a tick
 std::string y_axis(const Frame& frame, const std::string& label, bool is_share);
 
@@ -126,6 +140,8 @@ struct Drawing {
   std::vector<PlotSeries> ends;    // a point each: the start, and the goal
   std::string attributes;          // of the element
 };
+Drawing drawing_of(const Plot& plot);
+Frame framed(const Drawing& drawing, Frame place);  // the same place with the drawing's window
 std::string drawing_svg(const Drawing& drawing, Real tau = 1);
 // The lines that are not hidden at first; all where every one is.
 Plot shown_lines(const Drawing& drawing);
@@ -133,5 +149,38 @@ Plot shown_lines(const Drawing& drawing);
 std::string names_html(const Drawing& drawing);
 
 std::string plot_html(const Plot& plot);
+
+// Every drawing of a document under a name of letters, digits and hyphens that no other one has:
+// the plots of sections, the curves of each problem by the report's own measure, the figures of
+// papers, the plots of claims.
+struct NamedDrawing {
+  std::string name;
+  Drawing drawing;
+  std::optional<std::size_t> problem = {};  // whose curves these are
+};
+std::vector<NamedDrawing> drawings_of(const Document& document);
+std::optional<Drawing> own_curves(const Comparison& comparison, std::size_t problem);
+std::string file_name_of(std::string_view title);  // "heat[n=32]" is "heat-n-32"
+
+// The lines of a drawing that are shown at first, for a column of a paper, 3.2 inches wide: text of
+// 7 points and more, names below. SVG has its colours in each element; PGF is for \\input.
+std::string paper_svg(const Drawing& drawing);
+std::string paper_pgf(const Drawing& drawing);
+std::string points_csv(const Drawing& drawing);  // line,x,y,low,high of all lines, as computed
+
+// A site of several results: its pages by path, without the reports, which are beside them in
+// reports/NAME/ with their figures in reports/NAME/figures/.
+struct SiteResults {
+  std::string name;
+  const Document* document = nullptr;
+  std::vector<NamedDrawing> drawings = {};  // of the document
+};
+struct Site {
+  std::vector<SiteResults> results;
+  std::vector<Judgement> claims;            // of all papers
+  Section items;                            // of items_section()
+  std::map<std::string, std::string> docs;  // HTML of the pages of docs/, by name without ending
+};
+std::map<std::string, std::string> site_pages(const Site& site);
 
 }  // namespace isoline::reports

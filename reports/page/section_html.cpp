@@ -212,14 +212,8 @@ std::string cell_command(const Comparison& c, const Cell& cell) {
 
 }  // namespace
 
-// The table of all cells. Scripts sort and filter it; without scripts it is complete.
-std::string details_html(const Comparison& c) {
-  constexpr std::size_t kMost = 20'000;  // rows of some 200 bytes
-  if (c.problems.size() * c.optimizers.size() > kMost)
-    return fmt::format(
-        "<p class=lead>This report has more than {} cells, too many for a table: report.csv "
-        "contains all of them.</p>",
-        kMost);
+Table cells_table(const Comparison& c,
+                  const std::vector<std::pair<std::size_t, std::size_t>>& cells) {
   const auto spread_cell = [](const Spread& spread, std::string (*text)(Real)) {
     TableCell cell = spread.n == 0 ? "" : text(spread.median);
     cell.remark = range_figure(spread, text);
@@ -234,33 +228,46 @@ std::string details_html(const Comparison& c) {
       table.columns.push_back(fmt::format("{} to {}", what, tolerance.name));
   for (const char* last : {"final loss", "final error in x", "how the runs ended", "command"})
     table.columns.emplace_back(last);
-  for (std::size_t p = 0; p < c.problems.size(); ++p)
-    for (std::size_t s = 0; s < c.optimizers.size(); ++s) {
-      const Cell& cell = c.cell(p, s);
-      if (cell.planned == 0) continue;
-      table.row_topics.push_back({.optimizer = s, .problem = p});
-      auto& row = table.rows.emplace_back();
-      row = {problem_name(c.problems[p]),
-             setting_text(c, p, s) + (cell.privileges.empty() ? "" : " †")};
-      if (!cell.is_measured()) {
-        row.push_back(cell.runs.empty() ? "missing" : "n/a: " + cell.inapplicable);
-        continue;
-      }
-      row.push_back(count_text(cell, kTightest));
-      for (std::size_t t = 0; t < kTolerances.size(); ++t) {
-        row.push_back(spread_cell(cell.taken[by][t], reached_figure));
-        row.back().is_best = cell.is_best[t];
-      }
-      for (const Spread& seconds : cell.taken[Measure::time]) {
-        row.push_back(spread_cell(seconds, milliseconds));
-        if (!cell.is_timed_alone && seconds.is_solved()) row.back().text += "≈";
-      }
-      row.push_back(spread_cell(cell.loss, reached_figure));
-      row.push_back(spread_cell(cell.x_error, reached_figure));
-      row.push_back(status_text(cell.statuses));
-      row.push_back(is_large(c) ? "" : cell_command(c, cell));
+  for (const auto& [p, s] : cells) {
+    const Cell& cell = c.cell(p, s);
+    if (cell.planned == 0) continue;
+    table.row_topics.push_back({.optimizer = s, .problem = p});
+    auto& row = table.rows.emplace_back();
+    row = {problem_name(c.problems[p]),
+           setting_text(c, p, s) + (cell.privileges.empty() ? "" : " †")};
+    if (!cell.is_measured()) {
+      row.push_back(cell.runs.empty() ? "missing" : "n/a: " + cell.inapplicable);
+      continue;
     }
-  return "<table class=sortable id=detail-table>" + rows_html(table) + "</table>";
+    row.push_back(count_text(cell, kTightest));
+    for (std::size_t t = 0; t < kTolerances.size(); ++t) {
+      row.push_back(spread_cell(cell.taken[by][t], reached_figure));
+      row.back().is_best = cell.is_best[t];
+    }
+    for (const Spread& seconds : cell.taken[Measure::time]) {
+      row.push_back(spread_cell(seconds, milliseconds));
+      if (!cell.is_timed_alone && seconds.is_solved()) row.back().text += "≈";
+    }
+    row.push_back(spread_cell(cell.loss, reached_figure));
+    row.push_back(spread_cell(cell.x_error, reached_figure));
+    row.push_back(status_text(cell.statuses));
+    row.push_back(is_large(c) ? "" : cell_command(c, cell));
+  }
+  return table;
+}
+
+// The table of all cells. Scripts sort and filter it; without scripts it is complete.
+std::string details_html(const Comparison& c) {
+  constexpr std::size_t kMost = 20'000;  // rows of some 200 bytes
+  if (c.problems.size() * c.optimizers.size() > kMost)
+    return fmt::format(
+        "<p class=lead>This report has more than {} cells, too many for a table: report.csv "
+        "contains all of them.</p>",
+        kMost);
+  std::vector<std::pair<std::size_t, std::size_t>> all;
+  for (std::size_t p = 0; p < c.problems.size(); ++p)
+    for (std::size_t s = 0; s < c.optimizers.size(); ++s) all.emplace_back(p, s);
+  return "<table class=sortable id=detail-table>" + rows_html(cells_table(c, all)) + "</table>";
 }
 
 // The table of measured properties, with one row per method, which opens its details.
@@ -322,6 +329,19 @@ std::string row_html(const Comparison& c, std::size_t s) {
 }
 
 }  // namespace
+
+std::string properties_html(const Comparison& c, std::size_t s) {
+  std::string html;
+  for (const AuditedOptimizer& audited : c.study->audits) {
+    if (audited.name != c.optimizers[s].method) continue;
+    const auto answers = answers_of(audited);
+    for (std::size_t i = 0; i < std::size(kProperties); ++i)
+      if (answers[i])
+        html += fmt::format("<li><b class={}>{}</b> {}: {}</li>", *answers[i] ? "yes" : "no",
+                            *answers[i] ? "✓" : "✗", kProperties[i].name, kProperties[i].meaning);
+  }
+  return html.empty() ? "" : "<ul class=properties>" + html + "</ul>";
+}
 
 std::string methods_html(const Comparison& c) {
   std::string html =

@@ -20,12 +20,12 @@ Real share_of(Real value, Real low, Real high, bool is_log) {
   return std::clamp(share, -kBeyond, kBeyond);
 }
 
+}  // namespace
+
 std::string tick_text(Real value) {
   constexpr Real kInFull = 9999;
   return value > kInFull ? fmt::format("1e{:.0f}", std::log10(value)) : figure(value);
 }
-
-}  // namespace
 
 Real Frame::x(Real value) const {
   return left + width * share_of(value, window.x_low, window.x_high, is_log_x);
@@ -106,16 +106,12 @@ bool is_hidden(const Drawing& drawing, const PlotSeries& line) {
   return line.optimizer && drawing.shown && !drawing.shown->contains(*line.optimizer);
 }
 
-// Narrow where names stand below, so that letters can be read on a telephone.
-Frame frame_of(const Drawing& drawing) {
-  const Real width = drawing.has_names ? 760 : 480, height = drawing.has_names ? 380 : 300;
+}  // namespace
+
+Frame framed(const Drawing& drawing, Frame frame) {
   const Plot& plot = drawing.plot;
-  Frame frame{.left = kLeft,
-              .top = kTop,
-              .width = width - kLeft - (drawing.has_names ? kNameWidth : 16),
-              .height = height - kTop - kBelow,
-              .is_log_x = plot.is_log_x,
-              .is_log_y = plot.is_log_y};
+  frame.is_log_x = plot.is_log_x;
+  frame.is_log_y = plot.is_log_y;
   Window& window = frame.window;
   if (drawing.window)
     window = *drawing.window;
@@ -131,6 +127,17 @@ Frame frame_of(const Drawing& drawing) {
               y + unit * frame.height / 2};
   }
   return frame;
+}
+
+namespace {
+
+// Narrow where names stand below, so that letters can be read on a telephone.
+Frame frame_of(const Drawing& drawing) {
+  const Real width = drawing.has_names ? 760 : 480, height = drawing.has_names ? 380 : 300;
+  return framed(drawing, {.left = kLeft,
+                          .top = kTop,
+                          .width = width - kLeft - (drawing.has_names ? kNameWidth : 16),
+                          .height = height - kTop - kBelow});
 }
 
 // The same window in the coordinates of the area.
@@ -359,10 +366,13 @@ std::string names_html(const Drawing& drawing) {
   return "<div class=names>" + shown + "</div>" + others;
 }
 
-std::string plot_html(const Plot& plot) {
+Drawing drawing_of(const Plot& plot) {
   const bool is_steps = plot.kind == Plot::Kind::steps;
-  const Drawing drawing{
-      .plot = plot, .join = is_steps ? Join::steps : Join::straight, .has_names = is_steps};
+  return {.plot = plot, .join = is_steps ? Join::steps : Join::straight, .has_names = is_steps};
+}
+
+std::string plot_html(const Plot& plot) {
+  const Drawing drawing = drawing_of(plot);
   return fmt::format(
       "<figure class=plot id={}{}><figcaption><b>{}.</b> {}</figcaption>{}{}<p class=legend>{}</p>"
       "</figure>\n",

@@ -290,6 +290,7 @@ Section papers_section(const std::vector<Judgement>& judgements) {
     if (!is_decided(judgement.verdict) && !judgement.why.empty()) verdict += ": " + judgement.why;
     if (is_not_run && judgement.verdict != Verdict::undecidable) verdict = "not run";
     if (!judgement.reached.empty()) verdict += "; " + judgement.reached;
+    table->row_topics.push_back({.claim = judgement.id});
     table->rows.push_back(
         {judgement.sentence, judgement.place,
          fmt::format("isoline claims {}{}", judgement.id, is_long ? " --long" : ""),

@@ -16,8 +16,8 @@ namespace isoline::benchmarks {
 namespace {
 
 const std::string kVerbs =
-    "run score plan status merge replay report compare choose solution baseline best claims export "
-    "list describe check audit new tune train infer validate completion man help version ";
+    "run score plan status merge replay report figures site compare choose solution baseline best claims "
+    "export list describe check audit new tune train infer validate completion man help version ";
 
 TEST(Help, OfTheProgramAndOfEveryVerbIsWrittenOutAndGood) {
   const Shell shell;

@@ -87,7 +87,7 @@ Rows of_html(const std::string& page, const std::string& id) {
 Rows of_latex(const std::string& report, const std::string& title) {
   Rows rows;
   for (const std::string& part : split(report, "\\begin{table}")) {
-    if (part.find("\\caption{" + title + ". ") == std::string::npos) continue;
+    if (part.find("caption{" + title + ". ") == std::string::npos) continue;
     std::size_t i = 0;
     for (const std::string& line : split(between(part, "\\midrule\n", "    \\bottomrule"), "\n")) {
       const std::size_t first = line.find(" & ");
