@@ -158,7 +158,7 @@ void compare_with_manifest(const fs::path& folder, Wrong& wrong) {
   std::set<fs::path> listed;
   std::istringstream lines(read_text(manifest));
   for (std::string line; std::getline(lines, line);) {
-    if (line.size() <= kDigest + 2) continue;
+    if (line.starts_with('#') || line.size() <= kDigest + 2) continue;
     const fs::path file = (folder / line.substr(kDigest + 2)).lexically_normal();
     listed.insert(file);
     if (!is_there(file))

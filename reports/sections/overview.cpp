@@ -1,9 +1,12 @@
 // Orders the sections of a report, and writes its first sentences and the summaries of its charts.
 #include <algorithm>
+#include <filesystem>
 #include <map>
 #include <optional>
 #include <set>
+#include <sstream>
 
+#include "core/files.h"
 #include "core/seeds.h"
 #include "reports/sections/sections.h"
 #include "reports/sections/words.h"
@@ -135,10 +138,25 @@ std::string headline(const Comparison& c) {
                c.study->runs.size());
 }
 
+// The lines "# doi: 10.5281/zenodo.1234" of the manifest of a result folder, which is of sha256sum.
+static std::vector<std::string> dois_of(const std::filesystem::path& folder) {
+  constexpr std::string_view kLead = "# doi: ";
+  const std::filesystem::path manifest = folder / "SHA256SUMS";
+  std::vector<std::string> dois;
+  if (!is_there(manifest)) return dois;
+  std::istringstream lines(read_text(manifest));
+  for (std::string line; std::getline(lines, line);)
+    if (line.starts_with(kLead)) dois.push_back(line.substr(kLead.size()));
+  return dois;
+}
+
 std::vector<std::string> remarks(const Comparison& c) {
   const Study& study = *c.study;
   std::vector<std::string> all;
   constexpr std::size_t kNamed = 8;
+  for (const std::filesystem::path folder : study.folders)
+    for (const std::string& doi : dois_of(folder))
+      all.push_back(words("remarks.doi", folder.filename().string(), doi));
   std::vector<std::string> partial;  // problems that were not planned for every optimizer
   for (std::size_t p = 0; p < c.problems.size(); ++p)
     if (const std::size_t planned = methods_of(c, p); planned < methods_of(c))

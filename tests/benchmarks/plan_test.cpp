@@ -66,9 +66,7 @@ TEST(Suites, WhoseSettingsChangeHaveANewVersion) {
     std::string all = read_suite(name).label();
     for (const std::string& setting : settings) all += "\n" + setting;
     EXPECT_EQ(suite.value("settings", ""), digest(all))
-        << "the settings of " << name
-        << " are not those of its version; raise \"version\", and set "
-        << "\"settings\" to the digest above, which belongs to " << read_suite(name).label();
+        << name << ": its settings changed; raise \"version\", then set \"settings\"";
   }
 }
 

@@ -243,6 +243,15 @@ TEST_F(Exchange, APackedFolderIsTheSameFolderElsewhere) {
   shell.expect("./isoline compare results there/results");
 }
 
+// `sha256sum -c` ignores the comment.
+TEST_F(Exchange, ADoiInTheManifestStandsInTheReport) {
+  shell.expect(kPack + " && sed -i '1i # doi: 10.5281/zenodo.1234567' results/SHA256SUMS");
+  shell.expect("cd results && sha256sum --quiet -c SHA256SUMS");
+  shell.expect("./isoline validate results && ./isoline report results");
+  EXPECT_TRUE(contains(read_text(shell.folder() / "results/report/index.html"),
+                       "https://doi.org/10.5281/zenodo.1234567"));
+}
+
 TEST_F(Exchange, AFileThatTheManifestLacksOrThatIsMissingIsNamed) {
   shell.expect(kPack);
   shell("cd results/runs && mv \"$(ls | head -n 1)\" 0123456789abcdef-0123456789abcdef.json");

@@ -52,9 +52,14 @@ class Package(unittest.TestCase):
         published = [name for name in files if name.startswith("usr/share/isoline/published/runs/")]
         self.assertTrue(published and all(name.endswith(".json") for name in published))
         files = [name for name in files if name not in client + guide + published]
-        self.assertEqual(files, ["usr/bin/isoline"] + [f"usr/share/doc/isoline/{name}" for name in (
-            "CHANGELOG.md", "README.md", "copyright")])
-        with open(f"{self.folder}/root/{files[-1]}", encoding="utf-8") as text:
+        self.assertEqual(files, ["usr/bin/isoline"] + [f"usr/share/{name}" for name in (
+            "bash-completion/completions/isoline", "doc/isoline/CHANGELOG.md",
+            "doc/isoline/README.md", "doc/isoline/copyright",
+            "fish/vendor_completions.d/isoline.fish", "man/man1/isoline.1",
+            "zsh/vendor-completions/_isoline")])
+        for name in files:
+            self.assertGreater(os.path.getsize(f"{self.folder}/root/{name}"), 0, name)
+        with open(f"{self.folder}/root/usr/share/doc/isoline/copyright", encoding="utf-8") as text:
             notice = text.read()
         self.assertIn("GNU General Public License", notice)
         self.assertIn("MIT", notice)

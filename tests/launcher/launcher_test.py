@@ -5,6 +5,7 @@ usage: launcher_test.py LAUNCHER [unittest options]
 
 import os
 import pathlib
+import re
 import shutil
 import subprocess
 import sys
@@ -148,6 +149,25 @@ class Questions(WithTree):
         self.assertEqual(result.stdout, 'program list\n')
         self.assertIn('problems/mine.cpp is newer', result.stderr)
         self.assertEqual(tree.run('completion', 'bash').stderr, '')
+
+
+class Container(unittest.TestCase):
+    """The container file builds as the page about clusters does, with packages of the launcher."""
+
+    def test_its_commands_are_those_of_the_page(self):
+        root = LAUNCHER.parent
+        build, run = (root / 'Containerfile').read_text('utf-8').split('\n\nFROM ')
+        commands = re.findall(r'^RUN (.*)$', build, re.M)
+        page = (root / 'docs' / 'on-a-cluster.md').read_text('utf-8')
+        [shown] = re.findall(r'^```\n(ISOLINE_PRESET=portable .*?)^```$', page, re.M | re.S)
+        plan, pack, install = shown.splitlines()
+        self.assertEqual([commands[0], commands[-1]], [plan, pack])
+        [tools] = re.findall(r'install -y --no-install-recommends (.*)', commands[1])
+        for tool in tools.split():
+            self.assertIn(f'"{tool}:', LAUNCHER.read_text('utf-8'))
+        self.assertEqual(pack.split()[-1], 'build')
+        self.assertIn(f'COPY --from=build /isoline/{install.split("./")[-1]} /tmp/', run)
+        self.assertRegex(run, r'RUN apt-get update && apt-get install .* /tmp/isoline_\*\.deb ')
 
 
 class Packages(WithTree):

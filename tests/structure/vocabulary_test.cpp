@@ -67,8 +67,8 @@ constexpr Phrase kReplaced[] = {
 
 std::vector<std::filesystem::path> pages() {
   std::vector<std::filesystem::path> all = {"README.md", "CONTRIBUTING.md", "CHANGELOG.md"};
-  for (const auto& entry : std::filesystem::directory_iterator(root() / "docs"))
-    all.push_back(std::filesystem::relative(entry.path(), root()));
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(root() / "docs"))
+    if (entry.is_regular_file()) all.push_back(std::filesystem::relative(entry.path(), root()));
   return all;
 }
 
