@@ -154,6 +154,7 @@ void Meter::note(std::size_t which, Real value) {
 
 void Meter::reach(Real loss) {
   if (!std::isfinite(loss)) return;
+  trace_.best_loss = best_loss_;  // a run that is killed before its next kept point has reached it
   while (targets_met_ < kRungs) {
     next_target_ = target_at(rung(static_cast<std::size_t>(targets_met_)));
     if (!(loss <= next_target_)) return;

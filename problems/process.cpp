@@ -7,7 +7,9 @@
 #include <limits>
 
 #include "core/array.h"
+#include "core/clock.h"
 #include "core/failures.h"
+#include "core/foreign/call_log.h"
 #include "core/foreign/handshake.h"
 #include "problems/problem.h"
 
@@ -36,29 +38,43 @@ class Session {
   int starts() const { return starts_; }
 
   // Why the call failed; empty if it did not. LineError where too many of its kind have in a row.
+  // From the log of calls, if it has this one; else from the program, after `prepare()`.
   std::string call(Verb verb, std::uint32_t number, std::span<const std::span<const Real>> numbers,
-                   std::span<Real> answer) {
-    Index& in_a_row = failures_.at(static_cast<std::size_t>(verb));
-    const auto note = [&](const FailedCall& error) {
-      if (++in_a_row < given_.failures) return;
-      throw LineError(in_a_row == 1 ? error.what()
-                                    : fmt::format("{} calls in a row failed; the last: {}",
-                                                  in_a_row, error.what()));
-    };
+                   std::span<Real> answer, const auto& prepare) {
+    CallLog* const log = call_log().get();
+    if (log != nullptr) {
+      if (const auto why = log->replay(verb, number, numbers, answer)) {
+        count_failure(verb, *why);
+        return *why;
+      }
+      if (!std::exchange(is_live_, true) && log->replayed() > 0) ++starts_;  // it knows no point
+    }
+    prepare();
+    const std::int64_t begin = monotonic_nanoseconds();
+    const std::string why = ask_program(verb, number, numbers, answer);
+    if (log != nullptr)
+      log->append(verb, number, numbers, answer, why,
+                  1e-9 * static_cast<double>(monotonic_nanoseconds() - begin));
+    return why;
+  }
+
+  // The call without the log.
+  std::string ask_program(Verb verb, std::uint32_t number,
+                          std::span<const std::span<const Real>> numbers, std::span<Real> answer) {
     try {
       line_->send(verb, number, numbers);
       line_->receive_answer(verb, answer, given_.call_time > 0 ? given_.call_time : kNoDeadline);
-      in_a_row = 0;
+      count_failure(verb, "");
       return "";
     } catch (const LostProgram& error) {
-      note(error);
+      count_failure(verb, error.what());
       const std::string why = error.reason;
       const ProblemHandshake now = start();
       if (now.inputs != said_.inputs || now.outputs != said_.outputs)
         line_->fail("has other numbers of inputs and outputs now that it was started again");
       return why;
     } catch (const FailedCall& error) {
-      note(error);
+      count_failure(verb, error.what());
       return error.reason.empty() ? "the program names no reason" : error.reason;
     }
   }
@@ -72,6 +88,13 @@ class Session {
   void give_back(std::uint32_t point) { free_points_.push_back(point); }
 
  private:
+  void count_failure(Verb verb, const std::string& why) {  // empty: none
+    Index& in_a_row = failures_.at(static_cast<std::size_t>(verb));
+    in_a_row = why.empty() ? 0 : in_a_row + 1;
+    if (in_a_row < given_.failures) return;
+    throw LineError(
+        in_a_row == 1 ? why : fmt::format("{} calls in a row failed; the last: {}", in_a_row, why));
+  }
   ProblemHandshake start() {
     line_.reset();  // the old program ends before the new one begins
     line_ = std::make_unique<Line>(door_to(given_.command));
@@ -85,6 +108,7 @@ class Session {
   ProblemHandshake said_;
   std::unique_ptr<Line> line_;
   int starts_ = 0;
+  bool is_live_ = false;  // past the log of calls
   std::array<Index, static_cast<std::size_t>(Verb::x_error) + 1> failures_{};  // in a row, by verb
   std::uint32_t points_ = 0;
   std::vector<std::uint32_t> free_points_;
@@ -143,7 +167,6 @@ class ProcessPhysics final : public ByJacobian {
   // Outside the bounds P has no value; the program computes the nearest x inside.
   void forward(BatchRef x, BatchRef, BatchOut y, Workspace& w) const override {
     OwnPoint& point = point_of(w);
-    point.start = session_->starts();
     if (!bounds_) return ask(Verb::linearize, x, y, w);
     point.within.resize(x.rows(), x.cols());
     for (Index b = 0; b < x.cols(); ++b) point.within.col(b) = bounds_->nearest(x.col(b));
@@ -166,7 +189,7 @@ class ProcessPhysics final : public ByJacobian {
     Vector answer(x.size() + y.cols());     // x, then one success flag per sample
     const std::array<std::span<const Real>, 2> given = {numbers_of(targets), numbers_of(starts)};
     const std::span<Real> numbers(answer.data(), static_cast<std::size_t>(answer.size()));
-    if (!session_->call(Verb::inverse, 0, given, numbers).empty())
+    if (!session_->call(Verb::inverse, 0, given, numbers, [] {}).empty())
       return Success::Constant(y.cols(), false);
     x = answer.head(x.size()).reshaped(x.rows(), x.cols());
     return answer.tail(y.cols()).array() == 1;
@@ -186,7 +209,6 @@ class ProcessPhysics final : public ByJacobian {
   void ask(Verb verb, BatchRef given, BatchOut answer, Workspace& w) const {
     OwnPoint& point = point_of(w);
     const bool is_forward = verb == Verb::linearize;
-    if (!is_forward && !point.has_failed && point.start != session_->starts()) remember(point, w);
     if (!is_forward && point.has_failed) {
       answer.setConstant(kNaN);
       return;
@@ -199,7 +221,14 @@ class ProcessPhysics final : public ByJacobian {
     const bool is_direct = answer.outerStride() == answer.rows();
     if (!is_direct) point.out.resize(answer.rows(), answer.cols());
     Real* const to = is_direct ? answer.data() : point.out.data();
-    const std::string why = session_->call(verb, point.number, std::span(&numbers, 1), {to, count});
+    const auto prepare = [&] {
+      if (is_forward)
+        point.start = session_->starts();
+      else if (point.start != session_->starts())
+        remember(point, w);
+    };
+    const std::string why =
+        session_->call(verb, point.number, std::span(&numbers, 1), {to, count}, prepare);
     if (is_forward) point.has_failed = !why.empty();
     if (!why.empty()) {
       failed_evaluations().add((bounds_ ? point.within : w.x).reshaped(),
@@ -210,11 +239,12 @@ class ProcessPhysics final : public ByJacobian {
   }
 
   // The forward pass again, in a program that was started since.
-  void remember(OwnPoint& point, Workspace& w) const {
-    const Matrix& x = bounds_ ? point.within : w.x;
-    Matrix y(outputs_, x.cols());
+  void remember(OwnPoint& point, const Workspace& w) const {
+    const std::span<const Real> x = numbers_of(bounds_ ? point.within : w.x);
+    Vector y(outputs_ * w.x.cols());
     point.start = session_->starts();
-    ask(Verb::linearize, x, y, w);
+    session_->ask_program(Verb::linearize, point.number, std::span(&x, 1),
+                          {y.data(), static_cast<std::size_t>(y.size())});
   }
 
   void form_jacobian(Matrix& J, Workspace& w) const override {
@@ -250,7 +280,7 @@ ProblemParts process_parts(const ProblemHandshake& said, const std::shared_ptr<S
       Real error = 0;
       const std::span<const Real> numbers = numbers_of(whole);
       const std::string why =
-          session->call(Verb::x_error, 0, std::span(&numbers, 1), std::span(&error, 1));
+          session->call(Verb::x_error, 0, std::span(&numbers, 1), std::span(&error, 1), [] {});
       return why.empty() ? error : kNaN;
     };
   if (!said.truth.empty()) parts.truth = vector_of(said.truth);

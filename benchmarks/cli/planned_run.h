@@ -26,6 +26,7 @@ struct RunArguments {
   int jobs = 0, threads = 0, repeat = 1;                    // 0: one a core; as the suite has it
   bool force = false, reuse = false, is_dry = false, lists_all = false, exclusive = false;
   bool no_report = false, quiet = false, allow_large = false, keeps_output = false;
+  bool logs_evaluations = false;
   bool keeps_fields = false;
   bool keeps_spectra = false, keeps_states = false;
   bool in_process = false, uncertified = false;

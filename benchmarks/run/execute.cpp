@@ -21,6 +21,7 @@
 #include "core/errors.h"
 #include "core/failures.h"
 #include "core/files.h"
+#include "core/foreign/call_log.h"
 #include "core/foreign/handshake.h"
 #include "core/foreign/line.h"
 #include "core/frames.h"
@@ -281,6 +282,13 @@ Checkpoint::Checkpoint(std::filesystem::path path, std::string identity, double 
       last_nanoseconds_(monotonic_nanoseconds()) {
   stop_requested = 0;
   std::signal(SIGTERM, [](int) { stop_requested = 1; });
+}
+
+void Checkpoint::log_calls(bool all) {
+  if (path_.empty()) return;
+  const auto path = std::filesystem::path(path_).replace_extension(".calls");
+  call_log() = std::make_unique<CallLog>(path, path.stem().string(), all);
+  if (std::filesystem::exists(path)) path_.clear();
 }
 
 bool Checkpoint::restore(Optimizer& method, Meter& meter, Vector& theta) {

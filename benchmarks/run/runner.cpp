@@ -215,6 +215,7 @@ class Runner {
             const auto path = store_.checkpoint_path(*request);
             Checkpoint checkpoint(path, path.stem().string(), kCheckpointSeconds);
             checkpoint.continue_from(ends);
+            if (logs_calls_of(*request)) checkpoint.log_calls(options_.logs_calls);
             Vector returned;
             execute(catalog_, *request, trace, std::move(checkpoint), &returned,
                     options_.perturbation);
@@ -222,6 +223,12 @@ class Runner {
           },
           limits(*request), request->threads);
     }
+  }
+
+  // A run whose time counts makes its calls.
+  bool logs_calls_of(const Request& request) const {
+    return request.problem.foreign && request.problem.foreign->door == "process" &&
+           options_.repeat == 1 && !options_.exclusive && options_.perturbation == 0;
   }
 
   // A repetition for its time begins at the start, as does a run that records more than others.

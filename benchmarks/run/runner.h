@@ -59,6 +59,7 @@ struct RunOptions {
   int perturbation = 0;  // of the starts, in the last bit; of 0 alone the records are results
   Progress::Style progress = Progress::Style::silent;
   bool keeps_output = false;       // of cells, in their records
+  bool logs_calls = false;         // of external problems, also where a call is fast
   bool keeps_fields = false;       // of every seed; else those of seed 0
   bool keeps_spectra = false;      // a record without them is computed again
   double least_kept_seconds = 60;  // of a cell whose state is kept for larger budgets

@@ -311,6 +311,7 @@ fs::path Store::checkpoint_path(const Request& request) const {
 void Store::remove_checkpoint(const Request& request) const {
   std::error_code missing;
   fs::remove(checkpoint_path(request), missing);
+  fs::remove(checkpoint_path(request).replace_extension(".calls"), missing);
 }
 
 fs::path Store::end_stem(const Request& request) const {

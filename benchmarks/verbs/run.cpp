@@ -98,6 +98,7 @@ int run(const RunArguments& given, Session& session) {
                      .exclusive = given.exclusive,
                      .repeat = given.repeat,
                      .keeps_output = given.keeps_output,
+                     .logs_calls = given.logs_evaluations,
                      .keeps_fields = given.keeps_fields,
                      .keeps_spectra = given.keeps_spectra,
                      .command = session.command()};

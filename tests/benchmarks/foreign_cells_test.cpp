@@ -125,6 +125,50 @@ TEST_F(ForeignCells, EndAfterTooManyFailedCallsInARow) {
   EXPECT_NE(one.message.find("KeyError"), std::string::npos) << one.message;
 }
 
+// A program that kills Isoline's cell at its n-th call: the process above it.
+TEST_F(ForeignCells, ThatWereKilledAreAnsweredFromTheirLogAndEndAsOthers) {
+  const auto script = folder.path() / "mortal.py", log = folder.path() / "calls",
+             last = folder.path() / "last";
+  write_text(script,
+             "import os, signal, isoline\n"
+             "log, last = '" +
+                 log.string() + "', '" + last.string() +
+                 "'\n"
+                 "def forward(x):\n"
+                 "    open(log, 'a').write('.')\n"
+                 "    if os.path.exists(last) and os.path.getsize(log) >= int(open(last).read()):\n"
+                 "        os.remove(last)\n"
+                 "        os.kill(os.getppid(), signal.SIGKILL)\n"
+                 "    if x[1] > 1.2: raise KeyError('mesh')\n"
+                 "    return [10 * (x[1] - x[0] * x[0]), 1 - x[0]]\n"
+                 "isoline.problem(forward, [-1.2, 1], truth=[1, 1],\n"
+                 "                jacobian=lambda x: [[-20 * x[0], 10], [-1, 0]])\n");
+  const std::string problem = process_of("python3 " + script.string());
+  const std::string scipy = process_of(example("scipy_optimize.py BFGS", python_with("scipy")));
+  options.logs_calls = true;
+  for (const std::string& method :
+       {std::string("nlopt-bobyqa"), std::string("ceres-lm"), std::string("levenberg-marquardt"),
+        std::string("nlopt-neldermead"), python_with("scipy").empty() ? "gd" : scipy}) {
+    const Request request = request_of(problem, method, {.iterations = 40});
+    options.force = true;
+    write_text(log, "");
+    const Json whole = without_timings(to_json(record_of(request)));
+    const std::size_t calls = read_text(log).size();
+    for (const std::size_t kill : {calls / 4, calls / 2}) {
+      options.force = true;
+      write_text(log, "");
+      write_text(last, std::to_string(kill));
+      EXPECT_EQ(record_of(request).status, Status::interrupted) << method << " " << kill;
+      options.force = false;
+      EXPECT_EQ(without_timings(to_json(record_of(request))), whole) << method << " " << kill;
+      EXPECT_FALSE(
+          std::filesystem::exists(store.checkpoint_path(request).replace_extension(".calls")));
+      // Each program that is started, and the check of the returned point, make calls of their own.
+      EXPECT_LE(read_text(log).size(), calls + 10) << method << " " << kill;
+    }
+  }
+}
+
 // Layers that are too thin for any point to lie in one.
 TEST_F(ForeignCells, OrOthersAreTheSameWhereTheRegionOfFailuresIsNeverVisited) {
   for (const char* method : {"levenberg-marquardt", "nlopt-neldermead", "gd"}) {
