@@ -118,7 +118,8 @@ int run(const ScoreArguments& given, Session& session) {
   RunOptions options{.jobs = given.jobs > 0 ? given.jobs : one_a_core(),
                      .command = session.command()};
   options.progress = Progress::style_of(STDERR_FILENO);
-  const Outcome outcome = run_plan(session.catalog(), suite.label(), requests, folder, options, rates);
+  const Outcome outcome =
+      run_plan(session.catalog(), suite.label(), requests, folder, options, rates);
   print_outcome(outcome, folder, false);
   std::set<std::string> cells;
   for (const Request& request : requests) cells.insert(request.cell);
