@@ -607,6 +607,16 @@ TEST(Quantities, AShareCountsSeedsOfTheAlternativeThatSpeaksForTheMethod) {
   EXPECT_EQ(measure("share", {worst}, "test").value, 0.75);
 }
 
+TEST(Quantities, DigitsOfTheLossAreThoseOfTheLastTargetReached) {
+  Record record = record_of({});
+  record.hits.reset();
+  EXPECT_TRUE(std::isnan(figure_of(record, {.column = "loss_digits"})));
+  record.hits = Hits{.target = {0.1, 1e-3, 1e-5}, .iteration = {4, 7, -1}};
+  EXPECT_NEAR(figure_of(record, {.column = "loss_digits"}), 3, 1e-12);  // rounding
+  record.hits->iteration = {-1, -1, -1};
+  EXPECT_EQ(figure_of(record, {.column = "loss_digits"}), 0);
+}
+
 // Of the pairs of a run's digits and another's, 1e-2 … 1e-13 of x_scale 10 and not finite.
 TEST(Quantities, DigitsAreThoseOfTheErrorInXAndTheirMeansAreCompared) {
   Record record = record_of({});
