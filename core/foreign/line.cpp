@@ -21,7 +21,7 @@ namespace isoline {
 namespace {
 
 constexpr std::array<std::pair<Verb, std::string_view>, 19> kNames{{
-    {Verb::hello, "hello"},
+    {Verb::hello, "handshake"},
     {Verb::linearize, "linearize"},
     {Verb::pushforward, "pushforward"},
     {Verb::pullback, "pullback"},
