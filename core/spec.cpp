@@ -222,8 +222,10 @@ OptionValues options_of(const Spec& spec) {
   OptionValues options;
   for (const auto& [key, value] : spec.options) {
     const std::string name(option_name(key));
-    require(!options.contains(name),
-            [&] { return fmt::format("{}: {} occurs twice", spec.name, name); });
+    require(!options.contains(name), [&] {
+      return fmt::format("{}: {} is set twice{}", spec.name, name,
+                         key == name ? "" : " (" + key + " is another name of it)");
+    });
     options.set(name, value);
   }
   return options;

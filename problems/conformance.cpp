@@ -16,8 +16,8 @@ constexpr int kHalvings = 16;
 constexpr Real kEpsilon = std::numeric_limits<Real>::epsilon();
 constexpr const char* kRounding = "rounding in double precision, with a margin for cancellation";
 constexpr const char* kDifferences =
-    "central differences at h = 6e-6 = ε^⅓ leave h² of a third derivative and ε/h of rounding, "
-    "if y has all its 16 digits";
+    "central differences with h = 6e-6: their error is h² times the third derivative, plus the "
+    "rounding error of y divided by h, for which 16 digits of y are assumed";
 
 // The size of each unknown, (n). A start that is zero, or rounding beside the others, says nothing.
 Vector sizes_at(const Vector& start) {

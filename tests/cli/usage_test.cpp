@@ -97,7 +97,7 @@ const std::vector<std::pair<std::string, std::string>> kMistakes = {
     {"run --problem square --optimizer gd --seeds 0", "--seeds: the number"},
     {"run --problem square --optimizer gd --best nowhere.json", "nowhere.json"},
     {"run --problem square --optimizer gd --plugin nowhere.so", "--plugin: nowhere.so"},
-    {"run --problem square --optimizer 'gd[lr=1,rate=2]'", "rate occurs twice"},
+    {"run --problem square --optimizer 'gd[lr=1,rate=2]'", "rate is set twice"},
     {"run --problem 'heat[network=abc]' --optimizer gd", "network=abc requires mode=learn"},
     {"run --problem 'heat[batch=7]' --optimizer gd", "batch=7 requires mode=learn"},
     {"run --problem 'hig-toy[mode=direct]' --optimizer gd", "has only mode=learn"},
