@@ -13,12 +13,13 @@
 namespace isoline::reports {
 
 std::string markdown_report(const Document& document);  // short enough for the summary of a CI job
-std::string latex_report(const Document& document);     // a document, and for \\input in a paper
 std::string csv_report(const Document& document);       // one row a run
 std::string statistics_csv(const Document& document);   // table,row,column,value
 std::string json_report(const Document& document);      // schema isoline.report/1
 
-std::string html_report(const Document& document);  // the page: reports/page
+// These two draw plots: reports/page.
+std::string html_report(const Document& document);   // the page
+std::string latex_report(const Document& document);  // a document, and for \\input in a paper
 
 struct Format {
   const char* file;
