@@ -13,7 +13,8 @@
 namespace isoline::reports {
 namespace {
 
-constexpr Real kWidth = 229, kAreaHeight = 124;  // a column of an article, the narrowest of journals
+constexpr Real kWidth = 229,
+               kAreaHeight = 124;  // a column of an article, the narrowest of journals
 constexpr Real kLeft = 36, kTop = 15, kRight = 8, kBelow = 25, kRow = 9.5;
 constexpr Real kSmall = 7, kText = 8;  // sizes of letters
 constexpr std::string_view kInk = "1C2024", kGrid = "D5D8DC", kGoal = "A8201A", kTau = "5D666F";
