@@ -248,6 +248,7 @@ std::string doc_address(const Site& site, const std::string& address) {
 // The text of a page of docs/ after its title, with anchors, wide tables that scroll, and links.
 std::string doc_body(const Site& site, std::string_view html) {
   std::string out;
+  std::map<std::string, int> headings;
   bool is_linked = false;
   const auto starts = [&](std::string_view tag) { return html.starts_with(tag); };
   while (!html.empty()) {
@@ -270,8 +271,10 @@ std::string doc_body(const Site& site, std::string_view html) {
     } else if (starts("<img ")) {  // pictures stand in the tree alone
       tag.clear();
     } else if (starts("<h2>") || starts("<h3>")) {
-      tag = fmt::format("<h{} id=\"{}\">", html[2],
-                        anchor_of(html.substr(end, html.find("</h") - end)));
+      std::string anchor = anchor_of(html.substr(end, html.find("</h") - end));
+      if (const int earlier = headings[anchor]++; earlier > 0)
+        anchor += fmt::format("-{}", earlier);
+      tag = fmt::format("<h{} id=\"{}\">", html[2], anchor);
     } else if (starts("<table>")) {
       tag = "<div class=scroll tabindex=0 role=region aria-label=Table><table>";
     } else if (starts("</table>")) {

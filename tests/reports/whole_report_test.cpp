@@ -86,7 +86,8 @@ Rows of_html(const std::string& page, const std::string& id) {
 // A wide table comes in several, seven columns each.
 Rows of_latex(const std::string& report, const std::string& title) {
   Rows rows;
-  for (const std::string& part : split(report, "\\begin{table}")) {
+  for (const std::string& rest : split(report, "\\begin{table}")) {
+    const std::string part = rest.substr(0, rest.find("\\end{table}"));  // figures follow
     if (part.find("caption{" + title + ". ") == std::string::npos) continue;
     std::size_t i = 0;
     for (const std::string& line : split(between(part, "\\midrule\n", "    \\bottomrule"), "\n")) {
