@@ -39,7 +39,9 @@ std::optional<RecordOutline> outline_of(const fs::path& file) {
     const std::optional<Status> status = status_of(json.at("status").get<std::string>());
     require(status.has_value(), "its status is unknown");
     seen.status = *status;
-    seen.wall_seconds = real_of(json.at("summary").at("wall_seconds"));
+    const bool computes_alone = seen.threads == 1 && !json.contains("foreign");
+    seen.seconds =
+        real_of(json.at("summary").at(computes_alone ? "processor_seconds" : "wall_seconds"));
     const JsonView provenance = json.at("provenance");
     if (provenance.contains("run")) seen.started = provenance.at("run").at("started");
     return seen;
@@ -154,10 +156,10 @@ std::vector<RecordOutline> record_outlines(const std::vector<fs::path>& folders,
 
 EarlierTimes::EarlierTimes(const std::vector<RecordOutline>& earlier) {
   for (const RecordOutline& one : earlier) {
-    if (one.status == Status::interrupted || !std::isfinite(one.wall_seconds)) continue;
-    seconds_[one.cell].push_back(one.wall_seconds);
+    if (one.status == Status::interrupted || !std::isfinite(one.seconds)) continue;
+    seconds_[one.cell].push_back(one.seconds);
     seconds_[question_of(one.problem, one.optimizer, one.budget, one.threads)].push_back(
-        one.wall_seconds);
+        one.seconds);
   }
   for (auto& [cell, seconds] : seconds_) std::ranges::sort(seconds);
 }

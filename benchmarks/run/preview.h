@@ -23,7 +23,9 @@ struct RecordOutline {
   Budget budget;
   int threads = 1;
   Status status = Status::running;
-  double wall_seconds = 0;
+  // Of a processor, which other programs hardly change; of the clock, where a cell has several
+  // threads or waits for another program.
+  double seconds = 0;
   std::string started;  // "2026-01-31T12:00:00Z"
 };
 

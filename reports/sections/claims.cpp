@@ -188,6 +188,8 @@ std::vector<Reading> claim_notes(const Judgement& judgement) {
     notes.push_back(
         {"Contrast", words("claim.contrast", contrast.quantity, contrast.published,
                            contrast.measured ? figure(contrast.measured->value) : kNothing)});
+  if (judgement.alone)
+    notes.push_back({"This reading", words("claim.alone", name_of(*judgement.alone))});
   for (const OtherReading& other : judgement.others)
     notes.push_back({"Other reading", words("claim.otherwise", other.how, other.measured.value,
                                             name_of(other.verdict))});
@@ -289,6 +291,12 @@ Section papers_section(const std::vector<Judgement>& judgements) {
     std::string verdict = verdict_text(judgement);
     if (!is_decided(judgement.verdict) && !judgement.why.empty()) verdict += ": " + judgement.why;
     if (is_not_run && judgement.verdict != Verdict::undecidable) verdict = "not run";
+    if (judgement.alone) {  // the value of the row does not explain the verdict
+      verdict += "; " + words("claim.paper-alone", name_of(*judgement.alone));
+      for (const OtherReading& other : judgement.others)
+        verdict += "; " + words("claim.paper-other", other.how, figure(other.measured.value),
+                                name_of(other.verdict));
+    }
     if (!judgement.reached.empty()) verdict += "; " + judgement.reached;
     table->row_topics.push_back({.claim = judgement.id});
     table->rows.push_back(

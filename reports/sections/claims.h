@@ -206,6 +206,7 @@ struct Judgement {
   std::vector<CellSet> sets;  // the longest first
   std::vector<Contrast> contrasts;
   std::vector<OtherReading> others;   // the verdict is what all of them bear
+  std::optional<Verdict> alone;       // of the first reading, if the others changed the verdict
   std::vector<std::string> cells;     // that decide it, of those there are
   std::vector<std::string> survives;  // nulls under which it would come out no worse, in words
   std::int64_t needs = 0;             // iterations

@@ -372,8 +372,10 @@ void read_otherwise(Judgement& out, Measured from) {
   if (from.claim.at("quantity").contains("clock")) add(Way::equal_work, "at equal counted work");
   if (from.claim.contains("length") && from.claim["length"].value("guessed", false))
     add(Way::third_of_sip, "at a third of SIP’s iterations");
+  const Verdict alone = out.verdict;
   for (const OtherReading& other : out.others)
     out.verdict = joint_verdict(out.verdict, other.verdict);
+  if (out.verdict != alone) out.alone = alone;
 }
 
 // Other sources of the same verdict: then the data cannot refute the claim.

@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <numeric>
 #include <regex>
 #include <set>
@@ -21,6 +23,7 @@
 #include "core/text.h"
 #include "problems/problem.h"
 #include "tests/benchmarks/builtin.h"
+#include "tests/benchmarks/pieces.h"
 #include "tests/refusal.h"
 #include "tests/temporary_folder.h"
 
@@ -470,6 +473,26 @@ TEST(Predictions, AreWrittenOnceAndTakeThePlaceOfLaterOnes) {
   EXPECT_EQ(read_text(predicted_file(folder.path())), text);
   EXPECT_EQ(later.cells[0].seconds, 2.5);
   EXPECT_EQ(weights_of(requests, folder.path()), std::vector<double>(4, 2.5));
+}
+
+// A busy machine makes the clock of a cell run on, but not its processor's.
+TEST(Predictions, AreProcessorTimesOfCellsThatComputeAlone) {
+  const auto predicted = [](int threads, bool is_foreign) {
+    const TemporaryFolder folder;
+    Request request = cell_of("rosenbrock", "gd", {.iterations = 3});
+    request.threads = threads;
+    Record record = executed(catalog(), request);
+    record.summary.processor_seconds = 2;
+    record.summary.wall_seconds = 9;
+    Json json = to_json(record);
+    if (is_foreign) json["foreign"] = Json::object();
+    std::filesystem::create_directories(folder.path() / "runs");
+    write_text(folder.path() / "runs" / record.file_name(), json_text(json));
+    return EarlierTimes(record_outlines({folder.path()})).of(request);
+  };
+  EXPECT_EQ(predicted(1, false), 2);
+  EXPECT_EQ(predicted(2, false), 9);
+  EXPECT_EQ(predicted(1, true), 9);
 }
 
 TEST(Predictions, OfAnotherPlanAreRefused) {

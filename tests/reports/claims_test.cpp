@@ -381,6 +381,16 @@ TEST(Claims, OfAGuessedLengthAreReadAtAThirdOfSipsIterationsToo) {
   ASSERT_EQ(judgement.others.size(), 1U);
   EXPECT_EQ(judgement.others[0].measured.value, 9);
   EXPECT_EQ(judgement.verdict, Verdict::consistent);
+  EXPECT_FALSE(judgement.alone);
+  // Where the other reading made the verdict, the row of the papers' page says what it is without.
+  claim["published"]["value"] = 9;
+  const std::vector<Judgement> by_the_other = judge(Json::array({claim}), runs);
+  EXPECT_EQ(by_the_other[0].verdict, Verdict::consistent);
+  ASSERT_EQ(by_the_other[0].alone, Verdict::at_odds);
+  const std::string row = papers_section(by_the_other).tables.at(0).rows.at(0).back().text;
+  EXPECT_NE(row.find(name_of(Verdict::at_odds)), std::string::npos) << row;
+  EXPECT_NE(row.find("iterations: 9, " + std::string(name_of(Verdict::consistent))), row.npos)
+      << row;
 }
 
 TEST(Claims, OfWhoIsTheQuickestReadWhatWasSpentUntilALevel) {
