@@ -23,8 +23,8 @@ struct RecordOutline {
   Budget budget;
   int threads = 1;
   Status status = Status::running;
-  // Of a processor, which other programs hardly change; of the clock, where a cell has several
-  // threads or waits for another program.
+  // Processor time, which other programs hardly change; wall time if the cell has several threads
+  // or waits for another program.
   double seconds = 0;
   std::string started;  // "2026-01-31T12:00:00Z"
 };

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 
+#include "core/threads.h"
 #include "tests/optimizers/run.h"
 #include "tests/optimizers/trial_problems.h"
 
@@ -47,6 +48,7 @@ std::int64_t allocations_of_steps(const Problem& problem, const std::string& spe
 }
 
 TEST(Allocation, FirstOrderStepsAllocateNothingOnceWarm) {
+  set_library_threads(1);  // OpenBLAS allocates for each product that it divides among threads
   for (const std::string& problem_name : problems::all_problems().ready().names()) {
     if (transforms(problem_name)) continue;
     const Problem problem = make(problem_name);
