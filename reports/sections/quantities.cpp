@@ -132,13 +132,13 @@ Real spent_until(const Record& record, const Place& place) {
   return kNever;
 }
 
-// −log₁₀ of the smallest relative loss gap (f − f_L)/s that is a target and was reached, at the
-// best point that was evaluated; 0 where none was.
-Real loss_digits(const Record& record) {
+// −log₁₀ of the smallest relative loss gap (f − f_L)/s that is a target and was reached up to that
+// iteration, at the best point that was evaluated; 0 where none was.
+Real loss_digits(const Record& record, std::int64_t last) {
   if (!record.hits) return kUnknown;
   Real digits = 0;
   for (std::size_t i = 0; i < record.hits->target.size(); ++i)
-    if (record.hits->iteration[i] >= 0)
+    if (record.hits->iteration[i] >= 0 && record.hits->iteration[i] <= last)
       digits = std::max(digits, -std::log10(record.hits->target[i]));
   return digits;
 }
@@ -184,7 +184,7 @@ Real figure_of(const Record& record, const Place& place) {
   if (name == "loss_peak") return std::ranges::max(curve.loss | std::views::take(index + 1));
   if (name == "loss_drop") return curve.loss[0] - curve.loss[index];
   if (name == "slowdown") return slowdown(curve, index);
-  if (name == "loss_digits") return loss_digits(record);
+  if (name == "loss_digits") return loss_digits(record, curve.iteration[index]);
   if (name == "digits")
     return record.x_scale ? log_relative_error(curve.x_error.at(index) / *record.x_scale)
                           : kUnknown;
