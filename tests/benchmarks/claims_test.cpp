@@ -435,6 +435,9 @@ Record untrained(Record record) {
   for (auto* windows : {&curve.batch_loss, &curve.batch_x_error})
     for (auto& [window, column] : *windows) keep(column);
   for (auto& [name, column] : record.series) keep(column);
+  if (record.hits)
+    for (std::size_t i = 0; i < record.hits->target.size(); ++i)
+      if (record.hits->work[i] > curve.work[0]) record.hits->iteration[i] = -1;  // never reached
   if (record.trajectory) {
     keep(record.trajectory->x);
     keep(record.trajectory->y);
