@@ -24,16 +24,16 @@ namespace isoline::optimizers {
 namespace {
 
 constexpr Real kInfinity = std::numeric_limits<Real>::infinity();
-constexpr Real kEpsilon = std::numeric_limits<Real>::epsilon();
 
 // min ‖r + J d‖ over ‖d‖ ≤ Δ: d = −V (Σ² + μ)⁻¹ Σ Uᵀr with the least μ ≥ 0, by Newton's method on
 // 1/Δ − 1/‖d‖; Moré, Sorensen (1983).
 Vector trust_region_step(const Svd& J, const Vector& r, Real radius) {
   constexpr int kMost = 100;
   constexpr Real kAccurate = 1e-2, kLow = 1e-3;  // of ‖d‖; a first share of the largest μ
+  constexpr Real kRounding = 1e-11;  // of σ₁: differences of r over ρ leave such σ of a singular J
   const Vector along = J.sigma.cwiseProduct(J.U.transpose() * r);
   const Vector squares = J.sigma.cwiseAbs2();
-  const Real least = kEpsilon * kEpsilon * squares.maxCoeff();
+  const Real least = kRounding * kRounding * squares.maxCoeff();
   Vector c = (squares.array() > least).select(along.cwiseQuotient(squares), 0);
   if (!(c.norm() <= radius)) {
     Real low = 0, high = along.norm() / radius, mu = kLow * high;
