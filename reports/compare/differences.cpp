@@ -343,19 +343,17 @@ std::set<std::string> changed_options(const ComparedCell& before, const Compared
 std::vector<std::string> changed_parts(const ComparedCell& before, const ComparedCell& after) {
   if (before.build == after.build) return {};
   std::vector<std::string> changes;
-  for (const auto& [part, text] :
-       {std::pair(std::string("platform"),
-                  "a change of the platform (compiler, flags, libraries or kernel)"),
-        {"harness", "a change of the harness (core, meter or run loop)"},
-        {"problem", "a change of the problem's source"},
-        {"network", "a change of the network's source"},
-        {"optimizer", "a change of the optimizer's source"},
-        {"best", "a change of the lowest known loss"}}) {
+  for (const auto& [part, text] : std::vector<std::pair<std::string, const char*>>{
+           {"platform", "a change of the platform (compiler, flags, libraries or kernel)"},
+           {"harness", "a change of the harness (core, meter or run loop)"},
+           {"problem", "a change of the problem's source"},
+           {"network", "a change of the network's source"},
+           {"optimizer", "a change of the optimizer's source"},
+           {"best", "a change of the lowest known loss"}}) {  // which may have become known
     const auto old = before.parts->find(part), now = after.parts->find(part);
     const bool was = old != before.parts->end(), is = now != after.parts->end();
-    // A loss may have become known; digests of sources are missing only in older records.
-    const bool differs = was && is ? old->second != now->second : was != is && part == "best";
-    if (differs) changes.emplace_back(text);
+    if (was && is ? old->second != now->second : was != is && part == "best")
+      changes.emplace_back(text);
   }
   if (changes.empty()) changes.emplace_back("a change of the build");
   return changes;
