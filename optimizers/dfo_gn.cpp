@@ -120,7 +120,8 @@ struct DfoGn {
     put(s, 0, evaluate(f, s));
     evaluate(f, s);
     const Real level = (s.r - s.R.col(0)).norm() / (std::sqrt(2.0) * s.r.norm());
-    if (level > 0 && std::isfinite(level)) set_noise(s, level);
+    constexpr Real kRepeated = 1e-13;  // rounding in another order, as by threads, is not noise
+    if (level > kRepeated && std::isfinite(level)) set_noise(s, level);
     // Differences of r over ρ have the relative error noise/ρ, and that of ρ by curvature.
     constexpr Real kBalance = 1.5, kMost = 0.2;
     s.rho = size * simplex;

@@ -35,7 +35,8 @@ const std::filesystem::path kTree = ISOLINE_SOURCE_DIR;
 std::vector<std::string> pages() {
   std::vector<std::string> all = {"README.md"};
   for (const auto& entry : std::filesystem::directory_iterator(kTree / "docs"))
-    if (entry.path().extension() == ".md") all.push_back("docs/" + entry.path().filename().string());
+    if (entry.path().extension() == ".md")
+      all.push_back("docs/" + entry.path().filename().string());
   std::ranges::sort(all);
   return all;
 }

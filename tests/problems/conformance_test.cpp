@@ -513,8 +513,7 @@ TEST(Process, ThatIsLateIsToldFromOneThatIsSilent) {
 
 TEST(Process, NamesTheFunctionWhoseResultIsNoNumber) {
   expect_complaint(process_of(misbehaving("misbehaving.py returns-nothing")), "forward(x) is None");
-  expect_complaint(process_of(misbehaving("misbehaving.py returns-text")),
-                   "only real numbers");
+  expect_complaint(process_of(misbehaving("misbehaving.py returns-text")), "only real numbers");
   expect_complaint(process_of(misbehaving("misbehaving.py has-no-finite-minimum")),
                    "minimum must be");
 }
