@@ -82,7 +82,7 @@ Real forward_step(Real noise) { return std::pow(8.0, 0.25) * std::sqrt(noise); }
 Real central_step(Real noise) { return std::cbrt(3 * noise); }
 
 Vector sizes_of_unknowns(const Vector& start) {
-  constexpr Real kNothing = 1e-8;  // of the largest: rounding
+  constexpr Real kNothing = 1e-8;  // of the largest, from which fits differ by up to 1e7: rounding
   const Real largest = start.lpNorm<Eigen::Infinity>();
   const Real unknown = largest > 0 ? std::min<Real>(1, largest) : 1;
   return (start.array().abs() > kNothing * largest).select(start.cwiseAbs(), unknown);

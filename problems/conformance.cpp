@@ -6,6 +6,7 @@
 #include <cstring>
 #include <limits>
 
+#include "core/differences.h"
 #include "core/workspace.h"
 
 namespace isoline::problems {
@@ -19,22 +20,14 @@ constexpr const char* kDifferences =
     "central differences with h = 6e-6: their error is h² times the third derivative, plus the "
     "rounding error of y divided by h, for which 16 digits of y are assumed";
 
-// The size of each unknown, (n). A start that is zero, or rounding beside the others, says nothing.
-Vector sizes_at(const Vector& start) {
-  constexpr Real kRounded = 1e-8;  // the unknowns of fits differ in size by up to 1e7
-  const Real largest = start.cwiseAbs().maxCoeff();
-  const Real unknown = largest > 0 ? std::min<Real>(1, largest) : 1;
-  return (start.array().abs() > kRounded * largest).select(start.cwiseAbs(), unknown);
-}
-
 // One problem, one point, and what is measured there. Directions and steps are relative to the
 // sizes of the unknowns where the scale is each unknown's own.
 class Examination {
  public:
   Examination(const Problem& problem, StartScale scale, RandomStream& stream)
       : problem_(problem), scale_(scale), stream_(stream) {
-    sizes_ =
-        scale == StartScale::own ? sizes_at(problem.start()) : Vector::Ones(problem.unknowns());
+    sizes_ = scale == StartScale::own ? sizes_of_unknowns(problem.start())
+                                      : Vector::Ones(problem.unknowns());
     constexpr int kTries = 20;  // a problem may have no value here and there
     for (int i = 0; i < kTries && (i == 0 || !at_.y.allFinite()); ++i) {
       theta_ = near_start();
@@ -445,7 +438,7 @@ std::vector<Finding> examine(const Problem& problem, RandomStream& stream,
                              const CheckListener& before) {
   std::vector<Finding> findings = examine_at(problem, problem.start_scale(), stream, before);
   const auto all_hold = [](const auto& some) { return std::ranges::all_of(some, &Finding::holds); };
-  const Vector sizes = sizes_at(problem.start());
+  const Vector sizes = sizes_of_unknowns(problem.start());
   constexpr Real kUnlike = 10;  // less is within what a step of any problem must allow
   const bool is_unlike = sizes.maxCoeff() > kUnlike || sizes.minCoeff() * kUnlike < 1;
   if (!all_hold(findings) && is_unlike && problem.start_scale() != StartScale::own)
