@@ -1,26 +1,25 @@
 // Evaluations that failed in this process: of a simulator that broke off, or in a region where the
-// feature fail= lets them fail. A process runs one cell, whose record states them.
+// feature fail= lets them fail. A process runs one cell, whose record states their number and the
+// first.
 #pragma once
 
 #include <cstdint>
 #include <string>
-#include <vector>
+#include <utility>
 
 #include "core/array.h"
 
 namespace isoline {
 
 struct FailedEvaluations {
-  static constexpr std::size_t kMost = 1000;  // that are listed
   std::int64_t total = 0;
-  std::vector<Vector> x = {};
-  std::vector<std::string> reasons = {};  // one for each x
+  Vector first_x = {};
+  std::string first_reason = {};
 
   void add(VectorRef at, std::string reason) {
-    ++total;
-    if (reasons.size() == kMost) return;
-    x.emplace_back(at);
-    reasons.push_back(std::move(reason));
+    if (total++ > 0) return;
+    first_x = at;
+    first_reason = std::move(reason);
   }
 };
 

@@ -40,11 +40,12 @@ volatile std::sig_atomic_t stop_requested = 0;
 void note_failures(Trace& trace) {
   const FailedEvaluations& failed = failed_evaluations();
   if (failed.total == 0 || trace.message[0] != '\0') return;
-  const std::span<const Real> x(failed.x[0].data(), std::min<std::size_t>(failed.x[0].size(), 8));
+  const std::span<const Real> x(failed.first_x.data(),
+                                std::min<std::size_t>(failed.first_x.size(), 8));
   set_text(trace.message,
            fmt::format("{} evaluation{} failed, the first at x = ({:.10g}{}): {}", failed.total,
                        failed.total == 1 ? "" : "s", fmt::join(x, ", "),
-                       failed.x[0].size() > 8 ? ", …" : "", failed.reasons[0]));
+                       failed.first_x.size() > 8 ? ", …" : "", failed.first_reason));
 }
 
 void run(const Catalog& catalog, const Request& request, Trace& trace, Checkpoint& checkpoint,
