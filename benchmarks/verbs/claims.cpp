@@ -154,9 +154,8 @@ void register_claims(VerbRegistry& registry) {
   isoline claims --no-run --out results/quick    only from the runs of a suite)",
        .notes =
            "A claim is reproduced if the measured values agree with the published one within its "
-           "uncertainty, and partly reproduced if only the direction holds. With fewer than six "
-           "seeds, "
-           "a claim is consistent or at odds.\n"
+           "uncertainty, and partly reproduced if only the direction holds, or if only one "
+           "of two readings agrees. With fewer than six seeds, a claim is consistent or at odds.\n"
            "The program contains records of runs that take hours (benchmarks/published). They are "
            "used if the result folder lacks a run, and the evidence states their numbers of "
            "iterations and seeds.\n"

@@ -291,24 +291,49 @@ std::string doc_title(const std::string& html) {
   return begin != 0 || end == html.npos ? "" : html.substr(4, end - 4);
 }
 
-// Six sentences: the first of each of the results, then the others in turn.
-std::string findings_html(const Site& site) {
-  constexpr std::size_t kFindings = 6, kMostEach = 6;
-  std::string html;
-  std::size_t count = 0;
-  for (std::size_t i = 0; i < kMostEach; ++i)
-    for (const SiteResults& results : site.results) {
-      const Document& document = *results.document;
-      std::vector<std::string> sentences;
-      for (const Reading& one : document.section("standings").readings)
-        sentences.push_back(one.text);
-      for (const std::string& one : learned_sentences(document.comparison))
-        sentences.push_back(one);
-      for (const Reading& one : ranking_facts(document.comparison)) sentences.push_back(one.text);
-      if (i < sentences.size() && count++ < kFindings)
-        html += fmt::format("<li>{}: {}</li>\n", link(suite_address(results), results.name),
-                            html_text(sentences[i]));
+// What results show as a whole: their ranking if it covers several problems, the best on learned
+// problems, and certified digits.
+std::vector<std::string> sentences_of(const Document& document) {
+  const Comparison& c = document.comparison;
+  std::vector<std::string> sentences;
+  const std::vector<Reading>& ranking = document.section("standings").readings;
+  if (c.decision && c.decision->families > 1 && !ranking.empty())
+    sentences.push_back(ranking[0].text);
+  for (const std::string& one : learned_sentences(c)) sentences.push_back(one);
+  if (const Table table = certified_table(c); !table.reading.empty())
+    sentences.push_back(table.reading);
+  return sentences;
+}
+
+// Six findings: the first sentences of up to three results, then a decided claim of each paper.
+std::string findings_html(const Site& site, const Section& papers) {
+  constexpr std::size_t kFindings = 6, kOfResults = 3;
+  std::vector<std::string> items;
+  std::vector<std::pair<const SiteResults*, std::string>> later;
+  for (const SiteResults& results : site.results)
+    for (std::string& sentence : sentences_of(*results.document)) {
+      const bool is_first = later.empty() || later.back().first != &results;
+      later.emplace_back(&results, "");
+      std::string item = link(suite_address(results), results.name) + ": " + html_text(sentence);
+      if (is_first && items.size() < kOfResults)
+        items.push_back(std::move(item));
+      else
+        later.back().second = std::move(item);
     }
+  for (const Table& paper : papers.tables) {
+    const auto claim = std::ranges::find_if(site.claims, [&](const Judgement& one) {
+      return one.paper == paper.title && is_decided(one.verdict) && !one.is_verification &&
+             one.measured;
+    });
+    if (claim != site.claims.end() && items.size() < kFindings)
+      items.push_back(link(paper_address(paper), paper.title) + ": " +
+                      html_text(words("site.claim", claim->sentence, claim->published,
+                                      figure(claim->measured->value), verdict_text(*claim))));
+  }
+  for (auto& [results, item] : later)
+    if (!item.empty() && items.size() < kFindings) items.push_back(std::move(item));
+  std::string html;
+  for (const std::string& item : items) html += "<li>" + item + "</li>\n";
   return "<ul>\n" + html + "</ul>\n";
 }
 
@@ -339,7 +364,7 @@ std::string index_page(const Site& site, const Places& problems, const Places& m
     return fmt::format("<h2 id={}>{}</h2>\n", id, html_text(words(std::string("site.") + id)));
   };
   std::string html = "<p class=lead>" + html_text(words("site.lead")) + "</p>\n";
-  html += part("findings") + findings_html(site) + part("pictures") + pictures_html(site);
+  html += part("findings") + findings_html(site, papers) + part("pictures") + pictures_html(site);
   html += part("results") + "<ul>\n";
   for (const SiteResults& results : site.results)
     html += fmt::format("<li>{}: {} · {}</li>\n", link(suite_address(results), results.name),

@@ -101,9 +101,9 @@ inline std::string_view name_of(Verdict verdict) {
 }
 inline bool is_decided(Verdict verdict) { return verdict < Verdict::too_short; }
 inline bool is_supported(Verdict verdict) { return verdict <= Verdict::consistent; }
-// Combines two readings of one claim: the weaker, or neither if one is for it and one against it.
+// Combines two readings of one claim: the weaker verdict, or partly if only one supports the claim.
 inline Verdict joint_verdict(Verdict one, Verdict other) {
-  if (is_supported(one) != is_supported(other)) return Verdict::consistent;
+  if (is_supported(one) != is_supported(other)) return Verdict::partly;
   return std::max(one, other);
 }
 
