@@ -173,9 +173,10 @@ SeedSpan span_of(std::string_view part, std::string_view whole) {
   const auto dots = part.find("..");
   if (dots == std::string_view::npos) {
     const std::uint64_t count = number(part);
-    require(count > 0,
-            "the number of seeds, instances or starts must be at least 1, got 0; "
-            "=0 selects number 0 only");
+    require(
+        count > 0,
+        "the number of seeds, instances or starts must be at least 1, got 0; for number 0 alone, "
+        "write =0");
     return {0, count - 1};
   }
   const SeedSpan span{number(part.substr(0, dots)), number(part.substr(dots + 2))};

@@ -143,7 +143,7 @@ def findings(report):
     starts = max(cell["runs"] for cell in report["cells"] if cell["problem"] in report["ranked"])
     band = sum(place["in_group"] for place in leader["places"])
     methods = len(leader["places"])
-    lead = (f"**Findings** from the suite `quick` ({report['answered'] - inapplicable:,} runs; {inapplicable} more were skipped, because "
+    lead = (f"**Findings** from the suite `quick` ({report['answered'] - inapplicable:,} runs; {inapplicable} more were skipped because "
             f"the method does not apply to the problem). {methods} methods are ranked on {leader['settings']} settings of "
             f"{leader['families']} physics problems ({starts} instances per setting).")
     decision = (f"By work, {first['optimizer']} is significantly ahead of every other method (sign-flip test): it"
@@ -156,13 +156,13 @@ def findings(report):
         f"By wall time, {' and '.join(by_time)} {'ranks' if len(by_time) == 1 else 'rank'} first.",
         f"levenberg-marquardt solves {lm['solved']} settings (median slowdown: {float(lm['typical']):.1f} times the least "
         f"work), gauss-newton {by_name['gauss-newton']['solved']}.",
-        f"With learning rates that were tuned on other problems only, adam solves {by_name['adam']['solved']} "
+        f"With learning rates that were tuned only on other problems, adam solves {by_name['adam']['solved']} "
         f"settings, hig {by_name['hig']['solved']} and gd {by_name['gd']['solved']}.",
         f"{len(inverse)} of the {leader['settings']} settings provide an inverse P⁻¹. Given P⁻¹ (†), sip solves {len(solved)} "
-        f"of these, each with {'between ' * (' ' in works)}{works} forward solves. This includes calls to P⁻¹, charged at the cost that each problem declares.",
-        "Networks were also trained to invert a sine map. At equal work, the median error in x is "
-        f"{sine_at_equal_work(report):.0f} times as large after training with adam as after training with sip, which is given "
-        f"{given} (†; {seeds} seeds).",
+        f"of these, each with {'between ' * (' ' in works)}{works} forward solves. These counts include calls to P⁻¹, charged at the cost that each problem declares.",
+        "Networks were also trained to invert the map of the problem sine. After equal work, those trained with adam have "
+        f"{sine_at_equal_work(report):.0f} times the median error in x of those trained with sip, which is given {given} "
+        f"(†; {seeds} seeds).",
     ]
 
 

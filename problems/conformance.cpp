@@ -17,8 +17,8 @@ constexpr int kHalvings = 16;
 constexpr Real kEpsilon = std::numeric_limits<Real>::epsilon();
 constexpr const char* kRounding = "rounding in double precision, with a margin for cancellation";
 constexpr const char* kDifferences =
-    "central differences with h = 6e-6: their error is h² times the third derivative, plus the "
-    "rounding error of y divided by h, for which 16 digits of y are assumed";
+    "central differences with h = 6e-6: their error is about h²/6 times the third derivative, plus "
+    "1/h times the rounding error of y; y is assumed to have 16 correct digits";
 
 // One problem, one point, and what is measured there. Directions and steps are relative to the
 // sizes of the unknowns where the scale is each unknown's own.
@@ -90,8 +90,8 @@ class Examination {
     const Matrix Jv = push(v, at_);
     const Real floor = 1e4 * kEpsilon * (at_.y.norm() + Jv.norm());
     const Real slope = order_of([&](Real step) { return remainder(v, Jv, step); }, h, floor);
-    add("the remainder of the linearization is of second order (J v)", std::abs(slope - 2), 0.1,
-        "a third-order term bends the slope by O(h); a wrong J v gives slope 1");
+    add("y(x + h v) − y(x) − h J v falls as h² (deviation of the exponent)", std::abs(slope - 2),
+        0.1, "a wrong J v gives exponent 1; the third derivative changes it by O(h)");
   }
 
   // The same for Jᵀu, for a problem without J v: |⟨u, y(θ + h v) − y(θ)⟩ − h ⟨Jᵀu, v⟩|.
@@ -106,8 +106,9 @@ class Examination {
       return std::abs(u.cwiseProduct(at.y - at_.y).sum() - step * change);
     };
     const Real slope = order_of(remainder_at, h, floor);
-    add("the remainder of the linearization is of second order (Jᵀu)", std::abs(slope - 2), 0.1,
-        "a third-order term bends the slope by O(h); a wrong Jᵀu gives slope 1");
+    add("⟨u, y(x + h v) − y(x)⟩ − h ⟨Jᵀu, v⟩ falls as h² (deviation of the exponent)",
+        std::abs(slope - 2), 0.1,
+        "a wrong Jᵀu gives exponent 1; the third derivative changes it by O(h)");
   }
 
   void gradient() {

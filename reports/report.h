@@ -38,8 +38,8 @@ inline void trim_for_report(Record& record, bool is_claimed) {
     const auto met = static_cast<std::size_t>(std::ranges::count_if(
         hits.iteration, [](std::int64_t iteration) { return iteration >= 0; }));
     const auto shorten = [met](auto&... all) { ((all.resize(met), all.shrink_to_fit()), ...); };
-    drop(hits.target, hits.forwards);
-    shorten(hits.iteration, hits.work, hits.wall_seconds);
+    drop(hits.forwards);
+    shorten(hits.target, hits.iteration, hits.work, hits.wall_seconds);
     for (auto& [oracle, column] : hits.counts) shorten(column);
   }
   drop(record.verified, record.found, record.repeat_wall_seconds, record.build_parts);

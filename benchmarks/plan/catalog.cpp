@@ -255,8 +255,8 @@ void require_learnable(const Catalog& catalog, const ProblemEntry& entry) {
   std::string learnable;
   for (const auto& [name, other] : catalog.problems)
     if (can_learn(other)) learnable += (learnable.empty() ? "" : ", ") + name;
-  throw UsageError(
-      fmt::format("{} does not support mode=learn; these problems do: {}", entry.name, learnable));
+  throw UsageError(fmt::format("{} cannot train a network (mode=learn); these problems can: {}",
+                               entry.name, learnable));
 }
 
 // The direct problem ignores these options: its settings would be equal under several names.

@@ -153,8 +153,10 @@ std::vector<Spec> featured_problems(const Catalog& catalog, const MatrixBlock& b
 Real discrepancy_of(const std::string& stop) {
   const Spec spec = parse_spec(stop);
   require(spec.name == "discrepancy" || stop == "none", [&] {
-    return fmt::format("a stopping rule must be discrepancy, discrepancy[tau=1.1] or none, got {}",
-                       stop);
+    return fmt::format(
+        "a stopping rule must be none or discrepancy, which has the option tau, as in "
+        "discrepancy[tau=1.5]; got {}",
+        stop);
   });
   if (stop == "none") return 0;
   return read_options<StoppingRule>(

@@ -90,7 +90,7 @@ Certificates require_certified(const Catalog& catalog, std::vector<Request>& req
     const std::string reason = broken.value_or("it cannot be checked: " + failure);
     require(reason.empty() || options.uncertified, [&] {
       return fmt::format(
-          "{} fails its checks and does not run: {}; `isoline check` lists its checks, and "
+          "{} failed a check and was not run: {}; `isoline check` prints all its checks, and "
           "--uncertified runs it anyway",
           request->problem.spec, reason);
     });

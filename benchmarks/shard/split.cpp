@@ -217,8 +217,8 @@ const Scheduler& scheduler_of(const Environment& environment) {
     found += fmt::format("{}{}={}", found.empty() ? "" : ", ", each.index, value);
   }
   require(!set.empty(), [&] {
-    return "--shard auto requires a task of an array, or the environment variable ISOLINE_SHARD; "
-           "none of these is set: ISOLINE_SHARD" +
+    return "--shard auto works only in a task of a job array, or if ISOLINE_SHARD is set; none of "
+           "these environment variables is set: ISOLINE_SHARD" +
            known;
   });
   require(set.size() == 1, [&] {

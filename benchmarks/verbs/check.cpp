@@ -39,12 +39,14 @@ constexpr double kCheckSeconds = 120;
 Json noise_of(const Problem& problem) {
   constexpr Real kMost = 0.1;  // beyond, differences over the size of an unknown show noise alone
   const Real noise = problems::relative_noise(problem, problem.standard_start());
-  return {{"property", fmt::format("noise of y (relative steps of differences {:.1e}, {:.1e})",
-                                   forward_step(noise), central_step(noise))},
-          {"figure", json_number(noise)},
-          {"limit", kMost},
-          {"reason", "y changes from call to call, or with the last digits of x"},
-          {"holds", noise <= kMost}};
+  return {
+      {"property",
+       fmt::format("noise of y (relative steps of forward, central differences: {:.1e}, {:.1e})",
+                   forward_step(noise), central_step(noise))},
+      {"figure", json_number(noise)},
+      {"limit", kMost},
+      {"reason", "y changes from call to call, or with the last digits of x"},
+      {"holds", noise <= kMost}};
 }
 
 Json findings_of(const Catalog& catalog, const Component& component, std::uint64_t seed) {

@@ -75,12 +75,15 @@ int run_here(const Catalog& catalog, const std::vector<Request>& requests) {
   int code = kGood;
   run_in_process(catalog, requests, [&](const Request& request, const Trace& trace) {
     const std::string message = trace.message;
-    say(stdout, fmt::format("{}: {} at iteration {}, loss {:.4g}{}\n", title_of(request),
-                            name_of(trace.status), trace.last.iteration, trace.last.loss,
-                            message.empty() ? "" : ": " + message));
+    const std::string reached = trace.status == Status::inapplicable
+                                    ? ""
+                                    : fmt::format(", after {} iterations, with loss {:.4g}",
+                                                  trace.last.iteration, trace.last.loss);
+    say(stdout, fmt::format("{}: status {}{}{}\n", title_of(request), name_of(trace.status),
+                            reached, message.empty() ? "" : ": " + message));
     if (is_failure(trace.status)) code = kWorse;
   });
-  say(stdout, "--in-process: no record was written\n");
+  say(stdout, "--in-process writes no records\n");
   return code;
 }
 

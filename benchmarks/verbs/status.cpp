@@ -115,8 +115,8 @@ Census census_of(const fs::path& whole, std::int64_t now, const Listener& listen
   const bool tells_times = predicted && add_predicted(*predicted, cells);
   require(predicted || !folders.empty(), [&] {
     return fmt::format(
-        "{} contains neither records nor a plan; pass a folder that `isoline run` or `isoline "
-        "plan` wrote",
+        "{}: no such result folder, or one without records and plan; pass a folder that `isoline "
+        "run` or `isoline plan` wrote",
         whole.string());
   });
   if (!predicted)  // else they name the same cells

@@ -68,7 +68,7 @@ def _real(values, name):
     if found.dtype.kind == "O" and any(each is None for each in found.flat):
         raise Refused(f"{name} contains None instead of a number")
     if found.dtype.kind not in "buifO":
-        raise Refused(f"{name} must contain only real numbers, got an array of {found.dtype}")
+        raise Refused(f"{name} must have only real numbers, got an array of {found.dtype}")
     return numpy.ascontiguousarray(found, dtype=numpy.float64)
 
 
@@ -83,7 +83,7 @@ def _flat(values, name):
         if hasattr(each, "__iter__") and not isinstance(each, str):
             yield from _flat(each, name)
         elif each is None or isinstance(each, (str, complex)):
-            raise Refused(f"{name} must contain only real numbers, got {each!r}")
+            raise Refused(f"{name} must have only real numbers, got {each!r}")
         else:
             yield float(each)
 

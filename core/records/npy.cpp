@@ -234,8 +234,7 @@ void write_csv(const std::filesystem::path& path, const NumberArray& array) {
 
 void require_known(const std::filesystem::path& path) {
   require(path.extension() == ".npy" || path.extension() == ".csv", [&] {
-    return fmt::format("{}: the name of a file of numbers must end with .npy or .csv",
-                       path.string());
+    return fmt::format("{}: the name of a data file must end with .npy or .csv", path.string());
   });
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <map>
 #include <set>
 
@@ -321,11 +322,16 @@ std::string findings_html(const Site& site, const Section& papers) {
         later.back().second = std::move(item);
     }
   for (const Table& paper : papers.tables) {
-    const auto claim = std::ranges::find_if(site.claims, [&](const Judgement& one) {
-      return one.paper == paper.title && is_decided(one.verdict) && !one.is_verification &&
-             one.measured;
-    });
-    if (claim != site.claims.end() && items.size() < kFindings)
+    const Judgement* claim = nullptr;  // the first, if possible with a published value
+    bool has_value = false;
+    for (const Judgement& one : site.claims) {
+      if (one.paper != paper.title || !is_decided(one.verdict) || one.is_verification ||
+          !one.measured || has_value)
+        continue;
+      has_value = one.band && std::isfinite(one.band->low) && std::isfinite(one.band->high);
+      if (claim == nullptr || has_value) claim = &one;
+    }
+    if (claim != nullptr && items.size() < kFindings)
       items.push_back(link(paper_address(paper), paper.title) + ": " +
                       html_text(words("site.claim", claim->sentence, claim->published,
                                       figure(claim->measured->value), verdict_text(*claim))));

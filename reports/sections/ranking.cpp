@@ -112,21 +112,24 @@ std::string robustness_text(const Comparison& c, const Decision& decision) {
       often, [&](const results::Place& place) { return place.method == first.method; });
   const bool has_other = other != often.end() && other->share_first > 0;
   std::map<std::string, std::vector<std::string>> lost;  // by the method that then ranks first
-  std::size_t kept = 0, others = 0;
+  std::size_t kept = 0;
   for (const Choice& choice : decision.choices) {
     kept += choice.is_kept;
     if (choice.is_kept || choice.first.empty()) continue;
     lost[names_text(c, choice.first, 1)].push_back(choice_text(choice));
-    ++others;
   }
   std::vector<std::string> firsts;
   for (const auto& [method, choices] : lost)
-    firsts.push_back(fmt::format("{} ({})", method, first_of(choices, 3)));
-  return words(
-      "ranking.robustness", name(first), percent(first.share_first),
-      has_other ? words("ranking.share-other", name(*other), percent(other->share_first)) : "",
-      kept, decision.choices.size(),
-      lost.empty() ? "" : words("ranking.otherwise", others, listed(firsts)));
+    firsts.push_back(
+        words("ranking.otherwise-of", method, choices.size(), first_of(choices, 3, "; ")));
+  const std::string share = percent(first.share_first);
+  const std::string samples =
+      !has_other ? words("ranking.share", name(first), share)
+                 : words(other->share_first > first.share_first ? "ranking.share-more"
+                                                                : "ranking.share-less",
+                         name(first), share, name(*other), percent(other->share_first));
+  return words("ranking.robustness", samples, name(first), kept, decision.choices.size(),
+               lost.empty() ? "" : words("ranking.otherwise", listed(firsts)));
 }
 
 std::string not_run(const Comparison& c) {
@@ -222,10 +225,11 @@ std::vector<Reading> ranking_facts(const Comparison& c) {
 
 std::string left_out_text(const Comparison& c) {
   std::vector<std::string> parts, ill_posed, unknown;
-  std::size_t sanity = 0;
+  std::size_t sanity = 0, learned = 0;
   bool has_regressions = false;
   for (std::size_t p = 0; p < c.problems.size(); ++p) {
     sanity += is_sanity(c, p);
+    learned += c.problems[p].is_learned;
     has_regressions = has_regressions || c.problems[p].name == "nist";
     if (is_ill_posed(c, p)) ill_posed.push_back(problem_name(c.problems[p]));
     if (c.problems[p].lacks_least_loss()) unknown.push_back(problem_name(c.problems[p]));
@@ -239,6 +243,7 @@ std::string left_out_text(const Comparison& c) {
     parts.push_back(words("ranking.ill-posed", ill_posed.size(), first_of(ill_posed, 4)));
   if (!unknown.empty())
     parts.push_back(words("ranking.unknown", unknown.size(), first_of(unknown, 4)));
+  if (learned > 0) parts.push_back(words("ranking.learned", learned));
   return joined(parts, " ");
 }
 

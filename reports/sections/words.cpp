@@ -240,10 +240,10 @@ std::string joined(const std::vector<std::string>& words, std::string_view betwe
   return text;
 }
 
-std::string first_of(std::vector<std::string> names, std::size_t most) {
+std::string first_of(std::vector<std::string> names, std::size_t most, std::string_view between) {
   const std::size_t more = names.size() > most ? names.size() - most : 0;
   names.resize(names.size() - more);
-  return more > 0 ? fmt::format("{} and {} more", joined(names), more) : joined(names);
+  return joined(names, between) + (more > 0 ? fmt::format(" and {} more", more) : "");
 }
 
 std::string counted(std::size_t count, std::string_view noun) {

@@ -72,7 +72,8 @@ int shade_of(Real value, Real least);
 
 std::string joined(const std::vector<std::string>& words, std::string_view between = ", ");
 // The first `most` and how many others: "a, b and 3 more".
-std::string first_of(std::vector<std::string> names, std::size_t most);
+std::string first_of(std::vector<std::string> names, std::size_t most,
+                     std::string_view between = ", ");
 std::string counted(std::size_t count, std::string_view noun);  // "1 seed", "3 seeds"
 // The name of a bootstrap range over so few: "range of 3", or "95 % bootstrap interval".
 std::string interval_name(std::size_t count);

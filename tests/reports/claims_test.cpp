@@ -623,6 +623,11 @@ TEST(Quantities, DigitsOfTheLossAreThoseOfTheLastTargetReached) {
   EXPECT_TRUE(std::isnan(figure_of(record, {.column = "loss_digits"})));
   record.hits = Hits{.target = {0.1, 1e-3, 1e-5}, .iteration = {4, 7, -1}};
   EXPECT_NEAR(figure_of(record, {.column = "loss_digits"}), 3, 1e-12);  // rounding
+  Record trimmed = record;
+  trim_for_report(trimmed, true);
+  EXPECT_EQ(figure_of(trimmed, {.column = "loss_digits"}),
+            figure_of(record, {.column = "loss_digits"}))
+      << "a report judges a claim as `isoline claims` does";
   record.hits->iteration = {-1, -1, -1};
   EXPECT_EQ(figure_of(record, {.column = "loss_digits"}), 0);
 }
