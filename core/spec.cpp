@@ -175,8 +175,8 @@ SeedSpan span_of(std::string_view part, std::string_view whole) {
     const std::uint64_t count = number(part);
     require(
         count > 0,
-        "the number of seeds, instances or starts must be at least 1, got 0; for number 0 alone, "
-        "write =0");
+        "the number of seeds, instances or starts must be at least 1, got 0; for only one, with "
+        "the number 0, write 1");
     return {0, count - 1};
   }
   const SeedSpan span{number(part.substr(0, dots)), number(part.substr(dots + 2))};
