@@ -217,6 +217,14 @@ std::string verdict_text(const Judgement& judgement) {
   return text;
 }
 
+namespace {
+
+bool is_not_run(const Judgement& judgement) {
+  return !judgement.measured && !judgement.sets.empty();
+}
+
+}  // namespace
+
 std::string claims_reading(const std::vector<Judgement>& judgements) {
   const std::vector<Verdict> facts = verdicts_on_facts(judgements, false),
                              identities = verdicts_on_facts(judgements, true);
@@ -229,9 +237,13 @@ std::string claims_reading(const std::vector<Judgement>& judgements) {
         words("claims.identities", std::ranges::count(identities, Verdict::reproduced), decided));
   std::string text =
       words("claims.reading", facts.size() + identities.size(), judgements.size(), joined(parts));
-  const auto surviving = std::ranges::count_if(
-      judgements, [](const Judgement& judgement) { return !judgement.survives.empty(); });
-  if (surviving > 0) text += " " + words("claims.surviving", surviving);
+  if (const auto count = std::ranges::count_if(judgements, is_not_run); count > 0)
+    text += " " + words("claims.not-run", count);
+  std::vector<std::string> surviving;
+  for (const Judgement& judgement : judgements)
+    if (!judgement.survives.empty()) surviving.push_back(judgement.id);
+  if (!surviving.empty())
+    text += " " + words("claims.surviving", surviving.size(), first_of(surviving, 5));
   return text;
 }
 
@@ -272,7 +284,7 @@ Section claims_section(const std::vector<Judgement>& judgements) {
 
 Section papers_section(const std::vector<Judgement>& judgements) {
   Section section = worded_section("papers");
-  section.readings = {{"", claims_reading(judgements)}};
+  section.readings = {{"", claims_reading(judgements)}, {"", words("papers.thresholds")}};
   for (const Judgement& judgement : judgements) {
     auto table = std::ranges::find(section.tables, judgement.paper, &Table::title);
     if (table == section.tables.end()) {
@@ -286,11 +298,17 @@ Section papers_section(const std::vector<Judgement>& judgements) {
                                      : fmt::format("{:.0f} min", seconds / kMinute);
     };
     const bool has_runs = judgement.measured.has_value();
-    const bool is_long = takes_hours(judgement.sets);
-    const bool is_not_run = !has_runs && !judgement.sets.empty();
+    const bool is_long =
+        takes_hours(judgement.sets) || (judgement.verdict == Verdict::too_short &&
+                                        std::ranges::any_of(judgement.sets, &CellSet::is_long));
     std::string verdict = verdict_text(judgement);
     if (!is_decided(judgement.verdict) && !judgement.why.empty()) verdict += ": " + judgement.why;
-    if (is_not_run && judgement.verdict != Verdict::undecidable) verdict = "not run";
+    if (is_not_run(judgement) && judgement.verdict != Verdict::undecidable) verdict = "not run";
+    if (is_decided(judgement.verdict) && !is_supported(judgement.verdict))
+      for (const Contrast& contrast : judgement.contrasts)
+        if (contrast.measured)
+          verdict += "; " + words("claim.paper-contrast", contrast.published,
+                                  figure(contrast.measured->value));
     if (judgement.alone) {  // the value of the row does not explain the verdict
       verdict += "; " + words("claim.paper-alone", name_of(*judgement.alone));
       for (const OtherReading& other : judgement.others)
@@ -302,9 +320,10 @@ Section papers_section(const std::vector<Judgement>& judgements) {
     table->rows.push_back(
         {judgement.sentence, judgement.place,
          fmt::format("isoline claims {}{}", judgement.id, is_long ? " --long" : ""),
-         has_runs  ? rough_time(judgement.seconds)
-         : is_long ? "hours"
-                   : kNothing,
+         is_long && !takes_hours(judgement.sets) ? "hours"
+         : has_runs                              ? rough_time(judgement.seconds)
+         : is_long                               ? "hours"
+                                                 : kNothing,
          judgement.published, measured_text(judgement), verdict});
   }
   return section;
