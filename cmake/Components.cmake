@@ -39,8 +39,8 @@ function(isoline_components folder)
 endfunction()
 
 # isoline_together(target groups...): compiles the files of each group at once, which parses their headers and
-# instantiates their templates once. A group is a regular expression for paths without ".cpp". Files of no group
-# are compiled alone, such as a new component.
+# instantiates their templates once. A group is a regular expression for paths without ".cpp". Other files, such as a
+# new component, are compiled alone.
 function(isoline_together target)
   if(NOT ISOLINE_UNITY)
     return()
