@@ -78,7 +78,7 @@ int run(const BaselineArguments& given, Session& session) {
 }  // namespace
 
 void register_baseline(VerbRegistry& registry) {
-  registry.add(verb_of(
+  registry.add(verb_of<BaselineArguments>(
       {.name = "baseline",
        .help_position = 50,
        .summary = "Write a small file that later results are compared with",

@@ -76,7 +76,7 @@ int run(const BestArguments& given, Session& session) {
 }  // namespace
 
 void register_best(VerbRegistry& registry) {
-  registry.add(verb_of(
+  registry.add(verb_of<BestArguments>(
       {.name = "best",
        .help_position = 100,
        .summary =

@@ -445,7 +445,7 @@ TEST_F(HostileCells, ThatContinueDoNotRepeatTheirSteps) {
 // --- Results do not depend on the division of the work: jobs and repetitions write the same
 // records.
 
-std::vector<Request> matrix() {
+std::vector<Request> seeded_cells() {
   const Suite suite{.name = "test",
                     .title = "",
                     .blocks = {{.problems = {"square"},
@@ -475,7 +475,7 @@ class Resume : public testing::Test {
     Store store(folder);
     return run_all(catalog(), requests, store, {.jobs = jobs});
   }
-  std::vector<Request> requests = matrix();
+  std::vector<Request> requests = seeded_cells();
   TemporaryFolder first, second;
 };
 

@@ -298,7 +298,7 @@ TEST(SameResult, TimesAndTheMachineAreNoDifference) {
 // claims, which PapersPage judges. Origin of the values: the end points of Fig. 1 of Holl, Koltun,
 // Thuerey (2022), recomputed from the published script (1e-6).
 
-const FinishedMatrix& notebook() {
+const FinishedMatrix& notebook_matrix() {
   static const FinishedMatrix all(catalog(), cells_of("notebook"));
   return all;
 }
@@ -306,7 +306,7 @@ const FinishedMatrix& notebook() {
 // The record of `square` with an optimizer, one option at a value.
 Record record_of(const std::string& optimizer, const std::string& option, Real value,
                  const std::string& inverse = "") {
-  for (const Record& record : notebook().records) {
+  for (const Record& record : notebook_matrix().records) {
     const Component& used = record.request.optimizer;
     if (record.request.problem.name != "square" || used.name != optimizer) continue;
     if (std::abs(used.options.number(option, NAN) - value) > 1e-15) continue;
@@ -338,7 +338,7 @@ TEST(Figure1Suite, CirclesAndLinesEndWhereTheScriptEndsThem) {
 
 TEST(Figure5aSuite, KeepsThePathsOfTheSine) {
   std::size_t count = 0;
-  for (const Record& record : notebook().records) {
+  for (const Record& record : notebook_matrix().records) {
     if (record.request.problem.spec != "sine[xi=1,phi=15]") continue;
     EXPECT_EQ(record.trajectory.value().x.size(), record.curve.iteration.size());
     ++count;

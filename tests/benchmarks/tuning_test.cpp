@@ -147,7 +147,7 @@ TEST(Rates, GiveWayToExplicitOptions) {
 
 Component problem(const std::string& text) { return complete_problem(catalog(), parse_spec(text)); }
 
-Record record_of(const std::string& text, std::uint64_t seed, Real loss) {
+Record scored_record(const std::string& text, std::uint64_t seed, Real loss) {
   Record record;
   record.request.problem = problem(text);
   record.request.optimizer.spec = "adam";
@@ -159,11 +159,11 @@ Record record_of(const std::string& text, std::uint64_t seed, Real loss) {
 
 TEST(Best, KeepsTheLesserOfTwoBySeedAndBySetOfOptions) {
   BestLosses best;
-  EXPECT_TRUE(best.add(record_of("brown-dennis[m=10]", 0, 5)));
-  EXPECT_FALSE(best.add(record_of("brown-dennis[m=10]", 0, 6)));
-  EXPECT_TRUE(best.add(record_of("brown-dennis[m=10]", 0, 4)));
-  EXPECT_TRUE(best.add(record_of("brown-dennis[m=11]", 0, 9)));
-  EXPECT_FALSE(best.add(record_of("brown-dennis[m=10]", 1, std::nan(""))));
+  EXPECT_TRUE(best.add(scored_record("brown-dennis[m=10]", 0, 5)));
+  EXPECT_FALSE(best.add(scored_record("brown-dennis[m=10]", 0, 6)));
+  EXPECT_TRUE(best.add(scored_record("brown-dennis[m=10]", 0, 4)));
+  EXPECT_TRUE(best.add(scored_record("brown-dennis[m=11]", 0, 9)));
+  EXPECT_FALSE(best.add(scored_record("brown-dennis[m=10]", 1, std::nan(""))));
   EXPECT_EQ(best.find(problem("brown-dennis[m=10]"), 0), 4);
   EXPECT_EQ(best.find(problem("brown-dennis[m=11]"), 0), 9);
   EXPECT_FALSE(best.find(problem("brown-dennis[m=10]"), 1).has_value());

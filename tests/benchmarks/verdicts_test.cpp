@@ -18,7 +18,7 @@ using problems::ProblemParts;
 namespace {
 
 // Problems that are solved, crawled at and never solved, with every optimizer.
-const FinishedMatrix& matrix() {
+const FinishedMatrix& judged_matrix() {
   static const FinishedMatrix all(
       catalog(),
       {.name = "verdicts",
@@ -45,7 +45,7 @@ bool meets_target(const Record& record) {
 
 TEST(Verdicts, VerifiedAndFoundAreWhatTheReturnedPointMeets) {
   std::size_t met = 0, missed = 0, found_there = 0, lost = 0, without_minimum = 0;
-  for (const Record& record : matrix().records) {
+  for (const Record& record : judged_matrix().records) {
     SCOPED_TRACE(title_of(record));
     EXPECT_EQ(record.hits.has_value(), record.minimum.has_value());
     without_minimum += !record.minimum;
@@ -70,7 +70,7 @@ TEST(Verdicts, VerifiedAndFoundAreWhatTheReturnedPointMeets) {
 }
 
 TEST(Verdicts, TargetIsTheVerdictWhereverTheTargetIsMet) {
-  for (const Record& record : matrix().records) {
+  for (const Record& record : judged_matrix().records) {
     if (!record.minimum) {
       EXPECT_NE(record.status, Status::target) << title_of(record);
       continue;
@@ -84,7 +84,7 @@ TEST(Verdicts, TargetIsTheVerdictWhereverTheTargetIsMet) {
 // A loss of 1e-20 was at 2.3e-5 of x.
 TEST(Verdicts, WhereXIsSoughtAMethodThatConvergesGoesOnUntilItIsFound) {
   std::size_t count = 0;
-  for (const Record& record : matrix().records) {
+  for (const Record& record : judged_matrix().records) {
     const std::string& method = record.request.optimizer.name;
     if (record.aim != Aim::x || record.request.seed != 0) continue;
     if (method != "newton" && method != "gauss-newton" && method != "ceres-lm") continue;
@@ -97,7 +97,7 @@ TEST(Verdicts, WhereXIsSoughtAMethodThatConvergesGoesOnUntilItIsFound) {
 TEST(Verdicts, NameWhatTheUserWantsAndTheScaleIsThatOfTheProblemWhateverTheDrawnStart) {
   constexpr Real kPublished = 24.2 / 2;  // ½Σf² of rosenbrock at (−1.2, 1)
   std::size_t scaled = 0;
-  for (const Record& record : matrix().records) {
+  for (const Record& record : judged_matrix().records) {
     const std::string& problem = record.request.problem.name;
     const Aim aim = catalog().problems.at(problem).aim;
     EXPECT_EQ(aim, problem == "square" ? Aim::x : Aim::loss);
@@ -113,7 +113,7 @@ TEST(Verdicts, NameWhatTheUserWantsAndTheScaleIsThatOfTheProblemWhateverTheDrawn
 
 // Ours say at most by which of their ways they made their steps, or why they stalled.
 TEST(Verdicts, LibrariesClaimSuccessAndOurMethodsDoNot) {
-  for (const Record& record : matrix().records) {
+  for (const Record& record : judged_matrix().records) {
     if (record.status == Status::inapplicable) continue;
     const Family family = catalog().optimizers.at(record.request.optimizer.name).family;
     constexpr std::array kLibraries = {Family::ceres, Family::nlopt, Family::nlopt_derivative_free,
@@ -127,7 +127,7 @@ TEST(Verdicts, LibrariesClaimSuccessAndOurMethodsDoNot) {
 }
 
 TEST(Hits, ComeInOrderWithTheirWorkAndAsTheBestLossAndTheCurveHaveThem) {
-  for (const Record& record : matrix().records) {
+  for (const Record& record : judged_matrix().records) {
     if (!record.hits) continue;
     const Hits& hits = *record.hits;
     ASSERT_EQ(hits.target.size(), 51U) << title_of(record);

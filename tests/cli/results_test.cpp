@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const std::string kMatrix =
+const std::string kTwelveCells =
     "--problem square,rosenbrock,beale --optimizer gd,adam,newton,ceres-lm --seeds 2 "
     "--iterations 40 ";
 
@@ -62,17 +62,18 @@ TEST(Features, AreOptionsOfEveryProblemAndFactorsOfASuite) {
 class Shards : public testing::Test {
  protected:
   Json plan(const std::string& arguments) const {
-    return parse_json(shell.expect("./isoline plan " + kMatrix + arguments + " --json").out, "it");
+    return parse_json(shell.expect("./isoline plan " + kTwelveCells + arguments + " --json").out,
+                      "it");
   }
   Finished run(const std::string& arguments, const Expected& expected = {}) const {
-    return shell.expect("./isoline run " + kMatrix + arguments, expected);
+    return shell.expect("./isoline run " + kTwelveCells + arguments, expected);
   }
   Shell shell;
 };
 
 TEST_F(Shards, APlanSaysWhatADryRunSays) {
   const std::string dry = run("--out out --dry-run").out;
-  const std::string planned = shell("./isoline plan " + kMatrix + "--out out").out;
+  const std::string planned = shell("./isoline plan " + kTwelveCells + "--out out").out;
   EXPECT_TRUE(contains(planned, ", 24 to run")) << planned;
   EXPECT_EQ(dry.substr(0, dry.find(" to run")), planned.substr(0, planned.find(" to run")));
   EXPECT_FALSE(fs::exists(shell.folder() / "out")) << "it only looks";
@@ -89,15 +90,15 @@ TEST_F(Shards, AreToldByAPlanAsAMatrixForAWorkflow) {
   EXPECT_EQ(cells, 24);
   EXPECT_EQ(told.at("shards")[1].at("shard"), "2/3");
   shell.expect("./isoline validate out");
-  shell.expect("./isoline plan " + kMatrix + "--shards 3 --out out",
+  shell.expect("./isoline plan " + kTwelveCells + "--shards 3 --out out",
                {.out = {"shard       2/3", "out/predicted.json, written earlier"}});
 }
 
 TEST_F(Shards, ArePredictedByWhatEarlierRunsTook) {
   run("--out before --no-report --quiet");
-  shell.expect("./isoline plan " + kMatrix + "--shards 2 --out out --from before",
+  shell.expect("./isoline plan " + kTwelveCells + "--shards 2 --out out --from before",
                {.out = {"24 from earlier runs", " 0 from nominal costs"}});
-  shell.expect("./isoline plan " + kMatrix + "--from nowhere",
+  shell.expect("./isoline plan " + kTwelveCells + "--from nowhere",
                {.exit_code = 1, .err = {"nowhere is not"}});
 }
 
@@ -109,7 +110,7 @@ TEST_F(Shards, TogetherAreTheWholeBitForBit) {
     run(std::string("--out out --quiet ") + shard);
   shell.expect(
       "SLURM_ARRAY_TASK_ID=6 SLURM_ARRAY_TASK_MIN=4 SLURM_ARRAY_TASK_COUNT=3 ./isoline run " +
-      kMatrix + "--out out --quiet --shard auto");
+      kTwelveCells + "--out out --quiet --shard auto");
   std::size_t records = 0;
   for (int i = 1; i <= 3; ++i)
     records += count_records(shell.folder() / fmt::format("out/shards/{}-of-3", i));

@@ -566,7 +566,7 @@ TEST_F(Replay, OfARunThatAClockEndedGoesAsFarAsBothWent) {
 // Full, exhausted or read-only disks: a clear message, no corrupt file, and the same command
 // continues when there is room. The file systems are small and mounted in a separate namespace.
 
-const std::string kRun =
+const std::string kRunOnDisk =
     "./isoline run --problem square,beale,wood --optimizer gd,newton,adam --rates none "
     "--iterations 300 --seeds 4 --out disk/out --jobs 2 ";
 
@@ -593,8 +593,8 @@ TEST_F(Disk, ThatIsFullEndsTheRunWithAMessageAndTheNextGoesOnToSoundFiles) {
   for (const auto& [small, large] :
        {std::pair("size=300k", "size=64m"), std::pair("size=64m,nr_inodes=24", "nr_inodes=4096")}) {
     const Finished both =
-        on_disk(small, kRun + "--no-report 2>first.err; echo first $?\nmount -o remount," + large +
-                           " disk\n" + kRun +
+        on_disk(small, kRunOnDisk + "--no-report 2>first.err; echo first $?\nmount -o remount," +
+                           large + " disk\n" + kRunOnDisk +
                            "2>second.err; echo second $?\n"
                            "./isoline validate disk/out; echo valid $?\n"
                            "ls disk/out/runs | grep -vc 'json$'");
@@ -608,11 +608,12 @@ TEST_F(Disk, ThatIsFullEndsTheRunWithAMessageAndTheNextGoesOnToSoundFiles) {
 }
 
 TEST_F(Disk, ThatIsReadOnlyIsTheCallersMistakeBeforeAnythingRuns) {
-  const Finished result = on_disk(
-      "size=64m", kRun + "--quiet --no-report; echo first $?\n" + "mount -o remount,ro disk\n" +
-                      kRun + "--force 2>second.err; echo second $?\n" +
-                      "./isoline run --problem square --optimizer gd --out disk/new "
-                      "2>third.err; echo third $?\n");
+  const Finished result =
+      on_disk("size=64m", kRunOnDisk + "--quiet --no-report; echo first $?\n" +
+                              "mount -o remount,ro disk\n" + kRunOnDisk +
+                              "--force 2>second.err; echo second $?\n" +
+                              "./isoline run --problem square --optimizer gd --out disk/new "
+                              "2>third.err; echo third $?\n");
   EXPECT_TRUE(contains(result.out, "first 0\nsecond 1\nthird 1\n")) << result.out << result.err;
   for (const char* file : {"second.err", "third.err"}) {
     const std::string message = read_text(shell.folder() / file);

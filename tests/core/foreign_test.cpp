@@ -61,7 +61,7 @@ std::string said_of(const std::string& answer, bool hangs_up = true, double seco
   return refusal<LineError>([&] { ends.line->receive_answer(Verb::pullback, numbers, seconds); });
 }
 
-void expect_said(const std::string& answer, const std::string& part) {
+void expect_refused(const std::string& answer, const std::string& part) {
   const std::string said = said_of(answer);
   EXPECT_NE(said.find(part), std::string::npos) << said;
 }
@@ -105,21 +105,21 @@ TEST(Line, AFrameThatComesByTheByteIsTheSame) {
 }
 
 TEST(Line, WhatBreaksTheLawOfFramesIsRefused) {
-  expect_said("", "closed the connection");
-  expect_said(frame(4, 0, 16, "").substr(0, 9), "closed the connection");
-  expect_said(frame(4, 0, 16, "12345678"), "closed the connection");
-  expect_said(frame(4, 0, std::uint64_t{1} << 63, bytes_of(kNumbers)),
-              "pullback with 9223372036854775808 bytes instead");
-  expect_said(frame(4, 0, 8, "12345678"), "8 bytes instead of 16");
-  expect_said(frame(4, 0, 8, bytes_of(kNumbers)), "more bytes than");
-  expect_said(frame(99, 0, 16, bytes_of(kNumbers)), "a frame of verb 99");
+  expect_refused("", "closed the connection");
+  expect_refused(frame(4, 0, 16, "").substr(0, 9), "closed the connection");
+  expect_refused(frame(4, 0, 16, "12345678"), "closed the connection");
+  expect_refused(frame(4, 0, std::uint64_t{1} << 63, bytes_of(kNumbers)),
+                 "pullback with 9223372036854775808 bytes instead");
+  expect_refused(frame(4, 0, 8, "12345678"), "8 bytes instead of 16");
+  expect_refused(frame(4, 0, 8, bytes_of(kNumbers)), "more bytes than");
+  expect_refused(frame(99, 0, 16, bytes_of(kNumbers)), "a frame of verb 99");
 }
 
 TEST(Line, AComplaintIsQuotedWithinBounds) {
-  expect_said(frame(4, 1, 21, "the mesh is \xff tangled"), "pullback: the mesh is \uFFFD");
-  expect_said(frame(4, 1, 2, "no"), "failed at pullback: no");
-  expect_said(frame(4, 1, std::uint64_t{1} << 63, "long"),
-              "9223372036854775808 bytes; at most 65536");
+  expect_refused(frame(4, 1, 21, "the mesh is \xff tangled"), "pullback: the mesh is \uFFFD");
+  expect_refused(frame(4, 1, 2, "no"), "failed at pullback: no");
+  expect_refused(frame(4, 1, std::uint64_t{1} << 63, "long"),
+                 "9223372036854775808 bytes; at most 65536");
 }
 
 TEST(Line, ADeadlineIsKept) {

@@ -14,7 +14,7 @@
 namespace isoline::optimizers {
 namespace {
 
-constexpr const char* kWide = "pinn-poisson[dimension=5,layers=20-9-6,interior=23,boundary=11]";
+constexpr const char* kWidePinn = "pinn-poisson[dimension=5,layers=20-9-6,interior=23,boundary=11]";
 
 struct Assembled {
   explicit Assembled(const char* spec)
@@ -41,7 +41,7 @@ struct Assembled {
 constexpr Real kRounding = 1e-12;
 
 TEST(Pinn, TheGramMatrixByLayersIsThatOfTheJacobian) {
-  Assembled f(kWide);
+  Assembled f(kWidePinn);
   const Matrix expected = (f.J * f.J.transpose()).triangularView<Eigen::Lower>();
   Matrix K;
   f.layers.gram(K);
@@ -49,7 +49,7 @@ TEST(Pinn, TheGramMatrixByLayersIsThatOfTheJacobian) {
 }
 
 TEST(Pinn, WeightsAndColumnsByLayersAreThoseOfTheJacobian) {
-  Assembled f(kWide);
+  Assembled f(kWidePinn);
   RandomStream stream(0, "pinn", "test");
   const Vector w = stream.uniform_vector(f.J.cols(), 0.1, 2);
   const Matrix expected = (f.J * w.asDiagonal() * f.J.transpose()).triangularView<Eigen::Lower>();
@@ -64,7 +64,7 @@ TEST(Pinn, WeightsAndColumnsByLayersAreThoseOfTheJacobian) {
 }
 
 TEST(Pinn, ProductsByLayersAreThoseOfTheJacobian) {
-  Assembled f(kWide);
+  Assembled f(kWidePinn);
   RandomStream stream(0, "pinn", "test");
   constexpr Index kColumns = 19;  // more than are taken at once
   const Matrix Y = stream.normal_vector(f.J.rows() * kColumns).reshaped(f.J.rows(), kColumns);
@@ -78,7 +78,7 @@ TEST(Pinn, ProductsByLayersAreThoseOfTheJacobian) {
 
 // Woodbury's form of the same step, by the layers and by the Jacobian.
 TEST(Pinn, StepsByLayersAreThoseByTheJacobian) {
-  const Problem problem = make(kWide);
+  const Problem problem = make(kWidePinn);
   for (const auto& [one, other] :
        {std::pair{"hig-damped[kappa=1,damping=1e-6,factorization=layers]",
                   "hig-damped[kappa=1,damping=1e-6,factorization=svd]"},
@@ -90,7 +90,7 @@ TEST(Pinn, StepsByLayersAreThoseByTheJacobian) {
 
 // λ in units of JJᵀ/B, as the paper on SPRING for these networks has it; all samples at each step.
 TEST(Pinn, AnAbsoluteDampingIsAddedToTheMeanOfSquares) {
-  Assembled f(kWide);
+  Assembled f(kWidePinn);
   constexpr Real kDamping = 1e-2;
   const Vector r = (f.at.y() - f.meter.target()).reshaped();
   Matrix K = f.J * f.J.transpose();
@@ -108,7 +108,7 @@ TEST(Pinn, AnAbsoluteDampingIsAddedToTheMeanOfSquares) {
 
 // A damping so small that the default is QR: Cholesky is taken nevertheless, and says so.
 TEST(Pinn, SpringIsByCholeskyWhereThatIsAsked) {
-  const Problem problem = make(kWide);
+  const Problem problem = make(kWidePinn);
   const auto claim_of = [&](const std::string& options) {
     const auto trace = run(problem, "spring[damping=1e-12" + options + "]", iterations(2)).trace;
     return std::string(trace->claimed);
@@ -118,7 +118,7 @@ TEST(Pinn, SpringIsByCholeskyWhereThatIsAsked) {
 }
 
 TEST(Pinn, TheBoundOnAStepOfSpringShortensIt) {
-  const Problem problem = make(kWide);
+  const Problem problem = make(kWidePinn);
   const Vector whole = first_step(problem, "spring[rate=0.5]");
   const Real length = whole.norm();
   expect_near(first_step(problem, fmt::format("spring[rate=0.5,longest-step={}]", length / 4)),

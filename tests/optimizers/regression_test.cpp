@@ -24,23 +24,23 @@ constexpr Budget kBudget{.iterations = 100000, .work = 10000, .target = 0};
 constexpr Budget kSuite{.iterations = 100000, .work = 3380, .target = 0};  // of `nist`
 
 // The log relative error of the worst parameter, at most the certified 11.
-Real digits_of(const Outcome& outcome) {
+Real digits_reached(const Outcome& outcome) {
   const Real error = outcome.trace->last.x_error;
   return error < 1 ? std::min(-std::log10(error), 11.0) : 0;
 }
 
-struct Sum {
+struct NistSum {
   int solved = 0;  // to four digits, of 54
   Real digits = 0;
   std::int64_t forwards = 0;
 };
-Sum sum_over_all(const std::string& method) {
-  Sum sum;
+NistSum sum_over_all(const std::string& method) {
+  NistSum sum;
   for (const auto& set : certified().items())
     for (const int start : {1, 2}) {
       const Outcome outcome = run(regression(set.key(), start), method, kSuite);
-      sum.solved += digits_of(outcome) >= 4;
-      sum.digits += digits_of(outcome) / 54;
+      sum.solved += digits_reached(outcome) >= 4;
+      sum.digits += digits_reached(outcome) / 54;
       sum.forwards += outcome.trace->last.counts[0];
     }
   return sum;
@@ -81,7 +81,7 @@ TEST(Regression, StandardDeviationsNeedMoreResidualsThanUnknowns) {
 // 4,564 evaluations were counted with kernels for AVX2, 5,168 with those for SSE3: the steps at the
 // level of rounding differ, and still make x more accurate.
 TEST(Regression, LevenbergMarquardtSolvesAllCellsButOne) {
-  const Sum sum = sum_over_all("levenberg-marquardt");
+  const NistSum sum = sum_over_all("levenberg-marquardt");
   EXPECT_GE(sum.solved, 53);
   EXPECT_LE(sum.forwards, 6000);  // room for the rounding of other kernels
   EXPECT_GE(sum.digits, 9.9);
@@ -89,8 +89,8 @@ TEST(Regression, LevenbergMarquardtSolvesAllCellsButOne) {
 
 TEST(Regression, BoxBodFromItsFarStartNeedsTheAcceleration) {
   const Problem problem = regression("BoxBOD", 1);
-  EXPECT_GE(digits_of(run(problem, "levenberg-marquardt", kBudget)), 6);
-  EXPECT_LT(digits_of(run(problem, "levenberg-marquardt[acceleration=0]", kBudget)), 4);
+  EXPECT_GE(digits_reached(run(problem, "levenberg-marquardt", kBudget)), 6);
+  EXPECT_LT(digits_reached(run(problem, "levenberg-marquardt[acceleration=0]", kBudget)), 4);
 }
 
 // Without poor steps, a run is one without acceleration.
@@ -109,7 +109,7 @@ TEST(Regression, LevenbergMarquardtEndsNowhereBelowTheLoss) {
   const Outcome outcome =
       run(regression("MGH10", 1), "levenberg-marquardt[acceleration=0]", budget);
   EXPECT_EQ(outcome.status, Status::converged);
-  EXPECT_GE(digits_of(outcome), 6);
+  EXPECT_GE(digits_reached(outcome), 6);
 }
 
 // Once rounding alone judges a step, a run ends within a few: MGH17 from its second start took
@@ -119,12 +119,12 @@ TEST(Regression, LevenbergMarquardtEndsWhereOnlyRoundingIsLeft) {
     const Outcome outcome = run(regression(name, 2), "levenberg-marquardt", kBudget);
     EXPECT_EQ(outcome.status, Status::converged) << name;
     EXPECT_LE(outcome.trace->rejected_steps, 6) << name;
-    EXPECT_GE(digits_of(outcome), 7) << name;
+    EXPECT_GE(digits_reached(outcome), 7) << name;
   }
 }
 
 TEST(Regression, CeresStopsAtItsTolerances) {
-  const Sum
+  const NistSum
       tight = sum_over_all(
           "ceres-lm[function-tolerance=1e-16,gradient-tolerance=1e-20,parameter-tolerance=1e-18]"),
       usual = sum_over_all(

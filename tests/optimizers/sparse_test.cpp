@@ -104,9 +104,9 @@ TEST(SparsePattern, DefectsAreFound) {
 }
 
 // y = x², whose sparse values are 2x times a factor.
-class Squares final : public problems::Physics {
+class ScaledSquares final : public problems::Physics {
  public:
-  explicit Squares(Real factor) : factor_(factor) {
+  explicit ScaledSquares(Real factor) : factor_(factor) {
     pattern_.columns = 3;
     for (int i = 0; i < 3; ++i) {
       pattern_.column.push_back(i);
@@ -135,7 +135,7 @@ class Squares final : public problems::Physics {
 
 TEST(SparseJacobian, IsComparedWithTheProducts) {
   for (const Real factor : {1.0, 1.5}) {
-    const Problem problem({.physics = std::make_unique<Squares>(factor),
+    const Problem problem({.physics = std::make_unique<ScaledSquares>(factor),
                            .start = Vector::Ones(3),
                            .target = Matrix::Zero(3, 1)});
     RandomStream stream(0, "squares", "check");

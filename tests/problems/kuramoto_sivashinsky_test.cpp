@@ -13,7 +13,7 @@ namespace {
 
 constexpr Real kTau = 2 * std::numbers::pi;
 
-Vector image(const Problem& problem, const Vector& x) {
+Vector image_of(const Problem& problem, const Vector& x) {
   Point at;
   problem.forward(x, at);
   return at.y.col(0);
@@ -26,7 +26,7 @@ TEST(KuramotoSivashinsky, GrowsSmallWavesByTheLinearRate) {
     const Real kappa = kTau * static_cast<Real>(n) / 22, small = 1e-7;
     Vector x = Vector::Zero(8);
     x[2 * n - 1] = small;
-    const Vector y = image(problem, x);
+    const Vector y = image_of(problem, x);
     Vector wave(y.size());
     for (Index i = 0; i < y.size(); ++i)
       wave[i] = std::sin(kTau * static_cast<Real>(n * i) / static_cast<Real>(y.size()));
@@ -79,13 +79,13 @@ TEST(KuramotoSivashinsky, AgreesWithAnotherIntegration) {
     }
   const Vector other = ByRungeKutta(22, N).evolve(u, 4, 2000);
   EXPECT_GT(other.norm(), 1);
-  EXPECT_LE((image(problem, x) - other).norm(), 1e-8 * other.norm());
+  EXPECT_LE((image_of(problem, x) - other).norm(), 1e-8 * other.norm());
 }
 
 TEST(KuramotoSivashinsky, ConvergesWithTheFourthPowerOfTheStep) {
   const Vector x = make("kuramoto-sivashinsky").truth()->col(0);
   const auto end = [&](int steps) {
-    return image(make("kuramoto-sivashinsky[steps=" + std::to_string(steps) + "]"), x);
+    return image_of(make("kuramoto-sivashinsky[steps=" + std::to_string(steps) + "]"), x);
   };
   const Vector exact = end(6400);
   const Real coarse = (end(400) - exact).norm(), fine = (end(800) - exact).norm();

@@ -1,10 +1,14 @@
 // A problem from its spec, as the command line makes it.
 #pragma once
 
+#include <numbers>
+
 #include "core/spec.h"
 #include "problems/problem.h"
 
 namespace isoline::problems {
+
+inline constexpr Real kPi = std::numbers::pi;
 
 inline const ProblemRegistry& all_problems() {
   static const ProblemRegistry registry = [] {

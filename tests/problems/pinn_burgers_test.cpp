@@ -3,7 +3,6 @@
 
 #include <array>
 #include <cmath>
-#include <numbers>
 
 #include "problems/burgers_flow.h"
 #include "problems/cole_hopf.h"
@@ -13,8 +12,6 @@
 
 namespace isoline::problems {
 namespace {
-
-constexpr Real kPi = std::numbers::pi;
 
 TEST(ColeHopf, HasTheSlopeOfTheLiterature) {
   // Basdevant et al. (1986): the largest slope for ν = 1/100π is 152.00516, at t = 1.6037/π.

@@ -3,7 +3,6 @@
 
 #include <array>
 #include <cmath>
-#include <numbers>
 
 #include "problems/problem.h"
 #include "tests/problems/make.h"
@@ -11,8 +10,6 @@
 
 namespace isoline::problems {
 namespace {
-
-constexpr Real kPi = std::numbers::pi;
 
 Vector random_theta(const Problem& problem) {
   RandomStream stream(0, "pinn-poisson", "test");

@@ -3,15 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 
 #include "core/decompose.h"
 #include "make.h"
 
 namespace isoline::problems {
 namespace {
-
-constexpr Real kPi = std::numbers::pi;
 
 Matrix image(const Problem& problem, const Vector& x) {
   Point at;

@@ -89,8 +89,6 @@ TEST(Baseline, StandsOnTheLeftOfAResultFolder) {
   EXPECT_THROW(compare_results(folder.path() / "report.json", folder.path(), {}), UsageError);
 }
 
-constexpr Real kTolerance = 1e-6;  // of the gate of this repository
-
 // Ten cells, all reaching 1e-1 and 1e-3 but not 1e-6; cell 5 is chaotic or what a test makes of it.
 void fill_ten(const ResultFolder& folder, const Edits& edits) {
   for (std::uint64_t seed = 0; seed < 10; ++seed) {

@@ -30,7 +30,7 @@ Record run_to(const std::string& optimizer, std::uint64_t seed, Real end) {
   return record;
 }
 
-std::vector<Record> adam_and_sip(Real adam = 0.2) {
+std::vector<Record> falling_runs(Real adam = 0.2) {
   std::vector<Record> runs;
   for (std::uint64_t seed = 0; seed < 3; ++seed) {
     runs.push_back(run_to("adam", seed, adam + 0.01 * Real(seed)));
@@ -61,7 +61,7 @@ std::size_t count_of(const std::string& text, const std::string& part) {
 }
 
 TEST(Evidence, OfAClaimIsWhatItsFigureIsMadeOf) {
-  const Judgement judgement = judged(twice(), adam_and_sip());
+  const Judgement judgement = judged(twice(), falling_runs());
   const auto& terms = judgement.evidence.terms;
   ASSERT_EQ(terms.size(), 2U);
   EXPECT_NEAR(terms[0].level, 0.21, 1e-15);  // rounding of the fixture's line
@@ -77,7 +77,7 @@ TEST(Evidence, CurvesPassThroughTheFiguresThatAreRead) {
   Json claim = twice();
   for (const bool is_early : {false, true}) {
     if (is_early) claim["quantity"]["iteration"] = 10;
-    const EvidenceTerm term = judged(claim, adam_and_sip()).evidence.terms.at(0);
+    const EvidenceTerm term = judged(claim, falling_runs()).evidence.terms.at(0);
     const auto at = std::ranges::find(term.x, term.read_at);
     ASSERT_NE(at, term.x.end());
     EXPECT_EQ(term.read_at, is_early ? 10 : kEnd);
@@ -92,16 +92,16 @@ TEST(Evidence, OfSeveralAlternativesIsThatOfTheOneThatCounts) {
   Json claim = twice();
   claim["quantity"]["terms"][1]["optimizer"] = {"adam", "sip"};
   claim["cells"][0]["terms"][1] = {asked_cells("adam")[0], asked_cells("sip")[0]};
-  EXPECT_EQ(judged(claim, adam_and_sip()).evidence.terms.at(1).optimizer, "sip");
+  EXPECT_EQ(judged(claim, falling_runs()).evidence.terms.at(1).optimizer, "sip");
   claim["quantity"]["terms"][1]["of"] = "worst";
-  EXPECT_EQ(judged(claim, adam_and_sip()).evidence.terms.at(1).optimizer, "adam");
+  EXPECT_EQ(judged(claim, falling_runs()).evidence.terms.at(1).optimizer, "adam");
 }
 
 // 2 ± 5 % of the second's 0.11: the bar follows the data, and the line of the first meets it or
 // not.
 TEST(Evidence, ARatioIsDrawnWhereTheFirstLineShouldBe) {
   for (const Real adam : {0.21, 0.9}) {
-    const Judgement judgement = judged(twice(), adam_and_sip(adam));
+    const Judgement judgement = judged(twice(), falling_runs(adam));
     const auto plots = claim_plots(judgement.evidence, "twice");
     ASSERT_EQ(plots.size(), 1U);
     ASSERT_EQ(plots[0].series.size(), 2U);
@@ -120,7 +120,7 @@ TEST(Evidence, ARatioIsDrawnWhereTheFirstLineShouldBe) {
 TEST(Evidence, OfOneRunAtSeveralPlacesHasOneLine) {
   Json claim = twice("ratio", {"sip", "sip"});
   claim["quantity"]["terms"][0]["iteration"] = 0;
-  const auto plots = claim_plots(judged(claim, adam_and_sip()).evidence, "twice");
+  const auto plots = claim_plots(judged(claim, falling_runs()).evidence, "twice");
   EXPECT_EQ(plots.at(0).series.size(), 1U);
   EXPECT_EQ(plots[0].published.at(0).x, std::vector<Real>{0});
 }
@@ -145,7 +145,7 @@ TEST(Evidence, PrintedFiguresStandBesideThoseReached) {
   claim["quantity"]["column"] = "deviation";
   claim["published"] = {{"table", {{1.5, 2.5}, {3.5, 4.5}}}};
   claim["tolerance"] = {{"from", "digits"}, {"absolute", 0.25}};
-  std::vector<Record> runs = adam_and_sip();
+  std::vector<Record> runs = falling_runs();
   for (Record& run : runs) {
     run.trajectory = Trajectory{};
     for (std::size_t i = 0; i < run.curve.iteration.size(); ++i)
@@ -162,7 +162,7 @@ TEST(Evidence, PrintedFiguresStandBesideThoseReached) {
 }
 
 TEST(ClaimSection, TellsAllOfItInEveryFormat) {
-  const Judgement judgement = judged(twice(), adam_and_sip());
+  const Judgement judgement = judged(twice(), falling_runs());
   const Document document = document_of(compare_optimizers(kNoRuns), {judgement});
   for (const std::string& text :
        {terminal_claim(claim_section(judgement)), markdown_report(document), claims_html(document)})
@@ -180,7 +180,7 @@ TEST(ClaimSection, NamesTheLengthsThatAreMissing) {
   longer["long"] = true;
   longer["terms"][0][0]["cells"] = {"adam0", "adam1-long"};
   claim["cells"].insert(claim["cells"].begin(), longer);
-  const Judgement judgement = judged(claim, adam_and_sip());
+  const Judgement judgement = judged(claim, falling_runs());
   ASSERT_EQ(judgement.sets.size(), 2U);
   EXPECT_EQ(judgement.sets[0].here, 4U);
   EXPECT_EQ(judgement.sets[0].planned, 5U);
@@ -206,7 +206,7 @@ TEST(ClaimSection, WithoutRunsSaysSoAndDrawsNothing) {
 }
 
 TEST(ClaimsOfThePage, AreLedToByTheirRows) {
-  const Judgement judgement = judged(twice(), adam_and_sip());
+  const Judgement judgement = judged(twice(), falling_runs());
   const std::string html = claims_html(document_of(compare_optimizers(kNoRuns), {judgement}));
   EXPECT_EQ(count_of(html, "id=\"claim-twice\""), 1U);
   EXPECT_EQ(count_of(html, "href=\"#claim-twice\""), 1U);
@@ -217,7 +217,7 @@ TEST(ClaimsOfThePage, AreLedToByTheirRows) {
 // An address cannot hold all that the name of a folder can.
 TEST(ClaimsOfThePage, LeadToTheRecordsThatAreThere) {
   const ResultFolder folder;
-  std::vector<Record> runs = adam_and_sip();
+  std::vector<Record> runs = falling_runs();
   std::filesystem::create_directories(folder.path() / "odd #1" / "runs");
   for (const Record& run : runs)
     if (run.cell != "sip2") folder.add_file("odd #1/runs/" + run.file_name(), to_json(run).dump());
@@ -235,7 +235,7 @@ TEST(ClaimsOfThePage, LeadToTheRecordsThatAreThere) {
 }
 
 TEST(ClaimsOfTheJson, HoldTheEvidenceByTheSchema) {
-  const Judgement judgement = judged(twice(), adam_and_sip());
+  const Judgement judgement = judged(twice(), falling_runs());
   const Json json =
       parse_json(json_report(document_of(compare_optimizers(kNoRuns), {judgement})), "report");
   const std::filesystem::path tree = ISOLINE_SOURCE_DIR;

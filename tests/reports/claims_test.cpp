@@ -17,8 +17,6 @@
 namespace isoline::reports {
 namespace {
 
-const Study kNoRuns;
-
 // A run whose error in x is `error` throughout; its cell is named by optimizer and seed.
 Record run_of(const std::string& optimizer, std::uint64_t seed, Real error) {
   Record record = record_of({.optimizer = optimizer, .seed = seed});
@@ -515,7 +513,7 @@ TEST(Claims, OfAReportAreToldInEveryFormatByTheSameFigures) {
   const std::vector<Judgement> judgements = {judgement_of({}, adam_and_sip())};
   EXPECT_EQ(measured_text(judgements[0]), "10 (10–30), n = 3");
   const Section section = claims_section(judgements);
-  const Document document = document_of(compare_optimizers(kNoRuns), judgements);
+  const Document document = document_of(compare_optimizers(Study()), judgements);
   for (const std::string& text :
        {section_html(section), markdown_report(document), terminal_section(section)}) {
     for (const char* part :

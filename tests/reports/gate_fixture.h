@@ -15,6 +15,8 @@
 
 namespace isoline::reports {
 
+inline constexpr Real kTolerance = 1e-6;  // of the gate of this repository
+
 using Edit = std::function<void(Record&)>;
 using Edits = std::map<std::uint64_t, Edit>;  // by seed
 

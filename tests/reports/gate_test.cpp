@@ -338,8 +338,6 @@ TEST(Allowed, AStarStandsForAnyText) {
 
 // Pairing of cells by what was asked, with changed defaults, and causes of differences.
 
-constexpr Real kTolerance = 1e-6;  // of the gate of this repository
-
 // Three optimizers with a default each. The digest is made after the edit.
 Edit with_defaults(const Edit& edit) {
   return [edit](Record& record) {

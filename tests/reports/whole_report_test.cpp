@@ -218,7 +218,7 @@ std::map<Status, std::size_t> statuses_drawn() {
   return statuses;
 }
 
-std::size_t lines_of(const std::string& text) {
+std::size_t line_count(const std::string& text) {
   return static_cast<std::size_t>(std::ranges::count(text, '\n'));
 }
 
@@ -274,7 +274,7 @@ TEST(Report, OfThousandsOfRecordsCountsEachOnceAndStatesTheSameNumberOfFailuresE
   EXPECT_EQ(all.failed, comparison.failures.size());
   EXPECT_GT(all.failed, 0U);
   write_report(document, folder / "report");
-  EXPECT_EQ(lines_of(read_text(folder / "report/report.csv")), kSize.records() + 1);  // a header
+  EXPECT_EQ(line_count(read_text(folder / "report/report.csv")), kSize.records() + 1);  // a header
   const Json report = read_json(folder / "report/report.json");
   EXPECT_EQ(report.at("failures").size(), comparison.failures.size());
   std::size_t runs = 0, failed = 0;
@@ -320,7 +320,8 @@ TEST(Report, OfTenThousandCellsIsWholeAndItsPageBelowEightMegabytes) {
   write_report(document_of(compare_optimizers(study)), folder / "report");
   EXPECT_LT(std::filesystem::file_size(folder / "report" / "index.html"), kMostBytes);
   const std::string csv = read_text(folder / "report" / "report.csv");
-  EXPECT_EQ(lines_of(csv), study.plan.cells.size() + 1);  // a header; missing cells have a row too
+  EXPECT_EQ(line_count(csv),
+            study.plan.cells.size() + 1);  // a header; missing cells have a row too
 }
 
 }  // namespace
