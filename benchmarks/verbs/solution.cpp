@@ -16,9 +16,11 @@
 #include "core/json.h"
 #include "core/output.h"
 #include "core/records/npy.h"
+#include "core/results/answers.h"
 #include "core/results/study.h"
 #include "core/text.h"
 #include "reports/formats/formats.h"
+#include "reports/sections/answers.h"
 #include "reports/sections/words.h"
 
 namespace isoline::benchmarks {
@@ -83,26 +85,13 @@ AnswerPoints answer_in(const std::vector<std::string>& folders, const Record& re
                                record.file_name()));
 }
 
-Real distance(std::span<const Real> a, std::span<const Real> b) {
-  Real sum = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) sum += (a[i] - b[i]) * (a[i] - b[i]);
-  return std::sqrt(sum);
-}
-
-// Losses tie where they differ by less than the strictest target of the tables; points are others
-// where they differ by more than a thousandth of their norm.
 void compare_with(const Solution& other, Solution& solution) {
-  constexpr Real kTie = 1e-6, kApart = 1e-3;
   const Record &a = *solution.record, &b = *other.record;
   if (a.request.problem.spec != b.request.problem.spec || a.request.seed != b.request.seed) return;
   const Real descent = a.summary.start_loss - solution.loss();
-  const bool is_tie = std::abs(solution.loss() - other.loss()) <= kTie * a.scale.value_or(descent);
-  const auto x = solution.point(), z = other.point();
-  if (!is_tie || x.size() != z.size()) return;
-  const std::vector<Real> zero(x.size());
-  const Real apart = distance(x, z);
-  if (!(apart > kApart * std::max(distance(x, zero), distance(z, zero)))) return;
-  ++solution.others;
+  const Real apart = results::distance_at_equal_loss(
+      solution.loss(), other.loss(), a.scale.value_or(descent), solution.point(), other.point());
+  if (apart > 0) ++solution.others;
   solution.distance = std::max(solution.distance, apart);
 }
 
@@ -136,25 +125,9 @@ std::vector<Solution> solutions_of(const results::Study& study, const SolutionAr
   return chosen;
 }
 
-// The columns of an answer: a name, and a text for each unknown.
-struct Column {
-  std::string name;
-  std::vector<std::string> texts;
-};
-
-std::vector<Column> columns_of(const Solution& solution, const char* number_format) {
-  std::vector<Column> columns{{"unknown", {}}};
-  for (std::size_t i = 0; i < solution.point().size(); ++i)
-    columns[0].texts.push_back(fmt::format("x{}", i + 1));
-  const auto add = [&](const char* name, std::span<const Real> values) {
-    if (values.empty()) return;
-    columns.push_back({name, {}});
-    for (const Real value : values)
-      columns.back().texts.push_back(fmt::format(fmt::runtime(number_format), value));
-  };
-  add("returned", solution.answer.point(kReturned));
-  add("standard deviation", solution.deviations());
-  add("best", solution.answer.point(kBest));
+// With the active bounds, if there are any.
+std::vector<reports::AnswerColumn> columns_of(const Solution& solution, const char* number_format) {
+  auto columns = reports::answer_columns(*solution.record, solution.answer, number_format);
   if (std::ranges::any_of(solution.active, [](const auto& text) { return !text.empty(); }))
     columns.push_back({"active bound", solution.active});
   return columns;
@@ -171,10 +144,10 @@ std::string table_text(const Solution& solution) {
   if (solution.answer.residual_norm)
     text += fmt::format(", ‖y − y*‖ {:.6g}", *solution.answer.residual_norm);
   text += "\n";
-  const std::vector<Column> columns = columns_of(solution, "{:.10g}");
+  const auto columns = columns_of(solution, "{:.10g}");
   const std::size_t rows = columns[0].texts.size(), shown = std::min(rows, kMostRows);
   for (std::size_t row = 0; row <= shown; ++row) {
-    for (const Column& column : columns) {
+    for (const reports::AnswerColumn& column : columns) {
       std::size_t width = column.name.size();
       for (std::size_t i = 0; i < shown; ++i) width = std::max(width, column.texts[i].size());
       text += fmt::format("  {:>{}}", row == 0 ? column.name : column.texts[row - 1], width);
@@ -185,8 +158,8 @@ std::string table_text(const Solution& solution) {
     text += fmt::format("  {} more unknowns; --format csv prints all\n", rows - shown);
   if (solution.others > 0)
     text += fmt::format(
-        "  {} with the same loss {} at another point, up to {:.3g} away: several x fit the data "
-        "equally well.\n",
+        "  {} with the same loss {} at another point, up to {:.3g} away: the problem has more than "
+        "one solution, or the loss does not determine x.\n",
         reports::counted(solution.others, "run"), solution.others == 1 ? "is" : "are",
         solution.distance);
   return text + fmt::format("  {}\n", reports::rerun_command(request));
@@ -197,13 +170,13 @@ std::string csv_text(const std::vector<Solution>& solutions) {
       "problem,optimizer,seed,unknown,returned,standard deviation,best,active bound\n";
   for (const Solution& solution : solutions) {
     const Request& request = solution.record->request;
-    const std::vector<Column> columns = columns_of(solution, "{}");
+    const auto columns = columns_of(solution, "{}");
     for (std::size_t i = 0; i < columns[0].texts.size(); ++i) {
       text += fmt::format("{},{},{}", reports::exact_csv_field(request.problem.spec),
                           reports::exact_csv_field(request.optimizer.spec), request.seed);
       for (const char* name :
            {"unknown", "returned", "standard deviation", "best", "active bound"}) {
-        const auto column = std::ranges::find(columns, name, &Column::name);
+        const auto column = std::ranges::find(columns, name, &reports::AnswerColumn::name);
         text += "," + (column == columns.end() ? "" : column->texts[i]);
       }
       text += "\n";

@@ -106,10 +106,11 @@ void add_figures(ComparedCell& cell, const Record& record) {
     cell.figures[kWork + j] = record.hits->iteration[j] < 0 ? kNever : Real(record.hits->work[j]);
 }
 
-// The path is compared apart, to state which values differ. The answer, which follows it, is not.
+// The path is compared apart, to state which values differ. What follows from it is not.
 void add_digests(ComparedCell& cell, const Record& record) {
   Json json = result_of(to_json(record));
-  for (const char* known : {"build", "build_parts", "cell", "schema", "answer"}) json.erase(known);
+  for (const char* known : {"build", "build_parts", "cell", "schema", "answer"})
+    json.erase(known);
   Json path = Json::object();
   for (const char* name : {"curve", "trajectory", "series", "exhibit", "hits"})
     if (json.contains(name)) {
@@ -150,6 +151,7 @@ ComparedCell cell_of(const Record& record) {
       cell.seconds.push_back(seconds);
     else
       ++cell.senseless_times;
+  if (record.answer && !record.answer->x.empty()) cell.x = record.answer->x.back();
   add_digests(cell, record);
   add_figures(cell, record);
   return cell;

@@ -151,10 +151,6 @@ Difference difference_of(const ComparedCell& cell, std::size_t figure, Real befo
   return difference;
 }
 
-bool has_both(const ComparedCell& a, const ComparedCell& b, std::size_t figure) {
-  return a.has(figure) && b.has(figure);
-}
-
 // Differences without a size. If a status broke off, it explains the missing values.
 Differences differences_of_kind(const ComparedCell& a, const ComparedCell& b) {
   Differences found;
@@ -169,6 +165,63 @@ Differences differences_of_kind(const ComparedCell& a, const ComparedCell& b) {
   const Change change = a.privileges.size() < b.privileges.size() ? Change::worse : Change::better;
   found.push_back(difference_in(a, change, "extra information", text(a), text(b)));
   return found;
+}
+
+// Another processor rounds in every operation, but a perturbed start differs only once. Cells that
+// changed by almost the tolerance after a perturbation change by more on another processor.
+constexpr Real kMargin = 0.1;
+
+// By the success criterion of BASE.
+bool has_reached(const ComparedCell& cell, Aim aim, std::size_t tolerance) {
+  const std::size_t figure = work_at(aim, tolerance);
+  return cell.has(figure) && cell.figures[figure] < kNever;
+}
+
+void add_coarse_status(const ComparedCell& a, const ComparedCell& b, Differences& all) {
+  std::vector<Status> statuses = a.perturbed->statuses;
+  statuses.push_back(a.status);
+  if (std::ranges::find(statuses, b.status) != statuses.end()) return;
+  std::set<std::string> seen;
+  for (const Status status : statuses) seen.emplace(name_of(status));
+  const auto [least, most] = std::ranges::minmax(statuses, {}, badness_of);
+  const int now = badness_of(b.status);
+  const Change change = now > badness_of(most)    ? Change::worse
+                        : now < badness_of(least) ? Change::better
+                                                  : Change::changed;
+  all.push_back(difference_in(a, change, "status", joined({seen.begin(), seen.end()}, " or "),
+                              std::string(name_of(b.status))));
+}
+
+std::string value_text(const OptionValue& value) {
+  const Real* const number = std::get_if<Real>(&value);
+  return number == nullptr ? option_text(value) : exact_figure(*number);
+}
+
+bool is_set_in(const std::string& spec, const std::string& option) {
+  const auto given = parse_spec(spec).options;
+  return std::ranges::any_of(given, [&](const auto& set) { return set.first == option; });
+}
+
+// Paired by what was asked, two differ in an option only by a default or by a table of rates. An
+// empty option equals one that did not exist yet.
+void add_changes(const Component& a, const Component& b, std::set<std::string>& changes) {
+  std::set<std::string> options;
+  for (const Component* side : {&a, &b})
+    for (const NamedOption& each : side->options) options.insert(each.name);
+  for (const std::string& option : options) {
+    const OptionValue *const old = a.options.find(option), *const now = b.options.find(option);
+    if (old != nullptr && now != nullptr ? *old == *now : option_text(*(old ? old : now)).empty())
+      continue;
+    const std::string change =
+        old == nullptr ? fmt::format("new option {} {}", option, value_text(*now))
+        : now == nullptr
+            ? fmt::format("option {} was removed; it was {}", option, value_text(*old))
+            : fmt::format(
+                  "{} {} {} → {}",
+                  is_set_in(a.spec, option) && is_set_in(b.spec, option) ? "tabled" : "default of",
+                  option, value_text(*old), value_text(*now));
+    changes.insert(a.name + ": " + change);
+  }
 }
 
 }  // namespace
@@ -205,7 +258,7 @@ Real movement(const ComparedCell& a, const ComparedCell& b) {
   if (a.status != b.status) return kNever;
   Real most = 0;
   for (std::size_t i = 0; i < kFigures; ++i)
-    if (has_both(a, b, i))
+    if (a.has(i) && b.has(i))
       most = std::max(most, least_tolerance(a.figures[i], b.figures[i], scale_of(a, i)));
   return most;
 }
@@ -216,7 +269,7 @@ Differences figure_differences(const ComparedCell& a, const ComparedCell& b,
   std::map<std::pair<const char*, Change>, std::pair<std::size_t, int>> largest;  // and count
   for (const FigureKind& kind : kFigureKinds)
     for (std::size_t i = kind.first; i < kind.first + kind.count; ++i) {
-      if (!has_both(a, b, i) || agree(a.figures[i], b.figures[i], scale_of(a, i), tolerance))
+      if (!a.has(i) || !b.has(i) || agree(a.figures[i], b.figures[i], scale_of(a, i), tolerance))
         continue;
       Difference difference = difference_of(a, i, a.figures[i], b.figures[i]);
       const char* const key = i <= kPath ? kFigureKinds[kLoss].key : kind.key;  // losses share one
@@ -233,35 +286,6 @@ Differences figure_differences(const ComparedCell& a, const ComparedCell& b,
     }
   return out;
 }
-
-namespace {
-
-// Another processor rounds in every operation, but a perturbed start differs only once. Cells that
-// changed by almost the tolerance after a perturbation change by more on another processor.
-constexpr Real kMargin = 0.1;
-
-// By the success criterion of BASE.
-bool has_reached(const ComparedCell& cell, Aim aim, std::size_t tolerance) {
-  const std::size_t figure = work_at(aim, tolerance);
-  return cell.has(figure) && cell.figures[figure] < kNever;
-}
-
-void add_coarse_status(const ComparedCell& a, const ComparedCell& b, Differences& all) {
-  std::vector<Status> statuses = a.perturbed->statuses;
-  statuses.push_back(a.status);
-  if (std::ranges::find(statuses, b.status) != statuses.end()) return;
-  std::set<std::string> seen;
-  for (const Status status : statuses) seen.emplace(name_of(status));
-  const auto [least, most] = std::ranges::minmax(statuses, {}, badness_of);
-  const int now = badness_of(b.status);
-  const Change change = now > badness_of(most)    ? Change::worse
-                        : now < badness_of(least) ? Change::better
-                                                  : Change::changed;
-  all.push_back(difference_in(a, change, "status", joined({seen.begin(), seen.end()}, " or "),
-                              std::string(name_of(b.status))));
-}
-
-}  // namespace
 
 Perturbed perturbed_of(const ComparedCell& unperturbed,
                        const std::vector<ComparedCell>& perturbed) {
@@ -294,43 +318,6 @@ Differences coarse_differences(const ComparedCell& a, const ComparedCell& b) {
   for (Difference& one : all) one.note = "chaotic: compared by status and targets 1e-1, 1e-3, 1e-6";
   return all;
 }
-
-namespace {
-
-std::string value_text(const OptionValue& value) {
-  const Real* const number = std::get_if<Real>(&value);
-  return number == nullptr ? option_text(value) : exact_figure(*number);
-}
-
-bool is_set_in(const std::string& spec, const std::string& option) {
-  const auto options = parse_spec(spec).options;
-  return std::ranges::find(options, option, [](const auto& set) { return set.first; }) !=
-         options.end();
-}
-
-// Paired by what was asked, two differ in an option only by a default or by a table of rates. An
-// empty option equals one that did not exist yet.
-void add_changes(const Component& a, const Component& b, std::set<std::string>& changes) {
-  std::set<std::string> options;
-  for (const Component* side : {&a, &b})
-    for (const NamedOption& each : side->options) options.insert(each.name);
-  for (const std::string& option : options) {
-    const OptionValue *const old = a.options.find(option), *const now = b.options.find(option);
-    if (old != nullptr && now != nullptr ? *old == *now : option_text(*(old ? old : now)).empty())
-      continue;
-    const std::string change =
-        old == nullptr ? fmt::format("new option {} {}", option, value_text(*now))
-        : now == nullptr
-            ? fmt::format("option {} was removed; it was {}", option, value_text(*old))
-            : fmt::format(
-                  "{} {} {} → {}",
-                  is_set_in(a.spec, option) && is_set_in(b.spec, option) ? "tabled" : "default of",
-                  option, value_text(*old), value_text(*now));
-    changes.insert(a.name + ": " + change);
-  }
-}
-
-}  // namespace
 
 std::set<std::string> changed_options(const ComparedCell& before, const ComparedCell& after) {
   std::set<std::string> changes;

@@ -12,6 +12,7 @@
 #include "core/errors.h"
 #include "core/files.h"
 #include "core/json.h"
+#include "core/results/answers.h"
 #include "reports/formats/formats.h"
 #include "reports/sections/words.h"
 
@@ -145,6 +146,7 @@ Section gate_section(const GateResult& result, bool lists_all) {
                 fmt::format("{}, {}", time.n_before, time.n_after)};
       });
   add_table(section, "Only in BASE", {"cell"}, "", result.only_before, line);
+  add_table(section, "At another x", {"cell", "difference"}, "ll", result.elsewhere, reasoned);
   add_table(section, "Allowed", {"cell", "reason"}, "ll", result.allowed, reasoned);
   add_table(section, "Not comparable", {"cell", "reason"}, "ll", result.incomparable, reasoned);
   add_table(section, "Only in NEW", {"cell"}, "", result.only_after, line);
@@ -293,6 +295,12 @@ class Gate {
   void judge(const ComparedCell& a, const ComparedCell& b) {
     Differences found = figure_differences(a, b, options_.tolerance);
     if (a.status != b.status) found.insert(found.begin(), status_difference(a, b));
+    const Real apart =
+        a.x.empty() || b.x.empty()
+            ? 0
+            : distance_at_equal_loss(a.figures[kBestLoss], b.figures[kBestLoss], a.scale, a.x, b.x);
+    if (apart > 0)
+      result_.elsewhere.push_back({a.title, fmt::format("loss equal, x differs by {:.3g}", apart)});
     if (found.empty() && !options_.tolerance && (a.trace != b.trace || a.rest != b.rest))
       found.push_back(silent_difference(a, b));
     const bool is_coarse = !found.empty() && is_chaotic(a, options_.tolerance);
@@ -380,6 +388,9 @@ class Gate {
         {result_.chaotic, "chaotic cell",
          "compared by status and the targets 1e-1, 1e-3 and 1e-6: a change of the start in the "
          "last bit changes the values by more than a tenth of the tolerance"},
+        {result_.elsewhere.size(), "cell",
+         "with equal losses but different x: the problem has more than one solution, or the loss "
+         "does not determine x"},
         {too_few_, "cell",
          fmt::format("with too few repetitions to compare times: use --repeat {} --exclusive",
                      kLeastRepetitions)},
@@ -483,16 +494,13 @@ GateResult compare_results(const std::filesystem::path& before, const std::files
                            const GateOptions& options) {
   auto baseline = read_baseline(before);
   require(!read_baseline(after), "a baseline must be the first argument: isoline compare BASE NEW");
-  FolderCells old;
-  if (baseline)
-    old.cells = std::move(*baseline);
-  else
-    old = read_cells(before, options.listener);
+  const FolderCells old =
+      baseline ? FolderCells{.cells = std::move(*baseline)} : read_cells(before, options.listener);
   const FolderCells now = read_cells(after, options.listener);
   GateResult result = Gate(options).run(old.cells, now.cells);
   conclude(result, options);
   if (baseline) result.remarks.push_back("Baselines do not store times, so times are not compared");
-  for (const auto& [found, path] : {std::pair(&std::as_const(old), before), {&now, after}}) {
+  for (const auto& [found, path] : {std::pair(&old, before), {&now, after}}) {
     if (found->unreadable > 0)
       result.remarks.push_back(fmt::format("{} of {} could not be read",
                                            counted(found->unreadable, "file"), path.string()));

@@ -75,6 +75,7 @@ struct ComparedCell {
   std::string trace, rest;      // digests of its path and of what else is deterministic
   std::vector<std::pair<std::string_view, std::uint64_t>> members;  // digests of that, by name
   std::vector<Real> seconds;                                        // repetitions
+  std::vector<Real> x;              // of least loss, in a record that holds it
   std::size_t senseless_times = 0;  // of them, left out: infinite, or not a number
   std::string processor;
   bool is_cut = false;                 // a clock or a kill ended it
@@ -207,7 +208,7 @@ struct GateResult {
   std::vector<std::string> only_before, only_after;  // titles; the allowed ones are not among them
   std::string lack;                   // "NEW lacks 4 cells of adam on sine that BASE has"
   std::vector<ReasonedCell> allowed;  // only in BASE, or judged otherwise
-  std::vector<ReasonedCell> incomparable;
+  std::vector<ReasonedCell> incomparable, elsewhere;  // the second: of equal loss, at another x
   std::vector<std::string> remarks;
   std::string verdict;  // one sentence, which names the cause
   ExitCode exit_code = kGood;

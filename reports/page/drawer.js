@@ -55,11 +55,21 @@ function leaving(address, text) {
   return link;
 }
 
-// What is known of a method on a problem, its curve, the command of all its runs, and each record.
+// The x of a run: the first unknowns, and where the others are.
+function answerOf({answer}) {
+  if (!answer) return [];
+  const {seed, loss, norm, unknowns, file, columns} = answer, shown = Math.max(0, (columns[0]?.length ?? 0) - 1), table = element('table', {className: 'answer-of'});
+  const rowOf = (i) => element('tr', {}, ...columns.map((texts, column) => element(i === 0 || column === 0 ? 'th' : 'td', {scope: i === 0 ? 'col' : 'row'}, texts[i])));
+  const caption = worded('answer', {seed, loss, norm: norm === undefined ? '' : worded('answer-norm', {norm})}), rest = file === '' ? 'answer-rest' : 'answer-file';
+  filledTable(table, caption, shown === 0 ? [] : [rowOf(0)], Array.from({length: shown}, (_, i) => rowOf(i + 1)));
+  return [scrolled(table), ...shown === unknowns ? [] : [element('p', {}, worded(rest, {shown, unknowns, file}))]];
+}
+
+// What is known of a method on a problem, its curve, its x, the command of all its runs, and each record.
 function evidenceOf(p, s) {
-  const [title, ...lines] = explanationOf(p, s), {records = [], reached = []} = cellOf(DATA.problems[p], s) ?? {}, command = commandOf(p, s), curves = leaving(`#problem-${p}`, worded('all-curves'));
+  const [title, ...lines] = explanationOf(p, s), cell = cellOf(DATA.problems[p], s) ?? {}, {records = [], reached = []} = cell, command = commandOf(p, s), curves = leaving(`#problem-${p}`, worded('all-curves'));
   curves.addEventListener('click', () => showLines(p, [...linesShown(p), s]));
-  return [element('h3', {}, title), ...lines.map((line) => element('p', {}, line)), ...sparkline(p, s), element('p', {}, curves),
+  return [element('h3', {}, title), ...lines.map((line) => element('p', {}, line)), ...sparkline(p, s), element('p', {}, curves), ...answerOf(cell),
     ...command === undefined ? [] : [element('p', {}, worded('cell-command'), ' ', ...withCopy(command))],
     ...records.length === 0 ? [] : [element('p', {}, worded(records.length < reached.length ? 'first-records' : 'all-records', {shown: records.length, all: reached.length})), element('ul', {}, ...records.map((name) => {
       const file = `${DATA.runs}${name}.json`;

@@ -15,6 +15,7 @@
 #include "core/json.h"
 #include "core/threads.h"
 #include "reports/page/page.h"
+#include "reports/sections/answers.h"
 #include "reports/sections/words.h"
 
 namespace isoline::reports {
@@ -61,8 +62,34 @@ std::string medians_json(const Comparison& c, const Cell& cell) {
   });
 }
 
+// The x of the first of those runs that keeps one: {"seed", "loss", "norm", "unknowns", "file",
+// "columns": [[name, text of each of the first unknowns]]}; null where there is none. Beyond 1,000
+// unknowns, the numbers are in the file.
+std::string answer_json(const Comparison& c, std::span<const std::size_t> runs) {
+  constexpr std::size_t kMost = 20;
+  const auto kept = std::ranges::find_if(
+      runs, [&](std::size_t run) { return c.runs[run].record->answer.has_value(); });
+  if (kept == runs.end()) return "null";
+  const Record& record = *c.runs[*kept].record;
+  const AnswerPoints& answer = *record.answer;
+  Json json = {{"seed", record.request.seed},
+               {"loss", figure(answer.point(kBest).empty() ? record.summary.loss
+                                                           : record.summary.best_loss)},
+               {"unknowns", answer.unknowns},
+               {"file", answer.is_in_file() ? answer_path(record.file_name()).string() : ""},
+               {"columns", Json::array()}};
+  if (answer.residual_norm) json["norm"] = figure(*answer.residual_norm);
+  if (!answer.is_in_file())
+    for (AnswerColumn& column : answer_columns(record, answer, "{:.8g}")) {
+      column.texts.resize(std::min(kMost, column.texts.size()));
+      column.texts.insert(column.texts.begin(), column.name);
+      json["columns"].push_back(column.texts);
+    }
+  return json_text(json);
+}
+
 // [optimizer, targets reached by each run, [medians by measure], runs failed, runs missing, [record
-// of each run, or of the first]]: what the page chooses from. The optimizer alone where the pair
+// of each run, or of the first], x]: what the page chooses from. The optimizer alone where the pair
 // makes no sense.
 std::string cell_json(const Comparison& c, std::size_t p, std::size_t s) {
   const Cell& cell = c.cell(p, s);
@@ -77,8 +104,9 @@ std::string cell_json(const Comparison& c, std::size_t p, std::size_t s) {
     const std::string name = c.runs[run].record->file_name();
     return json_quoted(name.substr(0, name.find('.')));
   });
-  return fmt::format("[{},{},{},{},{},{}]", s, repeats_json(reached), medians_json(c, cell),
-                     cell.failed, cell.missing(), records);
+  return fmt::format("[{},{},{},{},{},{}{}]", s, repeats_json(reached), medians_json(c, cell),
+                     cell.failed, cell.missing(), records,
+                     is_large(c) ? "" : "," + answer_json(c, cell.runs));
 }
 
 // {"optimizer": "3.8e-5, tuned"}, of those whose options a table of rates chose.

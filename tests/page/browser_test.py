@@ -461,6 +461,23 @@ class Page(InBrowser):
         self.browser.press("escape")
         self.browser.wait("return !document.getElementById('drawer').open")
 
+    def test_a_run_opens_the_x_that_it_found(self):
+        self.browser.run("openDrawer(arguments[0], arguments[1])", self.problem("rosenbrock"), self.optimizer("newton"))
+        rows = self.browser.wait("const rows = [...document.querySelectorAll('#drawer .answer-of tr')];"
+                                 "return rows.length > 0 && rows.map((row) => [...row.cells].map((cell) => cell.textContent))")
+        answer = json.loads(self.records()[0].read_text())["answer"]
+        self.assertEqual([row[0] for row in rows], ["unknown", "x1", "x2"])
+        self.assertEqual(rows[0][1], "returned")
+        for row, x in zip(rows[1:], answer["x"][0]):
+            self.assertAlmostEqual(float(row[1]), x, delta=1e-7 * abs(x))
+        for file in ("", "many.x.npy"):
+            rest = self.browser.run(
+                "const [file] = arguments, columns = file ? [] : [['unknown', 'x1', 'x2'], ['best', '1', '2']];"
+                "return answerOf({answer: {seed: 0, loss: '1', unknowns: 25, file, columns}}).map((part) => part.textContent)",
+                file)
+            self.assertIn("25", rest[1])
+            self.assertIn(file, rest[1])
+
     def records(self):
         """The record files that the drawer links, each of which exists."""
         links = self.browser.wait("const all = [...document.querySelectorAll('#drawer a[href$=\".json\"]')]"

@@ -95,6 +95,28 @@ TEST(Gate, WhatNoFigureShowsIsAChangeAndCalledByItsName) {
   EXPECT_FALSE(has(gate_terminal(beside), "the path differs")) << gate_terminal(beside);
 }
 
+// Of three cells that end at another x, one has another loss, and one is near.
+TEST(Gate, NamesCellsOfEqualLossAtAnotherX) {
+  const auto ends_at = [](const std::vector<Real>& x, Real factor = 1) {
+    return [x, factor](Record& record) {
+      loss_times(factor)(record);
+      record.summary.best_loss = record.summary.loss;
+      record.answer = AnswerPoints{.unknowns = 2, .points = {kReturned}, .x = {x}};
+    };
+  };
+  const TwoFolders two;
+  fill(two.before, {{3, ends_at({1, 2})}, {5, ends_at({1, 2})}, {7, ends_at({1, 2})}});
+  fill(two.after, {{3, ends_at({-1, 2}, 1.5)}, {5, ends_at({-1, 2})}, {7, ends_at({1, 2.001})}});
+  const GateResult result = two.compared();
+  EXPECT_EQ(result.equal, 11U);
+  ASSERT_EQ(result.elsewhere.size(), 1U);
+  EXPECT_TRUE(has(result.elsewhere[0].title, "seed 5")) << result.elsewhere[0].title;
+  EXPECT_TRUE(result.elsewhere[0].reason.ends_with(" 2")) << result.elsewhere[0].reason;
+  for (const std::string& text : {gate_terminal(result), gate_markdown(result), gate_json(result)})
+    EXPECT_TRUE(has(text, result.elsewhere[0].reason)) << text;
+  EXPECT_TRUE(compared(as_it_was).elsewhere.empty());
+}
+
 // Without f_L there are no targets: a path that takes longer to the same end is found all the same.
 TEST(Gate, ASlowerPathIsWorseWhereNoMinimumIsKnown) {
   const auto unknown = [](Record& record) {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <regex>
 #include <set>
@@ -77,6 +78,39 @@ TEST(Page, RowsSectionsAndCellsNameWhatTheyAreAbout) {
                            "<article class=\"optimizer one\" id=optimizer-1 data-s=1>",
                            "<tr data-s=1 data-p=1><th scope=row>b", "<g data-s=1", "<tr data-s=1"})
     EXPECT_TRUE(has(page, part)) << part;
+}
+
+Json answer_in_page(const Record& record) {
+  Study study;
+  study.runs = {record};
+  const Comparison c = compare_optimizers(study);
+  const Json data = Json::parse(page_data(document_of(c), AllFields(1)));
+  return data.at("problems").at(0).at("cells").at(0).at(6);
+}
+
+TEST(Page, HasTheFirstTwentyUnknownsOfARun) {
+  constexpr std::size_t kUnknowns = 25;
+  Record record = record_of({.seed = 3});
+  EXPECT_TRUE(answer_in_page(record).is_null());
+  record.answer = AnswerPoints{.unknowns = kUnknowns,
+                               .points = {kReturned},
+                               .x = {std::vector<Real>(kUnknowns, 0.5)},
+                               .residual_norm = 0.25};
+  record.uncertainty = Uncertainty{.x = {}, .standard_deviation = {0.125}, .correlation = {}};
+  Json found = answer_in_page(record);
+  EXPECT_EQ(found.at("seed"), 3);
+  EXPECT_EQ(found.at("unknowns"), kUnknowns);
+  EXPECT_EQ(found.at("norm"), "0.25");
+  std::map<std::string, Json> columns;
+  for (const Json& column : found.at("columns")) columns[column.at(0)] = column;
+  EXPECT_EQ(columns.at("unknown").size(), 21U);
+  EXPECT_EQ(columns.at("unknown").at(20), "x20");
+  EXPECT_EQ(columns.at("returned").at(1), "0.5");
+  EXPECT_EQ(columns.at("standard deviation").at(1), "0.125");
+  record.answer->digest = "0123456789abcdef";  // of many unknowns, which stand in a file
+  found = answer_in_page(record);
+  EXPECT_TRUE(found.at("columns").empty());
+  EXPECT_TRUE(has(found.at("file").get<std::string>(), record.cell));
 }
 
 // Two labels of one method have one colour and one row of the audit. The page contains the method

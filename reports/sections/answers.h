@@ -1,0 +1,20 @@
+// The x of a run, as the verb `solution` and the page show it.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/records/record.h"
+
+namespace isoline::reports {
+
+// The x of a run as columns: "unknown", then those of "returned", "standard deviation" and "best"
+// that it has.
+struct AnswerColumn {
+  std::string name;
+  std::vector<std::string> texts;  // (unknowns)
+};
+std::vector<AnswerColumn> answer_columns(const Record& record, const AnswerPoints& answer,
+                                         const char* number_format);
+
+}  // namespace isoline::reports
