@@ -6,10 +6,12 @@
 #include <cctype>
 #include <cmath>
 #include <map>
-#include <set>
+#include <span>
 
+#include "core/results/advice.h"
 #include "reports/formats/formats.h"
 #include "reports/page/page.h"
+#include "reports/sections/sections.h"
 #include "reports/sections/words.h"
 
 namespace isoline::reports {
@@ -125,11 +127,15 @@ std::string drawing_html(const SiteResults& results, const NamedDrawing& one,
       link(up + file + ".csv", "CSV"));
 }
 
-std::string records_html(const SiteResults& results, const std::string& up) {
-  return fmt::format("<p>{} · {} · {}</p>\n",
-                     link(up + report_address(results), words("site.full")),
+std::string records_links(const SiteResults& results, const std::string& up) {
+  return fmt::format("{} · {} · {}",
+                     link(up + report_address(results) + "#runs", words("site.full")),
                      link(up + report_address(results, "report.csv"), words("site.runs-csv")),
                      link(up + report_address(results, "report.json"), words("site.runs-json")));
+}
+
+std::string records_html(const SiteResults& results, const std::string& up) {
+  return "<p>" + records_links(results, up) + "</p>\n";
 }
 
 std::string heading(int level, const std::string& text) {
@@ -152,13 +158,39 @@ std::string best_methods_html(const Comparison& c, std::size_t p) {
   return section_html({.title = c.problems[p].spec, .tables = {std::move(table)}});
 }
 
-std::string problem_page(const std::string& name, const std::vector<Place>& places) {
-  std::string html;
-  std::set<std::string> suites;
+// One row per setting of a problem: the best method, its work, and how many methods solve it.
+std::string settings_html(const std::vector<Place>& places, std::size_t whole) {
+  Table table = worded_table("site-settings", places.size(), whole);
   for (const Place& place : places) {
     const Comparison& c = place.comparison();
+    const std::size_t p = place.index;
+    const std::vector<std::size_t> order = ranking(c, p);
+    const auto solved = std::ranges::count_if(
+        order, [&](std::size_t s) { return c.cell(p, s).headline[kTightest].is_solved(); });
+    TableCell setting = problem_name(c.problems[p]), results = place.results->name, best = "";
+    setting.link = "../" + report_address(*place.results) + fmt::format("#problem-{}", p);
+    results.link = "../" + suite_address(*place.results);
+    if (!order.empty()) {
+      best = optimizer_text(c, order[0]);
+      best.link = "../" + method_address(c.optimizers[order[0]].method);
+    }
+    table.rows.push_back({setting, results, best,
+                          order.empty() ? "" : matrix_text(c, c.cell(p, order[0]), kTightest),
+                          fmt::format("{}/{}", solved, order.size())});
+  }
+  return section_html({.title = table.title, .tables = {std::move(table)}});
+}
+
+// Of a problem with many settings, the first ones are shown in full, and all of them in a table.
+std::string problem_page(const std::string& name, const std::vector<Place>& places) {
+  constexpr std::size_t kMostWhole = 12, kFirst = 4;
+  const bool are_many = places.size() > kMostWhole;
+  std::string html;
+  for (const Place& place : std::span(places).first(are_many ? kFirst : places.size())) {
+    const Comparison& c = place.comparison();
     const ProblemAxis& problem = c.problems[place.index];
-    if (html.empty()) html = problem_sheet_html(problem);
+    if (html.empty())
+      html = problem_sheet_html(problem) + (are_many ? settings_html(places, kFirst) : "");
     html += fmt::format("<h2>{} · {}</h2>\n", html_text(shown_spec(problem.spec)),
                         link("../" + suite_address(*place.results), place.results->name));
     html += fmt::format("<p class=reading>{}</p>\n", html_text(curve_reading(c, place.index)));
@@ -192,6 +224,33 @@ std::string method_page(const std::string& name, const std::vector<Place>& place
   return whole_page(name, html + facts, "../");
 }
 
+// The first method for each kind of simulator, and what it solves. Empty without an answer.
+Table choices_table(const SiteResults& results, const std::string& up) {
+  const Comparison& c = results.document->comparison;
+  Table table = worded_table("site-choices");
+  std::size_t answers = 0;
+  for (std::size_t level = 0; level < kDerivativeNames.size(); ++level) {
+    Means means{.derivatives = static_cast<Derivatives>(level)};
+    auto& row = table.rows.emplace_back();
+    row.emplace_back(means_text(means));
+    for (const auto& [least, most] : kSizeClasses) {
+      means.least_unknowns = least, means.most_unknowns = most;
+      const Advice advice = advise(c, means);
+      TableCell& cell = row.emplace_back("");
+      if (advice.ranked.empty()) continue;
+      const Advised& first = advice.ranked[0];
+      ++answers;
+      cell.text = shown_spec(c.optimizers[first.optimizer].name_of_all());
+      cell.link = up + method_address(c.optimizers[first.optimizer].method);
+      cell.remark = first.work < kNever
+                        ? words("site.choice", first.solved, advice.settings.size(), first.work)
+                        : words("site.choice-some", first.solved, advice.settings.size());
+    }
+  }
+  if (answers == 0) table.rows.clear();
+  return table;
+}
+
 std::string suite_page(const SiteResults& results) {
   const Document& document = *results.document;
   std::string html = fmt::format("<p class=lead>{}</p>\n", html_text(document.headline));
@@ -203,6 +262,8 @@ std::string suite_page(const SiteResults& results) {
       html += drawing_html(results, one, "../");
       break;
     }
+  if (const Table choices = choices_table(results, "../"); !choices.rows.empty())
+    html += section_html({.title = choices.title, .tables = {choices}});
   for (const char* id : {"standings", "problems", "learned"}) {
     const Section& section = document.section(id);
     if (!section.is_empty())
@@ -220,7 +281,8 @@ std::string paper_page(const Site& site, Table table) {
           table.rows[i].back().link = "../" + report_address(results) + "#claim-" + claim.id;
   const std::string title = table.title;
   table.title.clear();
-  return whole_page(title, section_html({.title = title, .tables = {std::move(table)}}), "../");
+  return whole_page(title, section_html({.title = title, .tables = {std::move(table)}}), "../",
+                    "site paper");
 }
 
 // "Which options?" as GitHub names it: "which-options".
@@ -343,6 +405,25 @@ std::string findings_html(const Site& site, const Section& papers) {
   return "<ul>\n" + html + "</ul>\n";
 }
 
+// The way to the answers of three readers: an author of a paper, an owner of a simulator, and one
+// who doubts a figure.
+std::string start_html(const Site& site) {
+  std::string choices, runs;
+  for (const SiteResults& results : site.results) {
+    if (!choices_table(results, "").rows.empty())
+      choices += " " + link(suite_address(results) + "#site-choices", results.name);
+    runs += " " + link(report_address(results) + "#runs", results.name);
+  }
+  std::string html = fmt::format("<li>{} {}</li>\n", html_text(words("site.start-paper")),
+                                 link("#papers", words("site.papers")));
+  html += fmt::format("<li>{}{}", html_text(words("site.start-simulator")), choices);
+  for (const char* page : {"bring-a-simulator", "calibrate-a-simulator"})
+    if (const auto doc = site.docs.find(page); doc != site.docs.end())
+      html += fmt::format(" · <a href=\"docs/{}.html\">{}</a>", page, doc_title(doc->second));
+  return fmt::format("<ul>\n{}</li>\n<li>{}{}</li>\n</ul>\n", html,
+                     html_text(words("site.start-doubt")), runs);
+}
+
 // Six drawings, of all results in turn.
 std::string pictures_html(const Site& site) {
   constexpr std::size_t kPictures = 6;
@@ -370,12 +451,12 @@ std::string index_page(const Site& site, const Places& problems, const Places& m
     return fmt::format("<h2 id={}>{}</h2>\n", id, html_text(words(std::string("site.") + id)));
   };
   std::string html = "<p class=lead>" + html_text(words("site.lead")) + "</p>\n";
-  html += part("findings") + findings_html(site, papers) + part("pictures") + pictures_html(site);
+  html += start_html(site) + part("findings") + findings_html(site, papers) + part("pictures") +
+          pictures_html(site);
   html += part("results") + "<ul>\n";
   for (const SiteResults& results : site.results)
     html += fmt::format("<li>{}: {} · {}</li>\n", link(suite_address(results), results.name),
-                        html_text(results.document->headline),
-                        link(report_address(results), words("site.full")));
+                        html_text(results.document->headline), records_links(results, ""));
   html += "</ul>\n" + part("problems");
   Groups groups, kinds;
   for (const auto& [name, places] : problems)

@@ -67,8 +67,8 @@ std::string x_axis(const Frame& frame, const std::string& label) {
         "<path class=grid d=\"M{0:.1f} {1:.0f}V{2:.0f}\"/><text x={0:.1f} y={3:.0f} "
         "text-anchor=middle>{4}</text>",
         frame.x(tick), frame.top, frame.bottom(), frame.bottom() + 15, tick_text(tick));
-  return svg + fmt::format("<text x={:.0f} y={:.0f} text-anchor=middle>{}</text>",
-                           frame.left + frame.width / 2, frame.bottom() + 31, html_text(label));
+  return svg + fmt::format("<text x={:.0f} y={:.0f} dy=2.5em text-anchor=middle>{}</text>",
+                           frame.left + frame.width / 2, frame.bottom(), html_text(label));
 }
 
 std::string y_axis(const Frame& frame, const std::string& label, bool is_share) {
@@ -79,7 +79,7 @@ std::string y_axis(const Frame& frame, const std::string& label, bool is_share) 
         "text-anchor=end>{5}</text>",
         frame.left, frame.y(tick), frame.right(), frame.left - 6, frame.y(tick) + 4,
         is_share ? percent(tick) : tick_text(tick));
-  return svg + fmt::format("<text x=4 y={:.0f}>{}</text>", frame.top - 8, html_text(label));
+  return svg + fmt::format("<text x=4 y={:.0f} dy=-.7em>{}</text>", frame.top, html_text(label));
 }
 
 // What is filtered with an optimizer, a problem, a method or a claim.

@@ -38,7 +38,12 @@ std::set<std::string> values_of(const std::string& page, const std::string& attr
 
 TEST_F(Site, HasNoDeadLinkAndEachPageIsValid) {
   if (!has_program("cmark-gfm")) GTEST_SKIP() << "cmark-gfm is not installed";
-  shell.expect("./isoline site out --out site", {.out = {"site/index.html", "1 report"}});
+  std::string settings = "linear-chain[steps=24]";
+  for (int steps = 25; steps <= 37; ++steps)
+    settings += fmt::format(",linear-chain[steps={}]", steps);
+  shell.expect("./isoline run --problem '" + settings +
+               "' --optimizer gd,gauss-newton --iterations 20 --out many --no-report --quiet");
+  shell.expect("./isoline site out many --out site", {.out = {"site/index.html", "2 reports"}});
   const fs::path site = shell.folder() / "site";
   std::map<fs::path, std::set<std::string>> anchors;
   const auto has_anchor = [&](const fs::path& file, const std::string& anchor) {
@@ -70,6 +75,16 @@ TEST_F(Site, HasNoDeadLinkAndEachPageIsValid) {
   for (const char* page : {"problems/rosenbrock.html", "methods/newton.html", "suites/out.html",
                            "docs/glossary.html", "reports/out/index.html"})
     EXPECT_TRUE(fs::exists(site / page)) << page;
+  const std::string many = read_text(site / "problems/linear-chain.html");
+  EXPECT_EQ(std::ranges::count_if(values_of(many, "href"),
+                                  [](const std::string& address) {
+                                    return contains(address, "/many/index.html#problem-");
+                                  }),
+            14)
+      << "one row per setting";
+  std::size_t curves = 0;
+  for (std::size_t at = 0; (at = many.find("<figure", at)) != many.npos; ++at) ++curves;
+  EXPECT_EQ(curves, 4U) << "the first settings in full";
   if (!has_program("tidy")) GTEST_SKIP() << "tidy is not installed";
   shell.expect(
       "for page in $(find site -name '*.html' -not -path '*/reports/*'); do "
