@@ -73,12 +73,6 @@ struct Side {
   Spread seconds, iterations;  // of the processor: to the end, or to the error that is asked
 };
 
-// Nothing where no run tells the options.
-const OptionValues* options_of(const Comparison& c, std::size_t problem) {
-  const auto run = std::ranges::find(c.runs, problem, &Run::problem);
-  return run == c.runs.end() ? nullptr : &run->record->request.problem.options;
-}
-
 // Direct problems of the same physics.
 std::vector<std::size_t> instances_of(const Comparison& c, std::size_t learned) {
   std::vector<std::size_t> found;

@@ -244,10 +244,10 @@ TEST(Decompose, LeastSquaresTakesTheShortestMinimizer) {
 
 // Fourier and sine transforms against their definitions.
 
-constexpr Index kRows = 6, kColumns = 5;  // not square, one even, one odd
-constexpr Real kRounding = 1e-13;         // thirty terms of order one in double
+constexpr Index kGridRows = 6, kGridColumns = 5;  // not square, one even, one odd
+constexpr Real kRounding = 1e-13;                 // thirty terms of order one in double
 
-Vector random_grid(Index size = kRows * kColumns) {
+Vector random_grid(Index size = kGridRows * kGridColumns) {
   RandomStream stream(1, "fourier", "test");
   return stream.normal_vector(size);
 }
@@ -255,17 +255,17 @@ Vector random_grid(Index size = kRows * kColumns) {
 TEST(RealFourier, SpectrumIsTheDefiningSum) {
   using namespace std::complex_literals;
   const Vector x = random_grid();
-  RealFourier2d fourier(kRows, kColumns);
+  RealFourier2d fourier(kGridRows, kGridColumns);
   fourier.forward(x);
-  ASSERT_EQ(fourier.spectrum().rows(), kRows / 2 + 1);
-  for (Index k = 0; k <= kRows / 2; ++k) {
-    for (Index l = 0; l < kColumns; ++l) {
+  ASSERT_EQ(fourier.spectrum().rows(), kGridRows / 2 + 1);
+  for (Index k = 0; k <= kGridRows / 2; ++k) {
+    for (Index l = 0; l < kGridColumns; ++l) {
       std::complex<Real> sum = 0;
-      for (Index i = 0; i < kRows; ++i)
-        for (Index j = 0; j < kColumns; ++j)
-          sum += x[i + j * kRows] *
+      for (Index i = 0; i < kGridRows; ++i)
+        for (Index j = 0; j < kGridColumns; ++j)
+          sum += x[i + j * kGridRows] *
                  std::exp(-2i * std::numbers::pi *
-                          (Real(i * k) / Real(kRows) + Real(j * l) / Real(kColumns)));
+                          (Real(i * k) / Real(kGridRows) + Real(j * l) / Real(kGridColumns)));
       EXPECT_LT(std::abs(fourier.spectrum()(k, l) - sum), kRounding);
     }
   }
@@ -273,7 +273,7 @@ TEST(RealFourier, SpectrumIsTheDefiningSum) {
 
 TEST(RealFourier, InverseUndoesForwardButForItsFactorAndLeavesTheInputAlone) {
   const Vector x = random_grid(), given = x;
-  RealFourier2d first(kRows, kColumns);
+  RealFourier2d first(kGridRows, kGridColumns);
   RealFourier2d transform = std::move(first);
   Vector back(x.size());
   transform.forward(given);
@@ -284,7 +284,7 @@ TEST(RealFourier, InverseUndoesForwardButForItsFactorAndLeavesTheInputAlone) {
 
 TEST(RealFourier, EqualInputGivesEqualBitsWhereverItLies) {
   const Vector x = random_grid();
-  RealFourier2d transform(kRows, kColumns);
+  RealFourier2d transform(kGridRows, kGridColumns);
   transform.forward(x);
   const auto spectrum = transform.spectrum();
   Vector back(x.size());
@@ -292,7 +292,7 @@ TEST(RealFourier, EqualInputGivesEqualBitsWhereverItLies) {
   for (Index offset = 1; offset < 8; ++offset) {
     Vector in(x.size() + 8), out(x.size() + 8);
     in.segment(offset, x.size()) = x;
-    RealFourier2d another(kRows, kColumns);
+    RealFourier2d another(kGridRows, kGridColumns);
     another.forward(in.segment(offset, x.size()));
     EXPECT_EQ(another.spectrum(), spectrum) << offset;
     another.inverse(out.segment(offset, x.size()));
@@ -301,7 +301,7 @@ TEST(RealFourier, EqualInputGivesEqualBitsWhereverItLies) {
 }
 
 TEST(Transforms, OfAGridOfAnotherSizeAreUsageErrors) {
-  EXPECT_THROW(RealFourier2d(kRows, kColumns).forward(random_grid(7)), UsageError);
+  EXPECT_THROW(RealFourier2d(kGridRows, kGridColumns).forward(random_grid(7)), UsageError);
   Matrix x = random_grid(14).reshaped(7, 2);
   EXPECT_THROW(SineTransform(6).columns(x, x), UsageError);
 }

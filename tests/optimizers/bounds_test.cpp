@@ -113,9 +113,9 @@ TEST(Bounds, ExcludeARotationAndRequireAKnownTruth) {
 
 // --- the discrepancy principle
 
-constexpr Real kTau = 1.1;
+constexpr Real kDiscrepancy = 1.1;
 
-Budget to_noise(std::int64_t most) { return {.iterations = most, .discrepancy = kTau}; }
+Budget to_noise(std::int64_t most) { return {.iterations = most, .discrepancy = kDiscrepancy}; }
 
 TEST(Discrepancy, EndsARunAtTheFirstIterateWithinTheNoise) {
   const Problem noisy = featured("burgers[N=32]", {{"noise", 0.01}});
@@ -130,14 +130,14 @@ TEST(Discrepancy, EndsARunAtTheFirstIterateWithinTheNoise) {
     const Outcome outcome = run(noisy, method, to_noise(20000));
     ASSERT_EQ(outcome.status, Status::discrepancy) << method;
     const Trace& trace = *outcome.trace;
-    EXPECT_LE(trace.last.discrepancy, kTau * delta) << method;
+    EXPECT_LE(trace.last.discrepancy, kDiscrepancy * delta) << method;
     for (int i = 0; i + 1 < trace.points; ++i)
-      EXPECT_GT(trace.point[i].discrepancy, kTau * delta) << method << " " << i;
+      EXPECT_GT(trace.point[i].discrepancy, kDiscrepancy * delta) << method << " " << i;
     // One iteration less does not suffice, kept or not.
     Budget before = to_noise(trace.last.iteration - 1);
     const Outcome shorter = run(noisy, method, before);
     EXPECT_EQ(shorter.status, Status::budget) << method;
-    EXPECT_GT(shorter.trace->last.discrepancy, kTau * delta) << method;
+    EXPECT_GT(shorter.trace->last.discrepancy, kDiscrepancy * delta) << method;
   }
 }
 

@@ -23,7 +23,7 @@ TEST(ColeHopf, HasTheSlopeOfTheLiterature) {
 
 // The ring of `burgers` is [0, 1): with ξ = (x + 1)/2 and s = t/2, u_s + u u_ξ = ν/2 u_ξξ.
 TEST(ColeHopf, IsTheFlowThatTheSimulationGives) {
-  constexpr Index kCells = 512;
+  constexpr Index kFinest = 512;
   const auto error_of = [&](Index N) {
     const Real viscosity = 0.05;
     const BurgersFlow flow(N, 0, viscosity / 2, 0.3 / 2);
@@ -36,7 +36,7 @@ TEST(ColeHopf, IsTheFlowThatTheSimulationGives) {
       worst = std::max(worst, std::abs(to[j] - cole_hopf(x[j], 0.3, viscosity)));
     return worst;
   };
-  const Real fine = error_of(kCells), coarse = error_of(kCells / 2);
+  const Real fine = error_of(kFinest), coarse = error_of(kFinest / 2);
   EXPECT_LE(fine, 1e-3);
   EXPECT_NEAR(coarse / fine, 4, 0.3);  // the simulation is of second order
 }

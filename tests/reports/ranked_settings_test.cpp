@@ -14,7 +14,7 @@
 namespace isoline::reports {
 namespace {
 
-Sheet sheet_of(const std::string& problem, const std::string& group) {
+Sheet problem_sheet(const std::string& problem, const std::string& group) {
   return {.kind = "problem", .name = problem, .spec = problem, .group = group};
 }
 
@@ -24,7 +24,7 @@ Study physics_and_others() {
   for (const char* name : {"p", "q", "r", "s", "t", "valley", "bowl"}) {
     const std::string problem(name);
     const bool is_physics = problem.size() == 1;
-    study.sheets.push_back(sheet_of(problem, is_physics ? "physics" : "classical"));
+    study.sheets.push_back(problem_sheet(problem, is_physics ? "physics" : "classical"));
     for (const auto& [optimizer, work] : {std::pair{"a", 1}, {"b", 3}, {"c", 9}})
       study.runs.push_back(record_of({.problem = problem,
                                       .optimizer = optimizer,
@@ -71,7 +71,7 @@ Study with_floors(const std::vector<Real>& floors) {
       record.x_floor = floors[seed];
       record.request.budget.work = 100;
     }
-  study.sheets.push_back(sheet_of("u", "physics"));
+  study.sheets.push_back(problem_sheet("u", "physics"));
   return study;
 }
 
@@ -118,7 +118,7 @@ TEST(RankedSettings, HalfAndTwiceThePriceOfEachOracleAreOtherChoices) {
 // A tenth of a second of forwards within 0.4; the run whose Jacobians have no price is left out.
 TEST(RankedSettings, OwnTimeIsWhatMeasuredCallsDoNotExplain) {
   Study study;
-  study.sheets.push_back(sheet_of("p", "physics"));
+  study.sheets.push_back(problem_sheet("p", "physics"));
   study.sheets[0].prices = MeasuredPrices{.forward_seconds = 1e-3, .oracles = {}};
   for (const std::uint64_t seed : {0, 1}) {
     Record& record = study.runs.emplace_back(record_of({.problem = "p", .seed = seed}));
