@@ -18,6 +18,12 @@ namespace {
 constexpr Real kInfinity = std::numeric_limits<Real>::infinity();
 constexpr Real kNone = -kInfinity;  // a loss that is never reached
 
+// Whether a state that was read from a file is one of this problem.
+bool is_within(const problems::Refinement::State& state, const problems::Refinement* of) {
+  return state.epochs >= 0 && state.iterations >= (of ? of->first : 1) &&
+         state.iterations <= (of ? of->most : 1);
+}
+
 }  // namespace
 
 Meter::Meter(const Problem& problem, const Budget& budget, OracleSet granted, Trace& trace)
@@ -37,7 +43,10 @@ Meter::Meter(const Problem& problem, const Budget& budget, OracleSet granted, Tr
                             : kNone),
       most_work_(budget.work -
                  (problem.is_learned() ? 0 : prices_[static_cast<std::size_t>(Oracle::forward)])),
-      paid_loss_(std::nan("")) {
+      paid_loss_(std::nan("")),
+      refinement_(problem.refinement()),
+      solve_iterations_(problem.solve_iterations(problem.batch())) {
+  refined_.iterations = solve_iterations_;
   trace_.prices = prices_;
   trace_.is_learned = problem.is_learned();
   name_series({});
@@ -187,6 +196,7 @@ Status Meter::begin(VectorRef theta) {
   set_scales();
   observe(judged_.loss, judged_theta_);
   keep_point();
+  refine(theta);
   status_ = judge(theta);
   watch_.resume();
   return status_;
@@ -227,7 +237,7 @@ void Meter::persist(Archive& archive) {
   archive(counts_, work_, disturbed_, iteration_, next_kept_, best_loss_, next_target_,
           target_loss_, target_x_error_, targets_met_, stall_loss_, stall_iteration_, status_,
           batch_loss_, batch_x_error_, judged_.loss, judged_theta_, paid_loss_, is_prepaid_,
-          previous_, wall, processor);
+          previous_, wall, processor, refined_);
   const bool are_spectra_wanted =
       trace_.spectra.are_wanted;        // the caller decides this, not the file
   archive.raw(&trace_, sizeof trace_);  // plain data; no reader waits for its atomics
@@ -238,7 +248,8 @@ void Meter::persist(Archive& archive) {
   const bool is_sound = targets_met_ >= 0 && targets_met_ <= kRungs && iteration_ >= 0 &&
                         work_ >= 0 && status_ == Status::running && batch_loss_.is_sound() &&
                         batch_x_error_.is_sound() && previous_.size() == n &&
-                        (judged_theta_.size() == n || judged_theta_.size() == 0);
+                        (judged_theta_.size() == n || judged_theta_.size() == 0) &&
+                        is_within(refined_, refinement_);
   require(is_sound, "the state of the meter belongs to another run");
   const std::string defect = defect_of(trace_);
   require(defect.empty(), [&] { return "its trace holds " + defect; });
@@ -261,6 +272,7 @@ Status Meter::iterate(VectorRef theta) {
   status_ = judge(theta);
   if (problem_.has_fresh_batches() && status_ == Status::running) {
     watch_.pause();
+    refine(theta);
     draw_batch();
     watch_.resume();
   }
@@ -272,6 +284,17 @@ void Meter::draw_batch() {
   if (!problem_.has_fresh_batches()) return;
   problem_.draw_batch(iteration_, batch_);
   samples_ = &batch_;
+  if (!refinement_) return;
+  batch_.context.setConstant(static_cast<Real>(refined_.iterations));
+  solve_iterations_ = refined_.iterations;
+}
+
+// By the validation loss, off the clock and at no cost, as what is judged.
+void Meter::refine(VectorRef theta) {
+  if (!refinement_ || refinement_->step == 0 || iteration_ % problems::Refinement::kEpoch != 0)
+    return;
+  problem_.forward(theta, validation_, watched_);
+  refinement_->see(watched_.loss, refined_);
 }
 
 void Meter::note_batch(const Point& at) {

@@ -188,9 +188,10 @@ class Meter {
   void charge(Oracle oracle) {
     const auto kind = static_cast<std::size_t>(oracle);
     if (!granted_.contains(oracle)) refuse(oracle);
-    if (work_ + prices_[kind] > most_work_) exhaust();
-    ++counts_[kind];
-    work_ += prices_[kind];
+    const std::int64_t calls = Problem::is_solve(oracle) ? solve_iterations_ : 1;
+    if (work_ + calls * prices_[kind] > most_work_) exhaust();
+    counts_[kind] += calls;
+    work_ += calls * prices_[kind];
   }
   [[noreturn]] void refuse(Oracle oracle) const;
   [[noreturn]] void exhaust();
@@ -199,7 +200,8 @@ class Meter {
   bool look_at(VectorRef theta);
   bool pay_for_judged();
   bool is_out_of_work() const {
-    return is_exhausted_ || work_ + prices_[static_cast<std::size_t>(Oracle::forward)] > most_work_;
+    const std::int64_t price = prices_[static_cast<std::size_t>(Oracle::forward)];
+    return is_exhausted_ || work_ + solve_iterations_ * price > most_work_;
   }
   // A learning problem is judged by its validation samples, not by the batch of a step.
   void see(Real loss, VectorRef theta) {
@@ -233,6 +235,7 @@ class Meter {
   Real target_at(Real tau) const { return trace_.minimum + tau * trace_.scale; }  // nan where none
   const Batch& judging() const { return problem_.is_learned() ? validation_ : problem_.batch(); }
   void draw_batch();
+  void refine(VectorRef theta);
   void note_batch(const Point& at);
   Status judge(VectorRef theta);
   bool has_stalled();
@@ -278,6 +281,10 @@ class Meter {
   bool is_prepaid_ = false;    // a forward at judged_theta_
   Vector accepted_;            // (n), the last θ that was judged and is paid for
   bool measures_gradients_ = true;
+  const problems::Refinement* refinement_;  // nullptr: none
+  problems::Refinement::State refined_;
+  std::int64_t solve_iterations_;  // as so many calls a solve of this step counts
+  Point watched_;                  // of the validation, to refine by
 };
 
 }  // namespace isoline::optimizers

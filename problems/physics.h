@@ -1,7 +1,9 @@
 // The loss L(y, y*) and its derivatives in y.
 #pragma once
 
+#include <cstdint>
 #include <functional>
+#include <limits>
 
 #include "core/array.h"
 #include "core/errors.h"
@@ -177,6 +179,34 @@ class SelfAdjointPhysics : public Physics {
   void curvature_product(BatchRef, BatchRef, BatchOut out, Workspace&) const final {
     out.setZero();
   }
+};
+
+// Progressively refined physics: Bhatia, Köhler, Thuerey (2025), arXiv 2502.19611. A run starts
+// with few iterations of a solve, and adds some where its validation loss no longer falls, unless
+// the last addition did not help. Thresholds and the mean are those of the authors' heat_1d.ipynb,
+// whose epochs have 8 steps.
+struct Refinement {
+  Index first = 1, step = 0, most = 1;  // iterations of a solve
+  static constexpr std::int64_t kEpoch = 8;
+
+  struct State {
+    Index iterations = 0;
+    std::int64_t epochs = 0;
+    Real means[3] = {};                                  // of the losses, the last one first
+    Real level = std::numeric_limits<Real>::infinity();  // the mean at the last addition
+  };
+  void see(Real validation_loss, State& state) const;  // once an epoch, and at the start
+};
+
+// Physics of a learning problem that solves by as many iterations as the context (1, B) says. The
+// training follows the refinement, and the validation what its samples say.
+class RefinedPhysics : public Physics {
+ public:
+  explicit RefinedPhysics(const Refinement& refinement) : refinement_(refinement) {}
+  const Refinement& refinement() const { return refinement_; }
+
+ private:
+  Refinement refinement_;
 };
 
 }  // namespace isoline::problems

@@ -19,6 +19,19 @@ void Jitter::disturb(std::uint64_t call, BatchRef target, BatchOut y) const {
         sigma * z.normal_vector(y.rows()).array() * (y.col(b) - target.col(b)).array();
 }
 
+void Refinement::see(Real validation_loss, State& state) const {
+  constexpr Real kFading = 2. / 9, kPlateau = 0.98, kHelped = 0.9;
+  constexpr int kFewest = 4;  // epochs
+  Real(&means)[3] = state.means;
+  means[2] = means[1];
+  means[1] = means[0];
+  means[0] += (state.epochs == 0 ? 1 : kFading) * (validation_loss - means[0]);
+  if (++state.epochs < kFewest || !(means[0] > kPlateau * means[2])) return;
+  if (kHelped * state.level <= means[0] && means[0] <= state.level) return;
+  state.level = means[0];
+  state.iterations = std::min(state.iterations + step, most);
+}
+
 Problem::Problem(ProblemParts parts) : parts_(std::move(parts)) {
   if (const auto& bounds = parts_.bounds) {
     require(!parts_.network && bounds->lower.size() == parts_.start.drawn.size() &&
@@ -121,6 +134,17 @@ void Problem::draw_batch(std::int64_t step, Batch& out) const {
   std::int64_t first = samples.data > 0 ? 0 : step * count;
   if (samples.epoch > 0) first %= samples.epoch;
   draw("training", static_cast<std::uint64_t>(first), count, out);
+  if (const Refinement* refined = refinement())
+    out.context.setConstant(static_cast<Real>(refined->first));
+}
+
+const Refinement* Problem::refinement() const {
+  const auto* refined = dynamic_cast<const RefinedPhysics*>(parts_.physics.get());
+  return refined ? &refined->refinement() : nullptr;
+}
+
+Index Problem::solve_iterations(const Batch& batch) const {
+  return refinement() ? std::max<Index>(1, std::lround(batch.context(0, 0))) : 1;
 }
 
 void Problem::draw(std::string_view purpose, std::uint64_t first, Index count, Batch& out) const {

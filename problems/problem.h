@@ -198,6 +198,13 @@ class Problem {
 
   // For a learning problem: the batch of a step, counted from 0, and the validation samples.
   void draw_batch(std::int64_t step, Batch& out) const;
+  // Solves by iterations, else nothing; and as how many calls one solve of these samples counts.
+  // The oracles that do not solve use the network alone, x*, or the inverse.
+  const Refinement* refinement() const;
+  Index solve_iterations(const Batch& batch) const;
+  static constexpr bool is_solve(Oracle oracle) {
+    return oracle != Oracle::network && oracle != Oracle::inverse && oracle != Oracle::truth;
+  }
   void draw_validation(Batch& out) const { draw("validation", 0, parts_.samples.validation, out); }
 
   OracleSet offers() const;

@@ -164,7 +164,7 @@ MeasuredPrice price_of(std::string_view name, std::int64_t declared, double forw
 
 // The network alone, as `isoline infer` applies it, to the samples of a batch at once: what one of
 // them takes.
-MeasuredPrice inference_price(const Problem& problem, double forward) {
+MeasuredPrice inference_price(const Problem& problem, double forward, Real unit) {
   const problems::Network& network = problem.network();
   const Matrix& input = problem.batch().input;
   Workspace workspace;
@@ -173,7 +173,7 @@ MeasuredPrice inference_price(const Problem& problem, double forward) {
     network.infer(problem.start(), statistics, input, room.x, room.space);
   };
   Rounds rounds = rounds_of(problem, {forward, forward, infer});
-  for (Real& ratio : rounds.ratios) ratio /= static_cast<Real>(problem.samples());
+  for (Real& ratio : rounds.ratios) ratio *= unit / static_cast<Real>(problem.samples());
   return price_of(kInference, 0, forward, std::move(rounds));
 }
 
@@ -407,9 +407,12 @@ MeasuredPrices measure_prices(const Problem& problem, const std::string& build) 
   seconds_of(problem, 1, solve);  // allocates
   const double once = std::max(seconds_of(problem, 1, solve), 1e-9);
   Rounds alone = rounds_of(problem, {once, once});
-  const double forward = measured.forward_seconds = at_share(alone.forward_seconds, 0.5);
+  const double forward = at_share(alone.forward_seconds, 0.5);
+  // As many calls as a solve counts, by iterations; a call of another oracle is still one.
+  const auto unit = static_cast<Real>(problem.solve_iterations(problem.batch()));
+  measured.forward_seconds = forward / unit;
   measured.oracles.push_back(price_of(name_of(Oracle::forward), 1, forward, std::move(alone)));
-  if (problem.is_learned()) measured.oracles.push_back(inference_price(problem, forward));
+  if (problem.is_learned()) measured.oracles.push_back(inference_price(problem, forward, unit));
   // Products before the dense matrices, which large networks take up the time with.
   for (const bool is_matrix : {false, true})
     for (const OracleRow& row : kOracleTable) {
@@ -422,8 +425,10 @@ MeasuredPrices measure_prices(const Problem& problem, const std::string& build) 
       const double expected = forward * static_cast<double>(declared);
       if (is_matrix && expected > kLongestMatrixSeconds) continue;
       const auto call = [&](Point& there, Room& room) { found->second(problem, there, room); };
-      measured.oracles.push_back(
-          price_of(row.name, declared, forward, rounds_of(problem, {forward, expected, call})));
+      Rounds rounds = rounds_of(problem, {forward, expected, call});
+      if (!Problem::is_solve(row.kind))
+        for (Real& ratio : rounds.ratios) ratio *= unit;
+      measured.oracles.push_back(price_of(row.name, declared, forward, std::move(rounds)));
     }
   return measured;
 }

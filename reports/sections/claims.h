@@ -43,7 +43,9 @@ struct PrintedRow {
 std::vector<PrintedRow> printed_rows(const Record& record, const Place& place);
 
 std::size_t index_at(const Curve& curve, const Place& place);  // the last kept point until there
-// "until: loss 0.1" is what was spent until the loss was no more than 0.1: the column, the bound.
+// "until: loss 0.1" is what was spent until the loss was no more than 0.1, "work until: loss 0.1"
+// the same in work: the column, the bound.
+bool is_level(const std::string& column);
 std::pair<std::string, Real> bound_of(const std::string& column);
 Real figure_of(const Record& record, const Place& place);  // not-a-number where it has none
 std::string column_words(const std::string& column);       // "error in x"

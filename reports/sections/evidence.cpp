@@ -187,7 +187,7 @@ constexpr std::size_t kPoints = 24;  // a curve has up to twice as many
 std::string curve_of(const std::string& column) {
   constexpr std::array<const char*, 3> kWhole = {"milliseconds", "alignment", "turn"};
   if (column.ends_with("deviation") || std::ranges::find(kWhole, column) != kWhole.end()) return "";
-  if (column.starts_with("until: ")) return bound_of(column).first;
+  if (is_level(column)) return bound_of(column).first;
   return column == "slowdown" ? "x_error" : column;
 }
 

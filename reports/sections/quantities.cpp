@@ -22,6 +22,7 @@ namespace {
 
 constexpr std::string_view kSeries = "series: ";
 constexpr std::string_view kUntil = "until: ";  // then a column, and what it falls to
+constexpr std::string_view kWork = "work ";     // before `until`
 
 // Running means begin with the first step: before it, what that saw.
 Real value_at(const std::vector<Real>& column, std::size_t index) {
@@ -127,7 +128,8 @@ Real spent_until(const Record& record, const Place& place) {
   for (std::size_t i = 0; i <= index_at(curve, place); ++i) {
     if (!(value_at(*column, i) <= bound)) continue;
     if (place.seconds) return curve.processor_seconds.at(i);
-    return static_cast<Real>(place.work ? curve.work.at(i) : curve.iteration[i]);
+    const bool is_work = place.work || place.column.starts_with(kWork);
+    return static_cast<Real>(is_work ? curve.work.at(i) : curve.iteration[i]);
   }
   return kNever;
 }
@@ -145,9 +147,14 @@ Real loss_digits(const Record& record, std::int64_t last) {
 
 }  // namespace
 
+bool is_level(const std::string& column) {
+  return column.starts_with(kUntil) || column.starts_with(std::string(kWork).append(kUntil));
+}
+
 std::pair<std::string, Real> bound_of(const std::string& column) {
   const std::size_t last = column.rfind(' ');
-  return {column.substr(kUntil.size(), last - kUntil.size()), std::stod(column.substr(last))};
+  const std::size_t first = column.find(kUntil) + kUntil.size();
+  return {column.substr(first, last - first), std::stod(column.substr(last))};
 }
 
 std::vector<PrintedRow> printed_rows(const Record& record, const Place& place) {
@@ -188,7 +195,7 @@ Real figure_of(const Record& record, const Place& place) {
   if (name == "digits")
     return record.x_scale ? log_relative_error(curve.x_error.at(index) / *record.x_scale)
                           : kUnknown;
-  if (name.starts_with(kUntil)) return spent_until(record, place);
+  if (is_level(name)) return spent_until(record, place);
   if (const auto* column = column_of(record, name)) {
     if (column->empty()) return kUnknown;
     const Real value = value_at(*column, index);
@@ -200,7 +207,7 @@ Real figure_of(const Record& record, const Place& place) {
 
 std::string column_words(const std::string& column) {
   if (column.starts_with(kSeries)) return column.substr(kSeries.size());
-  if (column.starts_with(kUntil)) {
+  if (is_level(column)) {
     const auto& [name, bound] = bound_of(column);
     return words("column.until", column_words(name), bound);
   }

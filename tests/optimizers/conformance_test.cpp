@@ -192,12 +192,13 @@ struct Ongoing {
 
 constexpr int kBefore = 5, kAfter = 7;
 
-void expect_same_after_restoring(const Problem& problem, const OptimizerEntry& entry) {
+void expect_same_after_restoring(const Problem& problem, const OptimizerEntry& entry,
+                                 int before = kBefore, int after = kAfter) {
   Ongoing whole{problem, entry}, first{problem, entry}, second{problem, entry};
   whole.begin();
-  whole.advance(kBefore + kAfter);
+  whole.advance(before + after);
   first.begin();
-  first.advance(kBefore);
+  first.advance(before);
   Archive written;
   EXPECT_TRUE(first.method->persist(written)) << entry.name << " would start again";
   first.meter.persist(written);
@@ -206,7 +207,7 @@ void expect_same_after_restoring(const Problem& problem, const OptimizerEntry& e
   second.method->start(second.meter, second.theta);
   second.method->persist(read);
   second.meter.persist(read);
-  second.advance(kAfter);
+  second.advance(after);
   EXPECT_EQ(second.theta, whole.theta) << entry.name;
   EXPECT_EQ(second.trace->last.loss, whole.trace->last.loss) << entry.name;
   EXPECT_EQ(second.trace->last.counts, whole.trace->last.counts) << entry.name;
@@ -236,6 +237,13 @@ TEST(Persistence, OfKroneckerFactorsOfConvolutions) {
   expect_same_after_restoring(
       make("poisson[mode=learn,N=4,batch=2,network=unet[levels=2,filters=3]]"),
       optimizers().at("kfac"));
+}
+
+// Four epochs of eight steps before the first iterations can be added.
+TEST(Persistence, OfTheNumberOfIterationsOfARefinedSolve) {
+  const Problem problem =
+      make("poisson[mode=learn,N=4,batch=2,jacobi=progressive,network=mlp[layers=4]]");
+  expect_same_after_restoring(problem, optimizers().at("adam"), 45, 40);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <sstream>
 
@@ -557,6 +558,45 @@ TEST(TwoStage, LabelsFixedSamplesOnceAndFreshOnesEachTime) {
   };
   EXPECT_EQ(inversions(learned_affine(4, 4)), 1);
   EXPECT_EQ(inversions(learned_affine(4)), 7);
+}
+
+// The calls of gradient descent at each kept iteration.
+std::vector<std::int64_t> calls_at_kept_points(const Outcome& outcome, Oracle oracle) {
+  std::vector<std::int64_t> calls;
+  for (int i = 0; i < outcome.trace->points; ++i)
+    calls.push_back(outcome.trace->point[i].counts[static_cast<std::size_t>(oracle)]);
+  return calls;
+}
+
+TEST(InexactPhysics, CountsEachIterationOfASolveAsACall) {
+  const std::string coarse = "poisson[mode=learn,N=4,batch=2,network=mlp[layers=4],jacobi=";
+  const Outcome seven = run(make(coarse + "7]"), "gd[rate=1e-4]", iterations(3));
+  for (const Oracle oracle : {Oracle::forward, Oracle::pullback})
+    EXPECT_EQ(calls_at_kept_points(seven, oracle), (std::vector<std::int64_t>{0, 7, 14, 21}));
+  EXPECT_EQ(seven.trace->last.work, 42);
+  // Of SIP, the inverse and the network are called once.
+  const Outcome sip = run(make(coarse + "7]"), "sip", iterations(3));
+  EXPECT_EQ(calls_at_kept_points(sip, Oracle::forward).back(), 21);
+  EXPECT_EQ(calls_at_kept_points(sip, Oracle::inverse).back(), 3);
+  // Two steps cost 28: the third has no solve left.
+  const Outcome limited =
+      run(make(coarse + "7]"), "gd[rate=1e-4]", {.iterations = 100, .work = 34, .target = 0});
+  EXPECT_EQ(limited.status, Status::budget);
+  EXPECT_EQ(limited.trace->last.iteration, 2);
+  EXPECT_EQ(limited.trace->last.work, 28);
+}
+
+// From 3 iterations by 1 up to 55, on 16 cells. Steps of length 0 leave the loss as it is, so that
+// the first addition, after four epochs, does not help and is the only one.
+TEST(InexactPhysics, IsRefinedOnceWhereNothingHelps) {
+  const Problem problem =
+      make("poisson[mode=learn,N=4,batch=2,network=mlp[layers=4],jacobi=progressive]");
+  const problems::Refinement& of = *problem.refinement();
+  EXPECT_EQ((std::array{of.first, of.step, of.most}), (std::array<Index, 3>{3, 1, 55}));
+  const Outcome still = run(problem, "gd[rate=1e-300]", iterations(80));
+  const auto calls = calls_at_kept_points(still, Oracle::forward);
+  EXPECT_EQ(calls.at(24), 24 * of.first);
+  EXPECT_EQ(calls.at(80), 24 * of.first + 56 * (of.first + of.step));
 }
 
 // P(x) = eˣ from x with the target y*: ½(eˣ − y*)² has g = (eˣ − y*) eˣ and h = 2e²ˣ − y* eˣ.

@@ -286,6 +286,101 @@ TEST(Poisson, TargetsHaveThePublishedStatistics) {
   EXPECT_NEAR(magnitude / kSeeds, 0.804, 0.005);  // the published three digits, and as much again
 }
 
+// Poisson's equation by k iterations of Jacobi's method, on 81 cells.
+std::string by_jacobi(const std::string& iterations) {
+  return "poisson[mode=learn,N=9,batch=3,jacobi=" + iterations +
+         ",network=mlp[layers=6,activation=tanh,precision=double]]";
+}
+
+// Every sine wave is an eigenvector: of S/4 with the mean of two cosines, of ∇² with 4 times this
+// less 1.
+TEST(PoissonByJacobi, LeavesOfTheErrorOfAWaveThePowerOfItsFactor) {
+  for (const int k : {1, 2, 7, 40}) {
+    const Problem problem = make(by_jacobi(std::to_string(k)));
+    for (const Index p : {1, 2, 9}) {
+      const Vector wave = outer(sine_mode(p, 9), sine_mode(1, 9));
+      const Real factor = (std::cos(M_PI * static_cast<Real>(p) / 10) + std::cos(M_PI / 10)) / 2;
+      Point at;
+      problem.physics_forward(wave.replicate(1, 3), problem.batch(), at);
+      const Vector expected = (1 - std::pow(factor, k)) / (4 * (factor - 1)) * wave;
+      EXPECT_LT((at.y.colwise() - expected).norm(), 1e-12 * expected.norm()) << k << " " << p;
+    }
+  }
+}
+
+// ⟨J v, w⟩ = ⟨v, Jᵀ w⟩, and J v against the central difference, of an error of h² y''' / 6.
+TEST(PoissonByJacobi, HasTheDerivativeOfItsIterationsAndTheAdjoint) {
+  constexpr Real kStep = 1e-6;
+  for (const int k : {1, 7, 40}) {
+    const Problem problem = make(by_jacobi(std::to_string(k)), 1);
+    RandomStream random(4, "poisson", "test");
+    const Vector theta = problem.start(), v = random.normal_vector(theta.size());
+    const Matrix w = random.normal_vector(3 * 81).reshaped(81, 3);
+    Point at;
+    Matrix Jv(81, 3);
+    Vector JTw(theta.size());
+    problem.forward(theta + kStep * v, at);
+    const Matrix above = at.y;
+    problem.forward(theta - kStep * v, at);
+    const Matrix difference = (above - at.y) / (2 * kStep);
+    problem.forward(theta, at);
+    problem.pushforward(v, Jv, at);
+    problem.pullback(w, JTw, at);
+    EXPECT_NEAR(Jv.cwiseProduct(w).sum(), v.dot(JTw), 1e-12 * Jv.norm() * w.norm()) << k;
+    EXPECT_LT((Jv - difference).norm(), 1e-7 * Jv.norm()) << k;
+  }
+}
+
+TEST(PoissonByJacobi, TendsToTheExactSolveByWhichItIsJudged) {
+  const Problem exact = make(
+      "poisson[mode=learn,N=9,batch=3,network=mlp[layers=6,activation=tanh,"
+      "precision=double]]");
+  Point at, its;
+  exact.forward(exact.start(), at);
+  const auto distance = [&](const std::string& iterations) {
+    const Problem problem = make(by_jacobi(iterations));
+    problem.forward(problem.start(), its);
+    EXPECT_EQ(problem.target(), exact.target());
+    return (its.y - at.y).norm() / at.y.norm();
+  };
+  EXPECT_LT(distance("1000"), 1e-10);
+  EXPECT_LT(distance("converged"), 1e-5);
+  EXPECT_GT(distance("120"), 1e-5);                                  // of 230
+  EXPECT_EQ(make(by_jacobi("converged")).refinement()->first, 230);  // cos(π/10)^230 = 9.7e-6
+  Batch validation;
+  const Problem coarse = make(by_jacobi("2"));
+  coarse.draw_validation(validation);
+  coarse.forward(coarse.start(), validation, its);
+  exact.forward(exact.start(), validation, at);
+  EXPECT_EQ(its.y, at.y);
+}
+
+TEST(PoissonByJacobi, RefusesWhatItCannotBe) {
+  for (const char* option : {"jacobi=0", "jacobi=2.5", "jacobi=fast", "jacobi=progressive,data=8"})
+    EXPECT_NE(
+        refusal([&] { make(std::string("poisson[mode=learn,N=4,network=mlp,") + option + "]"); }),
+        "")
+        << option;
+  EXPECT_NE(refusal([] { make("poisson[N=4,jacobi=7]"); }), "");
+}
+
+// The mean fades by 2/9: of 1, 1, 1, 1 it is 1, of a 0.5 after these 8/9, of another one 65/81.
+TEST(Refinement, AddsIterationsWhereTheLossNoLongerFallsUnlessTheLastDidNotHelp) {
+  const Refinement of{.first = 5, .step = 3, .most = 10};
+  Refinement::State state{.iterations = of.first};
+  const auto after = [&](std::initializer_list<Real> losses) {
+    for (const Real loss : losses) of.see(loss, state);
+    return state.iterations;
+  };
+  EXPECT_EQ(after({1, 1, 1}), 5);
+  EXPECT_EQ(after({1}), 8);
+  EXPECT_EQ(after({1, 1, 1, 1}), 8);  // the last addition did not help
+  EXPECT_EQ(after({0.5, 0.5}), 8);    // it falls
+  EXPECT_NEAR(state.means[0], 0.5 + 0.5 * 49 / 81, 1e-15);
+  EXPECT_EQ(after({0.8, 0.8, 0.8}), 10);  // by a tenth less, and at most 10
+  EXPECT_EQ(after({3, 3, 3, 3}), 10);
+}
+
 TEST(SmoothNoise, HasMeanZeroDeviationOneAndNoCoarseModes) {
   RandomStream stream(1, "noise", "test");
   const Vector field = smooth_noise(64, 10, 1, stream);

@@ -401,6 +401,7 @@ TEST(Claims, OfWhoIsTheQuickestReadWhatWasSpentUntilALevel) {
   EXPECT_EQ(figure_of(run, {.column = until}), 20);
   EXPECT_EQ(figure_of(run, {.column = until, .seconds = 2.5}), 2);
   EXPECT_EQ(figure_of(run, {.column = until, .work = 30}), 25);
+  EXPECT_EQ(figure_of(run, {.column = "work " + until}), 25);
   EXPECT_TRUE(std::isinf(figure_of(run, {.column = until, .seconds = 1.5}))) << "not by then";
   EXPECT_TRUE(std::isinf(figure_of(run, {.column = "until: x_error 0.5"})));
 }
