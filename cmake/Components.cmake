@@ -37,23 +37,3 @@ function(isoline_components folder)
   add_library(isoline_${folder} STATIC ${${folder}_sources})
   add_library(Isoline::${folder} ALIAS isoline_${folder})
 endfunction()
-
-# isoline_together(target groups...): compiles the files of each group at once, which parses their headers and
-# instantiates their templates once. A group is a regular expression for paths without ".cpp". Other files, such as a
-# new component, are compiled alone.
-function(isoline_together target)
-  if(NOT ISOLINE_UNITY)
-    return()
-  endif()
-  set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
-  get_target_property(sources ${target} SOURCES)
-  foreach(group IN LISTS ARGN)
-    string(SHA1 name ${group})
-    string(SUBSTRING ${name} 0 8 name)
-    foreach(source IN LISTS sources)
-      if(source MATCHES "/(${group})\\.cpp$")
-        set_source_files_properties(${source} PROPERTIES UNITY_GROUP ${name})
-      endif()
-    endforeach()
-  endforeach()
-endfunction()
