@@ -25,6 +25,18 @@ namespace {
 
 constexpr Real kInfinity = std::numeric_limits<Real>::infinity();
 
+// Lengths and scores that differ by less are equal: Δ and ρ are multiples of each other, points lie
+// on the boundary of the trust region, and rounding would otherwise decide between them.
+constexpr Real kEqual = 1e-6;
+
+// The first of the largest.
+Index first_largest(const Vector& values) {
+  const Real enough = (1 - kEqual) * values.maxCoeff();
+  Index i = 0;
+  while (i + 1 < values.size() && !(values[i] >= enough)) ++i;
+  return i;
+}
+
 // min ‖r + J d‖ over ‖d‖ ≤ Δ: d = −V (Σ² + μ)⁻¹ Σ Uᵀr with the least μ ≥ 0, by Newton's method on
 // 1/Δ − 1/‖d‖; Moré, Sorensen (1983).
 Vector trust_region_step(const Svd& J, const Vector& r, Real radius) {
@@ -107,7 +119,9 @@ struct DfoGn {
     s.X.col(point) = s.theta;
     s.R.col(point) = s.r;
     s.f[point] = value;
-    s.f.minCoeff(&s.best);
+    constexpr Real kRounding = 1e-14;  // losses that differ by less are equal
+    const Real enough = (1 + kRounding) * s.f.minCoeff();
+    for (s.best = 0; s.f[s.best] > enough;) ++s.best;
   }
 
   void begin(Meter& f, const Vector& theta, State& s) const {
@@ -202,7 +216,7 @@ struct DfoGn {
     if (ratio > 0) return Status::running;
     f.reject_step();
     if (!build(s)) return Status::running;
-    return improve_or(f, s, std::max(s.delta, length) <= s.rho);
+    return improve_or(f, s, std::max(s.delta, length) <= (1 + kEqual) * s.rho);
   }
   static Real decrease(const State& s) {  // of Δ; noise makes some good steps look bad
     constexpr Real kExact = 0.5, kNoisy = 0.95;
@@ -225,10 +239,10 @@ struct DfoGn {
       return std::abs(polynomial) * std::max<Real>(1, std::pow(distance / s.delta, 4));
     };
     Index out = s.best;
-    Real most = is_better ? score(1 - lagrange.sum(), d.norm()) : -1;
+    Real most = is_better ? score(1 - lagrange.sum(), d.norm()) : 0;
     for (Index j = 0; j < d.size(); ++j) {
       const Real distance = is_better ? (s.S.col(j) - d).norm() : s.S.col(j).norm();
-      if (!(score(lagrange[j], distance) > most)) continue;
+      if (!(score(lagrange[j], distance) > (1 + kEqual) * most)) continue;
       most = score(lagrange[j], distance);
       out = point_of(s, j);
     }
@@ -237,9 +251,10 @@ struct DfoGn {
   // Where a point is far, it is moved; otherwise ρ is reduced, if it `may` be.
   Status improve_or(Meter& f, State& s, bool may_reduce) const {
     if (s.delta <= 1.5 * s.rho) s.delta = s.rho;
-    Index farthest = 0;
-    const Real distance = s.S.colwise().norm().maxCoeff(&farthest);
-    if (distance > std::max(2 * s.delta, 10 * s.rho))
+    const Vector distances = s.S.colwise().norm();
+    const Index farthest = first_largest(distances);
+    const Real distance = distances[farthest];
+    if (distance > (1 - kEqual) * std::max(2 * s.delta, 10 * s.rho))
       move(f, s, farthest, std::max(std::min(distance / 10, s.delta / 2), s.rho));
     else if (may_reduce)
       return reduce(f, s);
@@ -248,7 +263,9 @@ struct DfoGn {
   // To where its Lagrange polynomial is largest within the radius, downhill of both such points.
   static void move(Meter& f, State& s, Index column, Real distance) {
     Vector direction = s.inverse.row(column).normalized();
-    if (direction.dot(s.J.transpose() * s.R.col(s.best)) > 0) direction = -direction;
+    const Vector r = s.R.col(s.best);
+    constexpr Real kRounding = 1e-12;
+    if (r.dot(s.J * direction) > kRounding * s.J.norm() * r.norm()) direction = -direction;
     s.theta = s.X.col(s.best) + distance * direction;
     put(s, point_of(s, column), evaluate(f, s));
   }
@@ -304,7 +321,8 @@ struct DfoGn {
     std::ranges::sort(order, {}, [&](Index i) { return distance[i]; });
     const auto nth = [&](Index i) { return order[static_cast<std::size_t>(i)]; };
     Index used = std::min(calls, 2 * (n + 1));
-    while (used < std::min(calls, 20 * (n + 1)) && distance[nth(used)] <= s.reach) ++used;
+    while (used < std::min(calls, 20 * (n + 1)) && distance[nth(used)] <= (1 + kEqual) * s.reach)
+      ++used;
     const Real scale = std::max(s.reach, distance[nth(used - 1)]);
     Matrix A(used, n + 1), Y(used, m);
     for (Index i = 0; i < used; ++i) {
@@ -332,9 +350,7 @@ struct DfoGn {
     s.fits = 0;
     s.rho = s.delta = s.first_rho;
     for (Index i = 0; i < std::min(kMoved, s.X.rows()) && build(s); ++i) {
-      Index nearest = 0;
-      s.S.colwise().norm().minCoeff(&nearest);
-      move(f, s, nearest, s.delta);
+      move(f, s, first_largest(s.S.colwise().norm().cwiseInverse()), s.delta);  // the nearest
     }
     return Status::running;
   }

@@ -332,7 +332,7 @@ struct LevenbergMarquardt {
     f.reject_step();
     s.gain = 0;
     if (jacobian == "exact" || s.differences.is_fresh()) return s.damping.reject();
-    s.differences.renew(f, theta, jacobian == "central", s.at);  // the update may be to blame
+    s.differences.renew(f, theta, jacobian, s.at);  // the update may be to blame
     s.squares.set(f, s.at, theta, s.residual, scaling);
     return Status::running;
   }
@@ -342,7 +342,7 @@ struct LevenbergMarquardt {
 
   Status step_fixed(Meter& f, Vector& theta, State& s) const {
     f.linearize(theta, s.at);
-    if (jacobian != "exact") s.differences.renew(f, theta, jacobian == "central", s.at);
+    if (jacobian != "exact") s.differences.renew(f, theta, jacobian, s.at);
     s.residual = (s.at.y() - f.target()).reshaped();
     const auto filter = damping == "absolute" ? absolute_filter(initial_damping, f.samples())
                                               : tikhonov_filter(initial_damping);
@@ -364,7 +364,7 @@ struct LevenbergMarquardt {
       if (broyden && s.differences.has_jacobian() && s.gain >= kPoorGain)
         s.differences.update(theta, s.at);
       else
-        s.differences.renew(f, theta, jacobian == "central", s.at);
+        s.differences.renew(f, theta, jacobian, s.at);
     }
     s.squares.set(f, s.at, theta, s.residual, scaling);
     s.has_point = true;

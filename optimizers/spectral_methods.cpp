@@ -88,8 +88,7 @@ struct Spectral : Options {
     f.linearize(theta, s.at);
     if constexpr (Options::kIsOnResidual) {
       s.w = s.at.y() - f.target();
-      if (this->jacobian != "exact")
-        s.differences.renew(f, theta, this->jacobian == "central", s.at);
+      if (this->jacobian != "exact") s.differences.renew(f, theta, this->jacobian, s.at);
     } else {
       s.at.cotangent(s.w);
     }

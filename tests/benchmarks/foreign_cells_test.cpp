@@ -547,6 +547,34 @@ TEST_F(ForeignCells, OfScipySolveWithinBounds) {
   }
 }
 
+// Peers that call residuals or losses alone, each with its package.
+TEST_F(ForeignCells, OfPeersSolveWithoutDerivatives) {
+  const std::string petsc =  // not on the path of Debian's Python
+      "glob, sys; sys.path += "
+      "glob.glob(\"/usr/lib/petscdir/*/*-real*/lib/python3/dist-packages\"); import numpy, petsc4py";
+  std::string missing;
+  for (const auto& [package, script] : {std::pair<std::string, std::string>{petsc, "pounders.py"},
+                                        {"cmaes", "cma_es.py"},
+                                        {"scipy", "scipy_optimize.py trf jac=2-point"},
+                                        {"scipy", "scipy_optimize.py bfgs jac=3-point"},
+                                        {"dfols", "dfo_ls.py"}}) {
+    const std::string python = python_with(package);
+    if (python.empty()) {
+      missing += ' ' + script;
+      continue;
+    }
+    const std::string problem = "rosenbrock[derivatives=none]";
+    const auto record_within = [&](std::int64_t work) {
+      return record_of(request_of(problem, process_of(example(script, python)),
+                                  {.iterations = 100'000, .work = work, .target = 1e-5}));
+    };
+    const Record record = record_within(2000);
+    EXPECT_EQ(record.status, Status::target) << script << ": " << record.message;
+    EXPECT_EQ(record_within(20).status, Status::budget) << script;
+  }
+  if (!missing.empty()) GTEST_SKIP() << "the packages of these scripts are missing:" << missing;
+}
+
 TEST_F(ForeignCells, OfTorchReportEachOfItsSteps) {
   const std::string python = python_with("torch");
   if (python.empty()) GTEST_SKIP() << "PyTorch is not installed";

@@ -420,8 +420,6 @@ TEST(Rounding, StaysRoundingThroughThreeStepsOfEveryMethod) {
     for (const auto& [name, entry] : optimizers()) {
       if (!why_inapplicable(entry, options_of_spec(entry, name), problem).empty()) continue;
       if (samples == "6,data=6" && !entry.needs_same_samples) continue;
-      if (name == "dfo-gn")
-        continue;  // it exchanges points by comparisons that rounding can decide
       const Vector one = run(problem, name, iterations(3)).theta,
                    other = run_from(nudged, problem, name, iterations(3)).theta;
       expect_near(one, other, 1e-8, name + ", " + samples);

@@ -1,6 +1,7 @@
 """A method of scipy.optimize: python3 scipy_optimize.py lm, or trf, bfgs, l-bfgs-b …
 
 Tolerances follow the method: python3 scipy_optimize.py lm ftol=1e-8 xtol=1e-8 gtol=1e-8
+With jac=2-point or jac=3-point, SciPy takes differences, and Isoline counts their forward solves.
 trf, dogbox, l-bfgs-b and slsqp respect the bounds of a problem; tnc leaves them by a rounding.
 """
 import sys
@@ -10,18 +11,22 @@ from scipy.optimize import Bounds, least_squares, minimize
 import isoline
 
 method, *given = sys.argv[1:]
-options = {name: float(value) for name, value in (each.split("=") for each in given)}
+words = dict(each.split("=") for each in given)
+differences = words.pop("jac", None)
+options = {name: float(value) for name, value in words.items()}
 label = f"scipy-{' '.join([method, *given])}"
 keeps_bounds = method.lower() in ("trf", "dogbox", "l-bfgs-b", "slsqp")
 if method in ("lm", "trf", "dogbox"):
     tight = {"ftol": 1e-15, "xtol": 1e-15, "gtol": 1e-15, "max_nfev": 10**9}
-    p = isoline.optimizer(["jacobian"], label, least_squares=True, keeps_bounds=keeps_bounds)
+    p = isoline.optimizer([] if differences else ["jacobian"], label, least_squares=True,
+                          keeps_bounds=keeps_bounds)
     bounds = {"bounds": (p.lower, p.upper)} if keeps_bounds else {}
-    found = least_squares(p.residual, p.x0, p.jacobian, method=method, **bounds,
+    found = least_squares(p.residual, p.x0, differences or p.jacobian, method=method, **bounds,
                           **{**tight, **options})
 else:
-    p = isoline.optimizer(["pullback"], label, reports=True, keeps_bounds=keeps_bounds)
+    p = isoline.optimizer([] if differences else ["pullback"], label, reports=True,
+                          keeps_bounds=keeps_bounds)
     bounds = {"bounds": Bounds(p.lower, p.upper)} if keeps_bounds else {}
-    found = minimize(p.value, p.x0, jac=p.gradient, method=method, callback=p.report, **bounds,
-                     options=options)
+    found = minimize(p.value, p.x0, jac=differences or p.gradient, method=method, **bounds,
+                     callback=p.report, options=options)
 p.finish(found.x, f"{found.message} nfev={found.nfev} njev={found.get('njev')}")
