@@ -6,6 +6,7 @@
 #include <cctype>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <span>
 
 #include "core/results/advice.h"
@@ -272,8 +273,17 @@ std::string suite_page(const SiteResults& results) {
   return whole_page(results.name, html, "../");
 }
 
-// One table of papers_section(). The verdict leads to the evidence, where results have it.
-std::string paper_page(const Site& site, Table table) {
+// One table of papers_section(), in the order of the paper's figures. The verdict leads to the
+// evidence, where results have it.
+std::string paper_page(const Site& site, const Table& claims) {
+  std::vector<std::size_t> order(claims.rows.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::stable_sort(order, {}, [&](std::size_t i) { return claims.rows[i][1].text; });
+  Table table = claims;
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    table.rows[i] = claims.rows[order[i]];
+    table.row_topics[i] = claims.row_topics[order[i]];
+  }
   for (std::size_t i = 0; i < table.rows.size() && i < table.row_topics.size(); ++i)
     for (const SiteResults& results : site.results)
       for (const Judgement& claim : results.document->claims)
