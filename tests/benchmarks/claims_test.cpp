@@ -189,7 +189,7 @@ std::vector<Record> run_learned() {
   std::vector<Request> requests = cells_of("sip-quick");
   std::erase_if(requests, [&](const Request& request) {
     return request.budget.iterations < 2000 || request.budget.iterations > 10'000 ||
-           request.rates == "learn-tuned.json" ||
+           request.rates == "learn-tuned.json" || request.problem.name == "poisson" ||
            request.problem.spec.find("phi") != std::string::npos ||
            request.problem.options.number("xi", 1) > 32;
   });
