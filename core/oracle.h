@@ -136,6 +136,8 @@ class OracleSet {
   }
   constexpr bool contains(Oracle oracle) const { return (bits_ & bit(oracle)) != 0; }
   constexpr void add(Oracle oracle) { bits_ |= bit(oracle); }
+  constexpr void remove(Oracle oracle) { bits_ &= ~bit(oracle); }
+  constexpr bool is_empty() const { return bits_ == 0; }
 
  private:
   static constexpr unsigned bit(Oracle oracle) { return 1U << static_cast<unsigned>(oracle); }

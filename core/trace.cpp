@@ -13,7 +13,7 @@ namespace {
 bool is_amount(std::int64_t count) { return count >= 0; }
 bool is_amount(double seconds) { return std::isfinite(seconds) && seconds >= 0; }
 
-bool are_amounts(const OracleCounts& counts) {
+bool are_amounts(const auto& counts) {
   return std::ranges::all_of(counts, [](std::int64_t count) { return is_amount(count); });
 }
 
@@ -34,7 +34,8 @@ bool ends(const char (&text)[Trace::kText]) {
 
 bool is_sound(const TracePoint& point) {
   return is_amount(point.iteration) && are_amounts(point.counts) && is_amount(point.work) &&
-         is_amount(point.wall_seconds) && is_amount(point.processor_seconds);
+         are_amounts(point.rounds) && is_amount(point.wall_seconds) &&
+         is_amount(point.processor_seconds);
 }
 
 bool are_points_sound(const Trace& trace) {
@@ -57,7 +58,7 @@ bool are_hits_sound(const Trace& trace) {
       continue;
     }
     const bool is_next = hit.iteration >= last;
-    if (!is_next || !is_amount(hit.work) || !are_amounts(hit.counts) ||
+    if (!is_next || !is_amount(hit.work) || !are_amounts(hit.counts) || !are_amounts(hit.rounds) ||
         !is_amount(hit.wall_seconds))
       return false;
     last = hit.iteration;
@@ -124,6 +125,7 @@ bool are_series_sound(const Trace& trace) {
 bool are_choices_sound(const Trace& trace) {
   return is_flag(trace.is_finished) && is_flag(trace.is_learned) &&
          is_flag(trace.stopped_by_clock) && is_flag(trace.is_bounded) &&
+         is_flag(trace.counts_rounds) &&
          is_within(static_cast<int>(trace.status), static_cast<int>(kStatusNames.size()) - 1) &&
          is_within(static_cast<int>(trace.aim), static_cast<int>(kAimNames.size()) - 1);
 }

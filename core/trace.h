@@ -5,6 +5,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cstdint>
 #include <limits>
@@ -16,10 +17,16 @@
 
 namespace isoline {
 
+// The numbers of workers for which a run counts rounds: s forward solves that a method hands over
+// together take ⌈s/W⌉ of them, and all other work as many as its nominal cost.
+inline constexpr std::array<std::int64_t, 2> kWorkers = {8, 64};
+using Rounds = std::array<std::int64_t, kWorkers.size()>;
+
 struct TracePoint {
   std::int64_t iteration = 0;
   OracleCounts counts{};  // cumulative
   std::int64_t work = 0;  // counts times nominal costs
+  Rounds rounds{};        // cumulative
   double wall_seconds = 0, processor_seconds = 0;
   double loss = 0;
   double x_error = 0;        // distance to the nearest solution; nan where none is known
@@ -44,6 +51,7 @@ struct TracePoint {
 struct TraceHit {
   std::int64_t iteration = -1, work = 0;  // iteration −1: never
   OracleCounts counts{};
+  Rounds rounds{};
   double wall_seconds = 0;
 };
 
@@ -108,6 +116,7 @@ struct Trace {
   // The last state known, kept up to date at every iteration; the final verdict when finished.
   TracePoint last;
   OracleCounts prices{};
+  bool counts_rounds = false;  // all work is forward solves of a direct problem
   Aim aim = Aim::loss;
   double minimum = std::numeric_limits<double>::quiet_NaN();  // f_L; nan where undeclared
   double scale = std::numeric_limits<double>::quiet_NaN();  // s; nan where f_L is, or none is known

@@ -128,8 +128,12 @@ struct CmaEs {
       s.z = s.eigen.lambda.cwiseSqrt().cwiseProduct(s.eigen.V.transpose() * s.z);
       s.Y.col(i) = s.eigen.V * s.z;
       s.theta = s.mean + s.sigma * s.Y.col(i);
-      const Real loss = f.loss(s.theta);
       s.X.col(i) = s.theta;
+    }
+    f.announce(s.X);
+    for (Index i = 0; i < lambda; ++i) {
+      s.theta = s.X.col(i);
+      const Real loss = f.loss(s.theta);
       s.losses[i] = std::isfinite(loss) ? loss : std::numeric_limits<Real>::infinity();
     }
     std::ranges::stable_sort(s.order, {}, [&](Index i) { return s.losses[i]; });

@@ -131,6 +131,7 @@ struct DfoGn {
     s.R.setZero(m, n + 1);
     s.f.setConstant(n + 1, kInfinity);
     s.theta = theta;
+    f.announce(theta.replicate(1, 2));
     put(s, 0, evaluate(f, s));
     evaluate(f, s);
     const Real level = (s.r - s.R.col(0)).norm() / (std::sqrt(2.0) * s.r.norm());
@@ -153,9 +154,12 @@ struct DfoGn {
     s.past_X.setZero(n, most);
     s.past_R.setZero(m, most);
   }
-  // The other points one after the other along the axes.
+  // The other points along the axes.
   static void spread(Meter& f, State& s, const Vector& center, Real distance) {
-    const Index from = s.best;
+    const Index from = s.best, n = center.size();
+    Matrix points = center.replicate(1, n);
+    points.diagonal().array() += distance;
+    f.announce(points);
     for (Index point = 0, j = 0; point < s.X.cols(); ++point) {
       if (point == from) continue;
       s.theta = center;

@@ -36,12 +36,19 @@ class DifferenceJacobian {
     const Matrix y = at.y();
     J_.resize(y.size(), n);
     moved_ = theta;
+    Vector h(n);
+    const Index calls = is_central ? 2 : 1;
+    Matrix points = theta.replicate(1, calls * n);
     for (Index j = 0; j < n; ++j) {
       const Real size = std::max(std::abs(theta[j]), sizes_[j]);
-      Real h = size * (is_central ? central_step(noise_) : forward_step(noise_));
-      if (const Bounds* bounds = f.bounds(); bounds && theta[j] + h > bounds->upper[j]) h = -h;
-      J_.col(j) = column(f, theta, j, h, is_central, y);
+      h[j] = size * (is_central ? central_step(noise_) : forward_step(noise_));
+      if (const Bounds* bounds = f.bounds(); bounds && theta[j] + h[j] > bounds->upper[j])
+        h[j] = -h[j];
+      points(j, calls * j) = theta[j] + h[j];
+      if (is_central) points(j, calls * j + 1) = theta[j] - h[j];
     }
+    f.announce(points);
+    for (Index j = 0; j < n; ++j) J_.col(j) = column(f, theta, j, h[j], is_central, y);
     theta_ = theta;
     y_ = y.reshaped();
     is_fresh_ = true;

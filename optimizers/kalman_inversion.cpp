@@ -59,6 +59,7 @@ struct Ensemble {
     const auto m = static_cast<Real>(f.residuals());
     s.residuals.resize(f.residuals(), J);
     Vector misfits(J);
+    f.announce(s.members);
     for (Index j = 0; j < J; ++j) {
       s.theta = s.members.col(j);
       residual_at(f, s.theta, s.at, s.r);
@@ -127,6 +128,7 @@ struct Unscented {
     Linearization at;
     Vector theta, r, center;
     SymmetricEigen eigen;
+    Matrix points;                      // (n, 2n + 1), m and the others
     Matrix root, deviations, observed;  // √Ĉ (n, n), Θ (n, 2n), G (m, 2n)
   };
   static void persist(State& s, Archive& archive) { archive(s.prior, s.mean, s.C); }
@@ -148,14 +150,21 @@ struct Unscented {
     s.C.diagonal() += s.prior;
     if (!symmetric_eigen(s.C, s.eigen)) return Status::stalled;
     s.root = s.eigen.V * s.eigen.lambda.cwiseMax(0).cwiseSqrt().asDiagonal();
+    const auto side_of = [&](Index j) { return j < n ? spacing : -spacing; };
+    s.points.resize(n, 2 * n + 1);
+    s.points.col(0) = s.mean;
+    for (Index j = 0; j < 2 * n; ++j) {
+      s.theta = s.mean + side_of(j) * s.root.col(j % n);
+      s.points.col(j + 1) = s.theta;
+    }
+    f.announce(s.points);
     residual_at(f, s.mean, s.at, s.center);
     s.deviations.resize(n, 2 * n);
     s.observed.resize(s.center.size(), 2 * n);
     for (Index j = 0; j < 2 * n; ++j) {
-      const Real side = j < n ? spacing : -spacing;
-      s.theta = s.mean + side * s.root.col(j % n);
+      s.theta = s.points.col(j + 1);
       residual_at(f, s.theta, s.at, s.r);
-      s.deviations.col(j) = weight * side * s.root.col(j % n);
+      s.deviations.col(j) = weight * side_of(j) * s.root.col(j % n);
       s.observed.col(j) = weight * (s.r - s.center);
     }
     if (!is_finite(s.center) || !is_finite(s.observed)) return Status::diverged;

@@ -33,6 +33,7 @@ Meter::Meter(const Problem& problem, const Budget& budget, OracleSet granted, Tr
       trace_(trace),
       samples_(&problem.batch()),
       prices_(problem.prices()),
+      are_products_at_once_(problem.products().are_at_once),
       best_loss_(kInfinity),
       next_target_(kNone),
       target_loss_(kNone),
@@ -49,6 +50,10 @@ Meter::Meter(const Problem& problem, const Budget& budget, OracleSet granted, Tr
   refined_.iterations = solve_iterations_;
   trace_.prices = prices_;
   trace_.is_learned = problem.is_learned();
+  OracleSet products = granted;
+  products.remove(Oracle::forward);
+  trace_.counts_rounds =
+      !problem.is_learned() && (products.is_empty() || problem.products().are_at_once);
   name_series({});
   trace_.aim = problem.aim();
   trace_.minimum = problem.minimum().value_or(std::nan(""));
@@ -121,10 +126,45 @@ void Meter::exhaust() {
 void Meter::charge_forward(VectorRef theta) {
   const bool is_paid =
       is_prepaid_ && theta.size() == judged_theta_.size() && theta == judged_theta_;
-  if (is_paid && is_granted(Oracle::forward))
+  const bool is_announced =
+      next_announced_ < announced_.cols() && announced_.col(next_announced_) == theta;
+  next_announced_ = is_announced ? next_announced_ + 1 : announced_.cols();
+  if (is_paid && is_granted(Oracle::forward)) {
     is_prepaid_ = false;
-  else
-    charge(Oracle::forward);
+    return;
+  }
+  charge(Oracle::forward);
+  if (!is_announced) return;
+  for (std::size_t i = 0; i < kWorkers.size(); ++i)
+    if (in_batch_ % kWorkers[i] != 0) ++spared_[i];
+  ++in_batch_;
+}
+
+void Meter::announce(const Matrix& thetas) {
+  if (problem_.is_learned()) return;
+  const std::int64_t price = prices_[static_cast<std::size_t>(Oracle::forward)];
+  const std::int64_t affordable = (most_work_ - work_) / price + (is_prepaid_ ? 1 : 0);
+  announced_ = thetas.leftCols(std::clamp<std::int64_t>(affordable, 0, thetas.cols()));
+  next_announced_ = in_batch_ = 0;
+  problem_.begin_forwards(announced_);
+}
+
+// So many forwards within one call of a product.
+void Meter::share_rounds(std::int64_t calls) {
+  for (std::size_t i = 0; i < kWorkers.size(); ++i)
+    spared_[i] += calls - (calls + kWorkers[i] - 1) / kWorkers[i];
+}
+
+Rounds Meter::rounds() const {
+  Rounds rounds;
+  for (std::size_t i = 0; i < kWorkers.size(); ++i) rounds[i] = work_ - spared_[i];
+  return rounds;
+}
+
+void Meter::count_into(TracePoint& point) const {
+  point.counts = counts_;
+  point.work = work_;
+  point.rounds = rounds();
 }
 
 // For a direct problem, an evaluated point that is neither the last nor the best one already
@@ -140,8 +180,8 @@ bool Meter::pay_for_judged() {
     return false;
   }
   work_ += prices_[kForward];
-  trace_.last.work = work_;
-  trace_.last.counts[kForward] = ++counts_[kForward];
+  ++counts_[kForward];
+  count_into(trace_.last);
   paid_loss_ = judged_.loss;
   return is_prepaid_ = true;
 }
@@ -170,6 +210,7 @@ void Meter::reach(Real loss) {
     TraceHit& hit = trace_.hit[targets_met_++];
     hit.work = work_;
     hit.counts = counts_;
+    hit.rounds = rounds();
     hit.wall_seconds = watch_.seconds();
     hit.iteration = iteration_;
   }
@@ -234,7 +275,7 @@ void Meter::prepare() {
 
 void Meter::persist(Archive& archive) {
   double wall = watch_.seconds(), processor = watch_.processor_seconds();
-  archive(counts_, work_, disturbed_, iteration_, next_kept_, best_loss_, next_target_,
+  archive(counts_, work_, spared_, disturbed_, iteration_, next_kept_, best_loss_, next_target_,
           target_loss_, target_x_error_, targets_met_, stall_loss_, stall_iteration_, status_,
           batch_loss_, batch_x_error_, judged_.loss, judged_theta_, paid_loss_, is_prepaid_,
           previous_, wall, processor, refined_);
@@ -309,8 +350,7 @@ Vector Meter::finish(VectorRef theta, Status verdict) {
   watch_.pause();
   if (trace_.last.iteration != iteration_ || judged_theta_ != theta || !judged_.batch)
     look_at(theta);
-  trace_.last.counts = counts_;  // a library may have made many calls since its last iteration
-  trace_.last.work = work_;
+  count_into(trace_.last);  // a library may have made many calls since its last iteration
   trace_.last.wall_seconds = watch_.seconds();
   trace_.last.processor_seconds = watch_.processor_seconds();
   const int points = trace_.points;  // the curve ends at the returned point
@@ -347,8 +387,7 @@ void Meter::measure(VectorRef theta) {
   judged_theta_ = theta;  // only where it could be
   TracePoint& last = trace_.last;
   last.iteration = iteration_;
-  last.counts = counts_;
-  last.work = work_;
+  count_into(last);
   last.wall_seconds = watch_.seconds();
   last.processor_seconds = watch_.processor_seconds();
   last.loss = judged_.loss;
@@ -518,6 +557,8 @@ void Meter::keep_uncertainty() {
 
 const Problem& Linearization::ask(Oracle oracle) {
   meter_->charge(oracle);
+  if (meter_->are_products_at_once_)
+    meter_->share_rounds(meter_->prices_[static_cast<std::size_t>(oracle)]);
   return meter_->problem_;
 }
 

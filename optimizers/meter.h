@@ -138,6 +138,10 @@ class Meter {
   void linearize(VectorRef theta, Linearization& at);
   Real loss(VectorRef theta);
   void linearize_physics(BatchRef x, Linearization& at);  // at an x, the network left out
+  // The next calls of linearize() or loss() are at these columns (n, count), in their order: a
+  // problem with several workers computes them at once, and they share rounds. Nothing else
+  // changes.
+  void announce(const Matrix& thetas);
   // The samples of this step: the same for every call within it.
   const Matrix& target() const { return samples_->target; }  // y*, (m, B)
   const Matrix& truth();                                     // x*, (k, B): extra information
@@ -196,6 +200,9 @@ class Meter {
   [[noreturn]] void refuse(Oracle oracle) const;
   [[noreturn]] void exhaust();
   void charge_forward(VectorRef theta);
+  void count_into(TracePoint& point) const;
+  Rounds rounds() const;
+  void share_rounds(std::int64_t calls);
   void disturb(Point& at);
   bool look_at(VectorRef theta);
   bool pay_for_judged();
@@ -260,6 +267,11 @@ class Meter {
   OracleCounts prices_;
   std::int64_t work_ = 0, iteration_ = 0, next_kept_ = 0;
   std::uint64_t disturbed_ = 0;   // calls
+  Rounds spared_{};               // work less rounds
+  Matrix announced_;              // (n, count)
+  Index next_announced_ = 0;      // column
+  std::int64_t in_batch_ = 0;     // calls of the announced ones that were charged
+  bool are_products_at_once_;     // of the problem: by forwards that share rounds
   Real best_loss_, next_target_;  // the loss that meets the next of the 51 targets
   Real target_loss_;
   int targets_met_ = 0;

@@ -46,9 +46,11 @@ class Differenced final : public Physics {
             .has_pullback = has_products_,
             .pushforward_price = calls,
             .pullback_price = calls * inputs(),
-            .are_differences = has_products_};
+            .are_differences = has_products_,
+            .are_at_once = has_products_};
   }
 
+  void begin_forwards(BatchRef x) const override { inside_->begin_forwards(x); }
   void forward(BatchRef x, BatchRef c, BatchOut y, Workspace& w) const override {
     Inside& own = w.as<Inside>();
     own.w.x = x;
@@ -61,9 +63,7 @@ class Differenced final : public Physics {
   // Along v by a step relative to the size of each unknown.
   void pushforward(BatchRef v, BatchOut Jv, Workspace& w) const override {
     Inside& own = w.as<Inside>();
-    const Vector sizes = own.w.x.rowwise().lpNorm<Eigen::Infinity>().cwiseMax(sizes_);
-    const Real length = (v.array().colwise() / sizes.array()).abs().maxCoeff();
-    const Real h = step_ / (length > 0 ? length : 1);
+    const Real h = step_along(own, v);
     Jv = moved(own, v, h);
     if (is_central_)
       Jv = (Jv - moved(own, v, -h)) / (2 * h);
@@ -79,6 +79,7 @@ class Differenced final : public Physics {
   void jacobian(BatchOut J, Workspace& w) const override {
     const Index k = inputs(), batch = J.cols() / k;
     Matrix v, Jv(outputs(), batch);
+    if (batch == 1) begin_differences(w.as<Inside>());
     for (Index i = 0; i < k; ++i) {
       v.setZero(k, batch);
       v.row(i).setOnes();
@@ -88,6 +89,23 @@ class Differenced final : public Physics {
   }
 
  private:
+  Real step_along(const Inside& own, BatchRef v) const {
+    const Vector sizes = own.w.x.rowwise().lpNorm<Eigen::Infinity>().cwiseMax(sizes_);
+    const Real length = (v.array().colwise() / sizes.array()).abs().maxCoeff();
+    return step_ / (length > 0 ? length : 1);
+  }
+  // All forwards of J, in the order in which jacobian() asks for them.
+  void begin_differences(const Inside& own) const {
+    const Index k = inputs(), calls = is_central_ ? 2 : 1;
+    Matrix points(k, calls * k);
+    for (Index i = 0; i < k; ++i) {
+      const Matrix v = Matrix::Identity(k, k).col(i);
+      const Real h = step_along(own, v);
+      points.col(calls * i) = own.w.x + h * v;
+      if (is_central_) points.col(calls * i + 1) = own.w.x - h * v;
+    }
+    inside_->begin_forwards(points);
+  }
   // P(x + h v)
   Matrix moved(Inside& own, BatchRef v, Real h) const {
     Matrix y(outputs(), v.cols());

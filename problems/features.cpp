@@ -135,6 +135,11 @@ class Featured final : public Physics {
   Index penalties() const { return weight_ > 0 ? inputs() - order_ : 0; }
   const Map& map() const { return map_; }
 
+  void begin_forwards(BatchRef z) const override {
+    Matrix x(z.rows(), z.cols());
+    for (Index b = 0; b < z.cols(); ++b) x.col(b) = map_.to_x(z.col(b));  // to the last bit
+    inside_->begin_forwards(x);
+  }
   void forward(BatchRef z, BatchRef c, BatchOut y, Workspace& w) const override {
     Workspace& in = w.as<Inside>().w;
     in.x = map_.to_x(z);

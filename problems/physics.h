@@ -92,6 +92,7 @@ struct Products {
   bool has_pushforward = true, has_pullback = true;
   Index pushforward_price = 1, pullback_price = 1;
   bool are_differences = false;  // quotients of forwards, of some eight digits
+  bool are_at_once = false;      // by forwards none of which needs the result of another
 };
 
 class Physics {
@@ -102,6 +103,9 @@ class Physics {
   virtual Index outputs() const = 0;  // m
 
   virtual void forward(BatchRef x, BatchRef c, BatchOut y, Workspace& w) const = 0;
+  // The next calls of forward() are at these samples, one each and in this order: a physics with
+  // several workers begins to compute them at once.
+  virtual void begin_forwards(BatchRef /*x*/) const {}
   virtual void pushforward(BatchRef v, BatchOut Jv, Workspace& w) const = 0;  // (k, B) -> (m, B)
   virtual void pullback(BatchRef u, BatchOut JTu, Workspace& w) const = 0;    // (m, B) -> (k, B)
 

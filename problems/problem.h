@@ -220,6 +220,11 @@ class Problem {
 
   void forward(VectorRef theta, const Batch& batch, Point& at) const;
   void forward(VectorRef theta, Point& at) const { forward(theta, batch_, at); }
+  // See Physics; of a direct problem of one sample, θ (n, count).
+  void begin_forwards(const Matrix& thetas) const {
+    if (thetas.cols() > 1 && has_identity_network() && samples() == 1)
+      parts_.physics->begin_forwards(thetas);
+  }
   // The physics again at a given x, network left out: for inverting the physics alone.
   void physics_forward(BatchRef x, const Batch& batch, Point& at) const;
 

@@ -11,6 +11,7 @@
 #include "core/failures.h"
 #include "core/foreign/call_log.h"
 #include "core/foreign/handshake.h"
+#include "core/foreign/workers.h"
 #include "problems/problem.h"
 
 namespace isoline::problems {
@@ -25,58 +26,55 @@ Inverse inverse_of(const std::string& kind) {
 
 constexpr Real kNaN = std::numeric_limits<Real>::quiet_NaN();
 
-// The line to a program, and the points that it remembers, by number: one for every workspace that
-// is linearized at. A program that ended, or was late, is started again and remembers no point.
+// The programs, and the points that the first one remembers, by number: one for every workspace
+// that is linearized at. A program that ended, or was late, is started again and remembers no
+// point.
 class Session {
  public:
-  Session(SimulatorOptions given, std::uint64_t seed, OptionValues declared)
-      : given_(std::move(given)), seed_(seed), declared_(std::move(declared)) {
-    said_ = start();
-  }
+  Session(const SimulatorOptions& given, std::uint64_t seed, OptionValues declared)
+      : failures_allowed_(given.failures),
+        has_several_(given.workers > 1),
+        workers_(given, seed, std::move(declared)),
+        announced_point_(take_point()) {}
 
-  const ProblemHandshake& said() const { return said_; }
-  int starts() const { return starts_; }
+  const ProblemHandshake& said() const { return workers_.said(); }
+  int starts() const { return workers_.starts() + forgotten_; }
 
   // Why the call failed; empty if it did not. LineError where too many of its kind have in a row.
-  // From the log of calls, if it has this one; else from the program, after `prepare()`.
+  // From the log of calls, if it has this one; else from a program, after `prepare(start)`: that of
+  // the first program, or kNowhere where another one may answer, and no program knows the point.
   std::string call(Verb verb, std::uint32_t number, std::span<const std::span<const Real>> numbers,
                    std::span<Real> answer, const auto& prepare) {
+    const bool is_announced = verb == Verb::linearize && workers_.is_next(numbers[0]);
     CallLog* const log = call_log().get();
     if (log != nullptr) {
       if (const auto why = log->replay(verb, number, numbers, answer)) {
+        if (is_announced) workers_.skip();
         count_failure(verb, *why);
         return *why;
       }
-      if (!std::exchange(is_live_, true) && log->replayed() > 0) ++starts_;  // it knows no point
+      if (!std::exchange(is_live_, true) && log->replayed() > 0) ++forgotten_;
     }
-    prepare();
+    prepare(is_announced ? kNowhere : starts());
     const std::int64_t begin = monotonic_nanoseconds();
-    const std::string why = ask_program(verb, number, numbers, answer);
+    const std::string why = is_announced ? answered(verb, [&] { workers_.take(answer); })
+                                         : ask_program(verb, number, numbers, answer);
     if (log != nullptr)
       log->append(verb, number, numbers, answer, why,
                   1e-9 * static_cast<double>(monotonic_nanoseconds() - begin));
     return why;
   }
 
-  // The call without the log.
+  // The call to the first program, without the log.
   std::string ask_program(Verb verb, std::uint32_t number,
                           std::span<const std::span<const Real>> numbers, std::span<Real> answer) {
-    try {
-      line_->send(verb, number, numbers);
-      line_->receive_answer(verb, answer, given_.call_time > 0 ? given_.call_time : kNoDeadline);
-      count_failure(verb, "");
-      return "";
-    } catch (const LostProgram& error) {
-      count_failure(verb, error.what());
-      const std::string why = error.reason;
-      const ProblemHandshake now = start();
-      if (now.inputs != said_.inputs || now.outputs != said_.outputs)
-        line_->fail("has other numbers of inputs and outputs now that it was started again");
-      return why;
-    } catch (const FailedCall& error) {
-      count_failure(verb, error.what());
-      return error.reason.empty() ? "the program names no reason" : error.reason;
-    }
+    const std::string why = answered(verb, [&] { workers_.ask(verb, number, numbers, answer); });
+    workers_.restart_if_lost();
+    return why;
+  }
+
+  void announce(BatchRef x) {
+    if (has_several_) workers_.announce(x, announced_point_);
   }
 
   std::uint32_t take_point() {
@@ -87,31 +85,36 @@ class Session {
   }
   void give_back(std::uint32_t point) { free_points_.push_back(point); }
 
+  static constexpr int kNowhere = -1;
+
  private:
+  std::string answered(Verb verb, const auto& ask) {
+    try {
+      ask();
+      count_failure(verb, "");
+      return "";
+    } catch (const FailedCall& error) {
+      count_failure(verb, error.what());
+      return error.reason.empty() ? "the program names no reason" : error.reason;
+    }
+  }
   void count_failure(Verb verb, const std::string& why) {  // empty: none
     Index& in_a_row = failures_.at(static_cast<std::size_t>(verb));
     in_a_row = why.empty() ? 0 : in_a_row + 1;
-    if (in_a_row < given_.failures) return;
+    if (in_a_row < failures_allowed_) return;
     throw LineError(
         in_a_row == 1 ? why : fmt::format("{} calls in a row failed; the last: {}", in_a_row, why));
   }
-  ProblemHandshake start() {
-    line_.reset();  // the old program ends before the new one begins
-    line_ = std::make_unique<Line>(door_to(given_.command));
-    ++starts_;
-    return greet_problem(*line_, seed_, given_.startup, declared_);
-  }
 
-  SimulatorOptions given_;
-  std::uint64_t seed_;
-  OptionValues declared_;
-  ProblemHandshake said_;
-  std::unique_ptr<Line> line_;
-  int starts_ = 0;
+  Index failures_allowed_;
+  bool has_several_;
+  Workers workers_;
+  int forgotten_ = 0;
   bool is_live_ = false;  // past the log of calls
   std::array<Index, static_cast<std::size_t>(Verb::x_error) + 1> failures_{};  // in a row, by verb
   std::uint32_t points_ = 0;
   std::vector<std::uint32_t> free_points_;
+  std::uint32_t announced_point_;
 };
 
 // Per workspace: the point of its products, and buffers for data that is not contiguous.
@@ -174,6 +177,11 @@ class ProcessPhysics final : public ByJacobian {
     for (Index b = 0; b < x.cols(); ++b)
       if (!bounds_->hold(x.col(b))) y.col(b).setConstant(kNaN);
   }
+  void begin_forwards(BatchRef x) const override {
+    Matrix within = x;
+    for (Index b = 0; bounds_ && b < x.cols(); ++b) within.col(b) = bounds_->nearest(x.col(b));
+    session_->announce(within);
+  }
   void pushforward(BatchRef v, BatchOut Jv, Workspace& w) const override {
     asks_pushforward_ ? ask(Verb::pushforward, v, Jv, w) : ByJacobian::pushforward(v, Jv, w);
   }
@@ -189,7 +197,7 @@ class ProcessPhysics final : public ByJacobian {
     Vector answer(x.size() + y.cols());     // x, then one success flag per sample
     const std::array<std::span<const Real>, 2> given = {numbers_of(targets), numbers_of(starts)};
     const std::span<Real> numbers(answer.data(), static_cast<std::size_t>(answer.size()));
-    if (!session_->call(Verb::inverse, 0, given, numbers, [] {}).empty())
+    if (!session_->call(Verb::inverse, 0, given, numbers, [](int) {}).empty())
       return Success::Constant(y.cols(), false);
     x = answer.head(x.size()).reshaped(x.rows(), x.cols());
     return answer.tail(y.cols()).array() == 1;
@@ -221,9 +229,9 @@ class ProcessPhysics final : public ByJacobian {
     const bool is_direct = answer.outerStride() == answer.rows();
     if (!is_direct) point.out.resize(answer.rows(), answer.cols());
     Real* const to = is_direct ? answer.data() : point.out.data();
-    const auto prepare = [&] {
+    const auto prepare = [&](int start) {
       if (is_forward)
-        point.start = session_->starts();
+        point.start = start;
       else if (point.start != session_->starts())
         remember(point, w);
     };
@@ -280,7 +288,7 @@ ProblemParts process_parts(const ProblemHandshake& said, const std::shared_ptr<S
       Real error = 0;
       const std::span<const Real> numbers = numbers_of(whole);
       const std::string why =
-          session->call(Verb::x_error, 0, std::span(&numbers, 1), std::span(&error, 1), [] {});
+          session->call(Verb::x_error, 0, std::span(&numbers, 1), std::span(&error, 1), [](int) {});
       return why.empty() ? error : kNaN;
     };
   if (!said.truth.empty()) parts.truth = vector_of(said.truth);

@@ -89,6 +89,14 @@ auto column_of(const Trace& trace, Value value) {
   return column;
 }
 
+// amounts(i) by each number of workers, kWorkers[i].
+std::map<std::string, std::vector<std::int64_t>> rounds_of(const Trace& trace, auto amounts) {
+  std::map<std::string, std::vector<std::int64_t>> rounds;
+  for (std::size_t i = 0; trace.counts_rounds && i < kWorkers.size(); ++i)
+    rounds[std::to_string(kWorkers[i])] = amounts(i);
+  return rounds;
+}
+
 std::map<std::string, std::vector<Real>> series_of(const Trace& trace) {
   std::map<std::string, std::vector<Real>> series;
   const std::vector<std::string> names = lines_of(trace.series_names);
@@ -196,6 +204,9 @@ Curve curve_of(const Trace& trace) {
     if (!column.empty() && column.back() > 0)
       curve.counts[std::string(kOracleNames[kind])] = std::move(column);
   }
+  curve.rounds = rounds_of(trace, [&](std::size_t i) {
+    return column_of(trace, [i](const TracePoint& point) { return point.rounds[i]; });
+  });
   return curve;
 }
 
@@ -217,6 +228,11 @@ Hits hits_of(const Trace& trace) {
     const bool is_asked = trace.last.counts[kind] > 0 || std::ranges::max(column) > 0;
     if (is_asked) hits.counts[std::string(kOracleNames[kind])] = std::move(column);
   }
+  hits.rounds = rounds_of(trace, [&](std::size_t i) {
+    std::vector<std::int64_t> column;
+    for (const TraceHit& hit : trace.hit) column.push_back(hit.iteration >= 0 ? hit.rounds[i] : -1);
+    return column;
+  });
   return hits;
 }
 

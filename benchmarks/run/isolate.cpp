@@ -86,6 +86,8 @@ Limits limits_of(const Request& request, const Limits& standard, double declared
   } else if (std::isfinite(declared_seconds)) {
     limits.hard_seconds = std::max(standard.hard_seconds, kDeclaredFactor * declared_seconds);
   }
+  if (request.problem.foreign && request.problem.foreign->door == "process")
+    limits.hard_seconds *= request.problem.options.number("workers", 1);  // they share a group
   return limits;
 }
 

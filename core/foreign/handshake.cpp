@@ -261,18 +261,25 @@ bool is_within(const std::vector<Real>& x, const ProblemHandshake& problem) {
          std::ranges::equal(x, problem.upper, std::less_equal());
 }
 
-// The answer to our greeting. The caller handles a broken connection, as it handles a wrong
-// argument; but it can ask a program again that was killed.
-std::string answer_to(Line& line, Json greeting, double seconds, const OptionValues& declared) {
-  if (!declared.empty()) greeting["options"] = to_json(declared);
+// A part of a greeting. The caller handles a broken connection, as it handles a wrong argument; but
+// it can ask a program again that was killed.
+auto greeted(auto exchange) {
   try {
-    line.send_text(Verb::hello, 0, json_text(greeting));
-    return line.receive_text(Verb::hello, kMostHandshake, seconds);
+    return exchange();
   } catch (const KilledProgram&) {
     throw;
   } catch (const LineError& error) {
     throw UsageError(error.what());
   }
+}
+
+void send_greeting(Line& line, Json greeting, const OptionValues& declared) {
+  if (!declared.empty()) greeting["options"] = to_json(declared);
+  greeted([&] { line.send_text(Verb::hello, 0, json_text(greeting)); });
+}
+
+std::string answer_of(Line& line, double seconds) {
+  return greeted([&] { return line.receive_text(Verb::hello, kMostHandshake, seconds); });
 }
 
 }  // namespace
@@ -334,15 +341,25 @@ MethodHandshake method_handshake(const std::string& text, const std::string& sen
           .keeps_bounds = said.flag("keeps_bounds")};
 }
 
+void send_greeting(Line& line, std::uint64_t seed, const OptionValues& declared) {
+  send_greeting(line, Json{{"protocol", kWireProtocol}, {"role", "problem"}, {"seed", seed}},
+                declared);
+}
+
+ProblemHandshake receive_greeting(Line& line, double seconds) {
+  return problem_handshake(answer_of(line, seconds), line.sender());
+}
+
 ProblemHandshake greet_problem(Line& line, std::uint64_t seed, double seconds,
                                const OptionValues& declared) {
-  const Json greeting{{"protocol", kWireProtocol}, {"role", "problem"}, {"seed", seed}};
-  return problem_handshake(answer_to(line, greeting, seconds, declared), line.sender());
+  send_greeting(line, seed, declared);
+  return receive_greeting(line, seconds);
 }
 
 MethodHandshake greet_method(Line& line, double seconds, const OptionValues& declared) {
   const Json greeting{{"protocol", kWireProtocol}, {"role", "optimizer"}};
-  return method_handshake(answer_to(line, greeting, seconds, declared), line.sender());
+  send_greeting(line, greeting, declared);
+  return method_handshake(answer_of(line, seconds), line.sender());
 }
 
 }  // namespace isoline

@@ -30,7 +30,7 @@ void fields(ProcessOptions& o, auto& field) {
 // When a call of a problem has failed, and how often that may happen in a row.
 struct SimulatorOptions : ProcessOptions {
   Real call_time = 0;
-  Index failures = 10;
+  Index failures = 10, workers = 1;
 };
 
 void fields(SimulatorOptions& o, auto& field) {
@@ -39,6 +39,8 @@ void fields(SimulatorOptions& o, auto& field) {
         "seconds after which a call has failed, and the program is started again; 0: no limit");
   field("failures", o.failures, between(1, 1'000'000),
         "failed calls of one kind in a row that end the run");
+  field("workers", o.workers, between(1, 1024),
+        "copies of the program, which compute at once what a method asks for at once");
 }
 
 // The values of the options that a program has declared, out of all of a component.
@@ -115,6 +117,9 @@ struct MethodHandshake {
 ProblemHandshake problem_handshake(const std::string& text, const std::string& sender);
 MethodHandshake method_handshake(const std::string& text, const std::string& sender);
 
+// The two halves of greet_problem().
+void send_greeting(Line& line, std::uint64_t seed, const OptionValues& declared);
+ProblemHandshake receive_greeting(Line& line, double seconds);
 // Greets a program that was just started, which has so many seconds to answer. UsageError if it
 // does not answer, or if the answer is invalid.
 ProblemHandshake greet_problem(Line& line, std::uint64_t seed, double seconds,

@@ -12,6 +12,7 @@
 #include <cerrno>
 #include <cstring>
 #include <utility>
+#include <vector>
 
 #include "core/clock.h"
 #include "core/errors.h"
@@ -127,10 +128,28 @@ void Line::wait(short events, Deadline& deadline) {
   poll(watched.data(), watched.size(), deadline.milliseconds_to_wait());
   deadline.count();
   if (child_ && watched[1].revents != 0) child_->drain();
-  if (watched[0].revents == 0 && deadline.is_over())
-    throw LostProgram(
-        fmt::format("{} did not answer within {} s{}", sender_, deadline.seconds, state_text()),
-        fmt::format("it did not answer within {} s", deadline.seconds));
+  if (watched[0].revents == 0 && deadline.is_over()) fail_late(deadline.seconds);
+}
+
+void Line::fail_late(double seconds) {
+  throw LostProgram(fmt::format("{} did not answer within {} s{}", sender_, seconds, state_text()),
+                    fmt::format("it did not answer within {} s", seconds));
+}
+
+bool Line::has_input() const {
+  pollfd watched{socket_, POLLIN, 0};
+  return poll(&watched, 1, 0) > 0;
+}
+
+void Line::wait_for_any(std::span<Line* const> lines, double seconds) {
+  std::vector<pollfd> watched;
+  for (const Line* line : lines) {
+    watched.push_back({line->socket_, POLLIN, 0});
+    watched.push_back({line->child_ ? line->child_->output() : -1, POLLIN, 0});
+  }
+  poll(watched.data(), watched.size(), static_cast<int>(1e3 * seconds));
+  for (std::size_t i = 0; i < lines.size(); ++i)
+    if (watched[2 * i + 1].revents != 0 && lines[i]->child_) lines[i]->child_->drain();
 }
 
 void Line::send_pieces(const FrameHead& head, std::span<const Piece> pieces) {

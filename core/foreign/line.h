@@ -113,7 +113,13 @@ class Line {
   void receive_answer(Verb verb, std::span<Real> numbers, double seconds = kNoDeadline);
   std::string receive_text(Verb verb, std::uint64_t most_bytes, double seconds = kNoDeadline);
 
+  // Whether something has arrived, or the program closed the connection.
+  bool has_input() const;
+  // Until one of them has input, at most so many seconds. Reads what the programs print.
+  static void wait_for_any(std::span<Line* const> lines, double seconds);
+
   [[noreturn]] void fail(const std::string& what);  // with its name and its state
+  [[noreturn]] void fail_late(double seconds);      // it did not answer within these
   [[noreturn]] void fail_at(Verb verb, const std::string& why);
 
  private:

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <functional>
 #include <vector>
 
@@ -50,6 +51,8 @@ class Invariants {
       hold(std::ranges::is_sorted(*times), "the times of its curve decrease");
     if (!broke_off) check_ends();
     check_prices();
+    check_rounds(curve_.rounds, curve_.work);
+    if (record.hits) check_rounds(record.hits->rounds, record.hits->work);
     check_losses();
     if (record.hits && record.minimum && record.scale) check_hits(*record.hits);
     if (!broke_off) check_verdicts();
@@ -131,6 +134,16 @@ class Invariants {
     };
     check("curve", curve_.counts, curve_.work);
     if (record_.hits) check("hits", record_.hits->counts, record_.hits->work);
+  }
+
+  // W workers need at most as many rounds as a single one, and at least a W-th of them.
+  void check_rounds(const std::map<std::string, Works>& rounds, const Works& works) {
+    for (const auto& [workers, column] : rounds)
+      for (std::size_t i = 0; i < works.size(); ++i)
+        if (works[i] >= 0 &&
+            (column[i] > works[i] || Real(column[i]) * std::atof(workers.c_str()) < Real(works[i])))
+          return hold(false, "its {} rounds of {} workers do not fit its work, {}", column[i],
+                      workers, works[i]);
   }
 
   Real size() const {

@@ -37,8 +37,8 @@ void require_equal_columns(const Record& record) {
   const auto of_curve = [points = curve.iteration.size()](const auto&... columns) {
     (require_length(points, "curve", columns), ...);
   };
-  of_curve(curve.work, curve.counts, curve.wall_seconds, curve.processor_seconds, curve.loss,
-           curve.x_error, curve.gradient_norm, curve.step_norm, curve.batch_loss,
+  of_curve(curve.work, curve.counts, curve.rounds, curve.wall_seconds, curve.processor_seconds,
+           curve.loss, curve.x_error, curve.gradient_norm, curve.step_norm, curve.batch_loss,
            curve.batch_x_error, record.series);
   if (!curve.kkt_residual.empty()) of_curve(curve.kkt_residual);
   if (!curve.discrepancy.empty()) of_curve(curve.discrepancy);
@@ -61,7 +61,7 @@ void require_equal_columns(const Record& record) {
   const auto of_hits = [targets](const auto&... columns) {
     (require_length(targets, "hits", columns), ...);
   };
-  of_hits(hits.iteration, hits.work, hits.forwards, hits.counts, hits.wall_seconds);
+  of_hits(hits.iteration, hits.work, hits.forwards, hits.counts, hits.rounds, hits.wall_seconds);
 }
 
 }  // namespace
@@ -177,6 +177,8 @@ void fields(Like<Curve> auto& curve, auto& field) {
   field("iteration", curve.iteration, kCountsLaw);
   field("work", curve.work, kCountsLaw);
   field("counts", curve.counts);
+  field.optional("rounds", curve.rounds,
+                 R"({"description": "By number of workers, if the work is forward solves only"})");
   field("wall_seconds", curve.wall_seconds, kTimesLaw);
   field("processor_seconds", curve.processor_seconds, kTimesLaw);
   field("loss", curve.loss);
@@ -197,6 +199,8 @@ void fields(Like<Hits> auto& hits, auto& field) {
   field("work", hits.work, kHitsLaw);
   field("forwards", hits.forwards, kHitsLaw);
   field.optional("counts", hits.counts, R"({"description": "By oracle, -1 if not reached"})");
+  field.optional("rounds", hits.rounds,
+                 R"({"description": "By number of workers, -1 if not reached"})");
   field("wall_seconds", hits.wall_seconds, kTimesLaw);
 }
 

@@ -31,6 +31,8 @@ struct Imported {
 struct Curve {
   std::vector<std::int64_t> iteration, work;
   std::map<std::string, std::vector<std::int64_t>> counts;  // by oracle, of those that were called
+  // By number of workers (kWorkers); empty where the work is more than forward solves.
+  std::map<std::string, std::vector<std::int64_t>> rounds;
   std::vector<Real> wall_seconds, processor_seconds, loss, x_error, gradient_norm, step_norm;
   std::vector<Real> kkt_residual, discrepancy;  // empty without bounds, and without known noise
   // For learning problems, by window: the means over the training batches of the last steps.
@@ -41,8 +43,8 @@ struct Curve {
 struct Hits {
   std::vector<Real> target;
   std::vector<std::int64_t> iteration, work, forwards;
-  std::map<std::string, std::vector<std::int64_t>> counts;  // as the curve's
-  std::vector<Real> wall_seconds;                           // nan: never
+  std::map<std::string, std::vector<std::int64_t>> counts, rounds;  // as the curve's
+  std::vector<Real> wall_seconds;                                   // nan: never
 };
 
 // The path in x and y, at the iterations of the curve; where x and y are small.

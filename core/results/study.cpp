@@ -381,22 +381,36 @@ std::vector<Real> Prices::hit_costs(const Record& record) const {
   return costs;
 }
 
+namespace {
+
+// The columns that have it, of the hits or else of the curve, and the place in them.
+std::pair<bool, std::size_t> place_at(const Record& record, Real work) {
+  const auto is_hit = [&](std::int64_t each) { return Real(each) == work; };  // else one in x
+  const bool is_of_hits =
+      record.hits && !record.hits->counts.empty() && std::ranges::any_of(record.hits->work, is_hit);
+  const std::vector<std::int64_t>& works = is_of_hits ? record.hits->work : record.curve.work;
+  const auto at =
+      std::ranges::find_if(works, [&](std::int64_t each) { return Real(each) >= work; });
+  return {is_of_hits, static_cast<std::size_t>(at - works.begin())};
+}
+
+}  // namespace
+
 OracleCounts counts_at(const Record& record, Real work) {
   OracleCounts counts{};
-  const auto read = [&](const Columns& columns, const std::vector<std::int64_t>& works) {
-    const auto at =
-        std::ranges::find_if(works, [&](std::int64_t each) { return Real(each) >= work; });
-    const auto i = static_cast<std::size_t>(at - works.begin());
-    for (std::size_t kind = 0; kind < kOracles; ++kind)
-      if (const auto* column = column_of(columns, kind); column && i < column->size())
-        counts[kind] = (*column)[i];
-  };
-  const auto is_hit = [&](std::int64_t each) { return Real(each) == work; };  // else one in x
-  if (record.hits && !record.hits->counts.empty() && std::ranges::any_of(record.hits->work, is_hit))
-    read(record.hits->counts, record.hits->work);
-  else
-    read(record.curve.counts, record.curve.work);
+  const auto [is_of_hits, i] = place_at(record, work);
+  const Columns& columns = is_of_hits ? record.hits->counts : record.curve.counts;
+  for (std::size_t kind = 0; kind < kOracles; ++kind)
+    if (const auto* column = column_of(columns, kind); column && i < column->size())
+      counts[kind] = (*column)[i];
   return counts;
+}
+
+Real rounds_at(const Record& record, Real work, std::int64_t workers) {
+  const auto [is_of_hits, i] = place_at(record, work);
+  const Columns& columns = is_of_hits ? record.hits->rounds : record.curve.rounds;
+  const auto column = columns.find(std::to_string(workers));
+  return column != columns.end() && i < column->second.size() ? Real(column->second[i]) : work;
 }
 
 BestKnown::BestKnown(const Study& study) {

@@ -189,6 +189,9 @@ class Prices {
 // The raw counts when the declared work of the run was `work`: of its hit, or, in older records, of
 // the first kept point from there on.
 OracleCounts counts_at(const Record& record, Real work);
+// The rounds of one of kWorkers there; `work` itself of a single worker, and of records without
+// rounds.
+Real rounds_at(const Record& record, Real work, std::int64_t workers);
 
 // The least loss any run of a problem and instance has reached: what distances are measured from
 // where f_L is unknown.

@@ -7,6 +7,7 @@
 
 #include "core/results/statistics.h"
 #include "core/results/study.h"
+#include "core/trace.h"
 #include "reports/sections/sections.h"
 #include "reports/sections/words.h"
 
@@ -93,6 +94,88 @@ Table calls_table(const Comparison& c) {
     add_row(table, c, s, std::move(row));
   }
   table.reading = words("calls.reading", work, cost, priced_unit(c));
+  return table;
+}
+
+// With several workers, the forward solves that a method hands over together share rounds.
+
+namespace {
+
+bool has_rounds(const Comparison& c, std::size_t s) {
+  return std::ranges::all_of(c.order.settings, [&](std::size_t p) {
+    const Cell& cell = c.cell(p, s);
+    return cell.is_measured() && std::ranges::all_of(cell.runs, [&](std::size_t row) {
+             return !c.runs[row].record->curve.rounds.empty();
+           });
+  });
+}
+
+bool shares_rounds(const Comparison& c, std::size_t s) {
+  return std::ranges::any_of(c.order.settings, [&](std::size_t p) {
+    return std::ranges::any_of(c.cell(p, s).runs, [&](std::size_t row) {
+      const Curve& curve = c.runs[row].record->curve;
+      return std::ranges::any_of(curve.rounds, [&](const auto& column) {
+        return column.second.back() < curve.work.back();
+      });
+    });
+  });
+}
+
+// To the tightest tolerance, the median over runs.
+Real median_rounds(const Comparison& c, std::size_t p, std::size_t s, std::int64_t workers) {
+  const Cell& cell = c.cell(p, s);
+  const auto rounds = [&](const Run& run) {
+    const Real work = c.taken(run, Measure::work, kTightest);
+    return work == kNever ? kNever : std::max<Real>(1, rounds_at(*run.record, work, workers));
+  };
+  return c.aggregate(cell.runs, rounds, cell.missing()).median;
+}
+
+}  // namespace
+
+Table rounds_table(const Comparison& c) {
+  std::vector<std::size_t> methods;
+  for (const std::size_t s : c.order.methods)
+    if (has_rounds(c, s)) methods.push_back(s);
+  if (c.order.settings.empty() ||
+      std::ranges::none_of(methods, [&](std::size_t s) { return shares_rounds(c, s); }))
+    return {};
+  Table table = worded_table("rounds", setting_noun(c), tau_name(c));
+  std::vector<std::int64_t> workers(1, 1);
+  workers.insert(workers.end(), kWorkers.begin(), kWorkers.end());
+  std::vector<std::vector<Real>> ratios(workers.size() * methods.size());
+  std::vector<Leading> first(workers.size());
+  for (std::size_t w = 0; w < workers.size(); ++w) {
+    table.columns.push_back(counted(static_cast<std::size_t>(workers[w]), "worker"));
+    for (const std::size_t p : c.order.settings) {
+      std::vector<Real> rounds;
+      for (const std::size_t s : methods) rounds.push_back(median_rounds(c, p, s, workers[w]));
+      const Real least = std::ranges::min(rounds);
+      for (std::size_t i = 0; i < methods.size(); ++i)
+        ratios[w * methods.size() + i].push_back(rounds[i] == kNever ? kNever : rounds[i] / least);
+    }
+  }
+  for (const char* column : {"n", "failed"}) table.columns.emplace_back(column);
+  for (std::size_t i = 0; i < std::min(methods.size(), kMostTableRows); ++i) {
+    const std::size_t s = methods[i];
+    std::vector<Real> calls;
+    for (const std::size_t p : c.order.settings) calls.push_back(median_rounds(c, p, s, 1));
+    std::vector<TableCell> row = {
+        count_cell(calls.size() - static_cast<std::size_t>(std::ranges::count(calls, kNever)))};
+    const Real median = median_of(calls);
+    row.emplace_back(reached_figure(median), TableCell::Numbers{{"median", median}});
+    for (std::size_t w = 0; w < workers.size(); ++w) {
+      const Real ratio = median_of(ratios[w * methods.size() + i]);
+      row.emplace_back(ratio == kNever ? reached_figure(ratio) : multiple(ratio),
+                       TableCell::Numbers{{"median", ratio}});
+      first[w].offer(1 / ratio, optimizer_text(c, s));
+    }
+    row.push_back(count_cell(calls.size()));
+    row.push_back(failed_cell(c, s));
+    add_row(table, c, s, std::move(row));
+  }
+  table.reading =
+      words("rounds.reading", first.front().text(), workers.back(), first.back().text());
   return table;
 }
 

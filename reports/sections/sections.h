@@ -96,6 +96,8 @@ Table data_profile_table(const Comparison& comparison);
 Table simplex_profile_table(const Comparison& comparison);  // of Moré and Wild
 Table restart_table(const Comparison& comparison);
 Table calls_table(const Comparison& comparison);
+// Methods whose work is forward solves only; empty where none of them shares rounds.
+Table rounds_table(const Comparison& comparison);
 Table prices_table(const Comparison& comparison);
 Table certified_table(const Comparison& comparison);  // empty where no run is of NIST's regressions
 // Standard deviations of x, a table per problem, by the best run that keeps them.

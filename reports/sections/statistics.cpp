@@ -23,7 +23,8 @@ constexpr Table (*kTables[])(const Comparison&) = {
     profile_table,        leader_table,   choices_table,      variation_table,
     loss_without_x_table, features_table, fixed_budget_table, discrepancy_table,
     l_curve_table,        size_table,     data_profile_table, simplex_profile_table,
-    restart_table,        calls_table,    prices_table,       certified_table};
+    restart_table,        calls_table,    rounds_table,       prices_table,
+    certified_table};
 constexpr Plots (*kPlots[])(const Comparison&) = {profile_plot, data_profile_plot, runtime_plot,
                                                   noise_plot,   l_curve_plot,      size_plots};
 

@@ -43,13 +43,20 @@ Record sample() {
   record.curve = {.iteration = {0, 1},
                   .work = {0, 2},
                   .counts = {{"forward", {0, 1}}},
+                  .rounds = {{"8", {0, 1}}},
                   .wall_seconds = {0, 0.5},
                   .processor_seconds = {0, 0.25},
                   .loss = {1, INFINITY},
                   .x_error = {NAN, NAN},
                   .gradient_norm = {1, 2},
                   .step_norm = {0, 1}};
-  record.hits = Hits{{1, 0.1}, {0, -1}, {0, -1}, {0, -1}, {{"forward", {0, -1}}}, {0, NAN}};
+  record.hits = Hits{.target = {1, 0.1},
+                     .iteration = {0, -1},
+                     .work = {0, -1},
+                     .forwards = {0, -1},
+                     .counts = {{"forward", {0, -1}}},
+                     .rounds = {{"8", {0, -1}}},
+                     .wall_seconds = {0, NAN}};
   record.trajectory = Trajectory{{{1, 2}, {3, 4}}, {{1}, {-INFINITY}}};
   record.answer = AnswerPoints{
       .unknowns = 2, .points = {kReturned, kBest}, .x = {{1, 0.1}, {3, 4}}, .residual_norm = 0.5};

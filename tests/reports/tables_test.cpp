@@ -32,6 +32,29 @@ TEST(Tables, DataProfileCountsForwardSolvesAndKeepsFailures) {
   EXPECT_EQ(at(table, "a", "n problems"), "3");
 }
 
+// Calls of 60 in batches beside 30 one after the other; a method without rounds stays out.
+TEST(Tables, RoundsChangeTheWinnerWithTheNumberOfWorkers) {
+  const auto run_of = [](const char* optimizer, std::int64_t per_hit, bool is_at_once) {
+    Record record = record_of({.problem = "p", .optimizer = optimizer, .work_per_hit = per_hit});
+    for (const std::int64_t workers : {8, 64})
+      for (const std::int64_t work : record.curve.work)
+        record.curve.rounds[std::to_string(workers)].push_back(
+            is_at_once ? (work + workers - 1) / workers : work);
+    return record;
+  };
+  const Record plain = record_of({.problem = "p", .optimizer = "gd"});
+  const Record batches = run_of("batches", 2, true), single = run_of("single", 1, false);
+  const Table table = rounds_table(Compared({batches, single, plain}));
+  ASSERT_EQ(table.rows.size(), 2U);
+  EXPECT_EQ(at(table, "batches", "calls"), "60");
+  EXPECT_EQ(at(table, "batches", "1 worker"), multiple(2));
+  EXPECT_EQ(at(table, "single", "1 worker"), multiple(1));
+  EXPECT_EQ(at(table, "batches", "8 workers"), multiple(1));
+  EXPECT_EQ(at(table, "single", "8 workers"), multiple(30.0 / 8));
+  EXPECT_EQ(at(table, "single", "64 workers"), multiple(30));
+  EXPECT_EQ(rounds_table(Compared({single, plain})).id, "") << "none shares rounds";
+}
+
 Record regression_of(const char* optimizer, const char* dataset, Index start, Real x_error) {
   Record record = record_of({.problem = "nist", .optimizer = optimizer});
   record.request.problem.options = {{"dataset", std::string(dataset)}, {"start", start}};
