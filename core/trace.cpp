@@ -28,7 +28,8 @@ bool is_flag(const Flag& flag) {
   return byte <= 1;
 }
 
-bool ends(const char (&text)[Trace::kText]) {
+template <std::size_t size>
+bool ends(const char (&text)[size]) {
   return std::memchr(text, '\0', sizeof text) != nullptr;
 }
 
@@ -104,9 +105,18 @@ bool are_spectra_sound(const Trace::Spectra& spectra) {
   return true;
 }
 
+bool are_sound(const FailedEvaluations& failures) {
+  return is_amount(failures.total) && is_within(failures.kept, FailedEvaluations::kMost) &&
+         failures.kept <= failures.total &&
+         is_within(failures.unknowns, FailedEvaluations::kNumbers) &&
+         failures.kept * failures.unknowns <= FailedEvaluations::kNumbers &&
+         std::all_of(failures.reason, failures.reason + failures.kept,
+                     [](const auto& reason) { return ends(reason); });
+}
+
 bool are_texts_sound(const Trace& trace) {
   return ends(trace.series_names) && ends(trace.message) && ends(trace.privileges) &&
-         ends(trace.claimed);
+         ends(trace.claimed) && ends(trace.answer.names);
 }
 
 // As many as there are numbers of a point, and no two alike.
@@ -162,8 +172,10 @@ std::string defect_of(const Trace& trace) {
   if (!is_within(trace.uncertainty.unknowns, Trace::Uncertainty::kUnknowns))
     return "standard deviations of an invalid size";
   if (!is_within(trace.answer.unknowns, Trace::Answer::kUnknowns) ||
-      !is_flag(trace.answer.has_best) || !is_flag(trace.answer.has_returned))
+      !is_flag(trace.answer.has_best) || !is_flag(trace.answer.has_returned) ||
+      !is_flag(trace.answer.is_bounded))
     return "an answer of an invalid size";
+  if (!are_sound(trace.failures)) return "failed evaluations of an invalid number";
   if (!are_texts_sound(trace)) return "an unterminated text";
   if (!are_series_sound(trace)) return "more series than the trace has room for";
   if (!are_amounts(trace.prices) || !is_amount(trace.rejected_steps)) return "invalid counts";

@@ -12,6 +12,7 @@
 #include <string>
 #include <string_view>
 
+#include "core/failures.h"
 #include "core/oracle.h"
 #include "core/status.h"
 
@@ -142,8 +143,13 @@ struct Trace {
     bool has_best = false, has_returned = false;
     double residual_norm;
     double best[kUnknowns], returned[kUnknowns];
+    bool is_bounded = false;
+    double lower[kUnknowns], upper[kUnknowns];  // infinite where there is no bound
+    static constexpr int kNames = 16 * 1024;
+    char names[kNames] = "";  // of the unknowns: NAME, tab, UNIT, a line each; empty: x1, x2, …
   };
   Answer answer;
+  FailedEvaluations failures;
 };
 
 // The part that fits, cut at a character.

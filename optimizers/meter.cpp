@@ -24,6 +24,26 @@ bool is_within(const problems::Refinement::State& state, const problems::Refinem
          state.iterations <= (of ? of->most : 1);
 }
 
+// "NAME tab UNIT" of each unknown, a line each; empty where the problem declares neither.
+std::string names_text(const Problem& problem) {
+  const std::vector<std::string>&names = problem.names(), &units = problem.units();
+  const auto n = static_cast<std::size_t>(problem.unknowns());
+  require((names.empty() || names.size() == n) && (units.empty() || units.size() == n), [&] {
+    return fmt::format("the problem has {} unknowns, but declares {} names and {} units", n,
+                       names.size(), units.size());
+  });
+  std::string text;
+  for (std::size_t i = 0; i < n && !(names.empty() && units.empty()); ++i)
+    text += fmt::format("{}\t{}\n",
+                        names.empty() || names[i].empty() ? fmt::format("x{}", i + 1) : names[i],
+                        units.empty() ? "" : units[i]);
+  require(text.size() < Trace::Answer::kNames, [&] {
+    return fmt::format("the names and units of the unknowns have {} bytes, but at most {} fit",
+                       text.size(), Trace::Answer::kNames - 1);
+  });
+  return text;
+}
+
 }  // namespace
 
 Meter::Meter(const Problem& problem, const Budget& budget, OracleSet granted, Trace& trace)
@@ -65,6 +85,7 @@ Meter::Meter(const Problem& problem, const Budget& budget, OracleSet granted, Tr
   const bool is_kept = problem.has_identity_network() && !problem.is_learned() &&
                        problem.unknowns() <= Trace::Answer::kUnknowns;
   trace_.answer.unknowns = is_kept ? static_cast<int>(problem.unknowns()) : 0;
+  if (is_kept) describe_unknowns();
   const bool is_small = problem.inputs() <= Trace::kInputs &&
                         problem.residuals() <= Trace::kOutputs && problem.samples() == 1;
   trace_.path_inputs = is_small ? static_cast<int>(problem.inputs()) : 0;
@@ -508,6 +529,16 @@ void Meter::keep_spectrum(bool is_last) {
   std::copy_n(sigma.data(), sigma.size(), kept.sigma[kept.taken]);
   kept.iteration[kept.taken] = iteration_;
   ++kept.taken;
+}
+
+void Meter::describe_unknowns() {
+  Trace::Answer& kept = trace_.answer;
+  kept.names[names_text(problem_).copy(kept.names, Trace::Answer::kNames - 1)] = '\0';
+  const problems::Bounds* const bounds = problem_.bounds();
+  kept.is_bounded = bounds != nullptr;
+  if (bounds == nullptr) return;
+  std::ranges::copy(bounds->lower, kept.lower);
+  std::ranges::copy(bounds->upper, kept.upper);
 }
 
 void Meter::keep_returned() {

@@ -229,6 +229,7 @@ class Meter {
     std::copy_n(theta.data(), kept.unknowns, kept.best);
     kept.has_best = true;
   }
+  void describe_unknowns();
   void keep_returned();
   void reach(Real loss);          // records the targets that `loss` meets
   void measure(VectorRef theta);  // fills trace_.last, off the clock

@@ -148,7 +148,7 @@ class Featured final : public Physics {
     inside_->forward(in.x, c, y.topRows(m()), in);
     w.as<Inside>().has_failed = layers_.hold(in.x.col(0));
     if (has_failed(w)) {
-      failed_evaluations().add(z.col(0), "x lies in a layer of fail=");
+      add_failure({z.data(), static_cast<std::size_t>(z.rows())}, "x lies in a layer of fail=");
       y.setConstant(kNaN);
       return;
     }
@@ -257,6 +257,7 @@ void wrap(ProblemParts& parts, Map map, FailingLayers layers, const Features& fe
       if (in_x.truth.size() > 0) in_x.truth = to.to_x(batch.truth);
       return inner(to.to_x(z), in_x);
     };
+  if (!to.is_identity()) parts.names = parts.units = {};
   const Index rows = parts.penalties = physics->penalties();
   if (rows > 0) {
     parts.target.conservativeResize(parts.target.rows() + rows, Eigen::NoChange);

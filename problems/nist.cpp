@@ -163,6 +163,8 @@ ProblemParts make_nist(const Nist& o, const Draw& draw) {
   // which attains 4e-21 there.
   constexpr Real kDigits = 1e-10, kRounding = 1e-20;
   const Real minimum = real_of(set.at("rss")) / 2;
+  std::vector<std::string> names;  // as NIST has them
+  for (Index i = 1; i <= certified.size(); ++i) names.push_back("b" + std::to_string(i));
   return {
       .physics = std::make_unique<JetPhysics<Regression>>(Regression{*found, std::move(x)},
                                                           certified.size(), m),
@@ -172,6 +174,7 @@ ProblemParts make_nist(const Nist& o, const Draw& draw) {
       .minimum = minimum,
       .minimum_error = kDigits * minimum + kRounding,
       .truth = certified,
+      .names = std::move(names),
       .x_error = [certified](BatchRef b, const Batch&) {
         return ((b.col(0) - certified).array() / certified.array()).abs().maxCoeff();
       }};

@@ -118,6 +118,8 @@ struct ProblemParts {
   std::optional<Jitter> jitter = {};  // of the calls
   Index penalties = 0;                // last rows of y that are no data, but a penalty
   std::optional<Bounds> bounds;       // on θ = x of a direct problem
+  // Of the unknowns of a direct problem, such as "k" and "N/m", (n); empty: x1, x2, …, no units.
+  std::vector<std::string> names = {}, units = {};
   // Distance from x to the nearest solution, the mean over samples, where solutions are known.
   std::function<Real(BatchRef x, const Batch& batch)> x_error;
   std::optional<Real> x_scale;  // ‖x*‖, for targets in x; found by Problem::x_scale where empty
@@ -169,6 +171,8 @@ class Problem {
   Real discrepancy(const Point& at) const {  // ‖y − y*‖ of the data
     return (at.y - at.batch->target).topRows(outputs() - parts_.penalties).norm();
   }
+  const std::vector<std::string>& names() const { return parts_.names; }  // (n), or empty
+  const std::vector<std::string>& units() const { return parts_.units; }  // (n), or empty
   const Bounds* bounds() const { return parts_.bounds ? &*parts_.bounds : nullptr; }
   const auto& window() const { return parts_.window; }
   const auto& y_window() const { return parts_.y_window; }

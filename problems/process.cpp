@@ -239,11 +239,14 @@ class ProcessPhysics final : public ByJacobian {
         session_->call(verb, point.number, std::span(&numbers, 1), {to, count}, prepare);
     if (is_forward) point.has_failed = !why.empty();
     if (!why.empty()) {
-      failed_evaluations().add((bounds_ ? point.within : w.x).reshaped(),
-                               is_forward ? why : fmt::format("{}: {}", name_of(verb), why));
+      add_failure(numbers_of(bounds_ ? point.within : w.x),
+                  is_forward ? why : fmt::format("{}: {}", name_of(verb), why));
       answer.setConstant(kNaN);
-    } else if (!is_direct)
-      answer = point.out;
+      return;
+    }
+    if (!is_direct) answer = point.out;
+    if (is_forward && !answer.allFinite())
+      add_failure(numbers_of(bounds_ ? point.within : w.x), "y is not finite");
   }
 
   // The forward pass again, in a program that was started since.
@@ -280,6 +283,8 @@ ProblemParts process_parts(const ProblemHandshake& said, const std::shared_ptr<S
                      .aim = said.aim,
                      .minimum = said.minimum};
   if (!said.drawn.empty()) parts.start = Start(vector_of(said.drawn), standard);
+  parts.names = said.names;
+  parts.units = said.units;
   parts.bounds = bounds_of(said);  // a sampled start outside of them is moved to the nearest point
   if (said.x_floor > 0) parts.x_floor = [floor = said.x_floor](const Batch&) { return floor; };
   if (said.has_x_error)

@@ -42,7 +42,8 @@ inline void trim_for_report(Record& record, bool is_claimed) {
     shorten(hits.target, hits.iteration, hits.work, hits.wall_seconds);
     for (auto& [oracle, column] : hits.counts) shorten(column);
   }
-  drop(record.verified, record.found, record.repeat_wall_seconds, record.build_parts);
+  drop(record.verified, record.found, record.repeat_wall_seconds, record.build_parts,
+       record.failures);
   if (!is_claimed) drop(record.curve.gradient_norm, record.curve.step_norm);
 }
 

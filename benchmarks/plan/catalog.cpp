@@ -352,24 +352,6 @@ Problem make_problem(const Catalog& catalog, const Component& problem, std::uint
   return made;
 }
 
-std::vector<std::string> active_bounds(const Catalog& catalog, const Component& problem,
-                                       std::uint64_t seed, std::span<const Real> x) try {
-  std::vector<std::string> active;
-  if (problem.foreign || !catalog.problems.contains(problem.name)) return active;
-  const Problem made = make_problem(catalog, problem, seed);
-  const problems::Bounds* bounds = made.bounds();
-  if (bounds == nullptr || made.unknowns() != static_cast<Index>(x.size())) return active;
-  for (Index i = 0; i < made.unknowns(); ++i) {
-    const Real value = x[static_cast<std::size_t>(i)];
-    active.emplace_back(value <= bounds->lower[i]   ? "lower"
-                        : value >= bounds->upper[i] ? "upper"
-                                                    : "");
-  }
-  return active;
-} catch (const UsageError&) {  // this program no longer has its options, or its files
-  return {};
-}
-
 bool declares_minimum(const Catalog& catalog, const Component& problem, std::uint64_t seed) {
   return made_without_best(catalog, problem, seed).minimum().has_value();
 }

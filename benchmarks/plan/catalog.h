@@ -58,10 +58,6 @@ OptimizerEntry entry_of(const Catalog& catalog, const std::string& optimizer,
 
 // With the best loss known for f_L, where it declares none.
 Problem make_problem(const Catalog& catalog, const Component& problem, std::uint64_t seed);
-// For each of the unknowns x "lower" or "upper", if it lies on such a bound, else ""; empty for
-// problems without bounds, and for those of other programs, which are not started for this.
-std::vector<std::string> active_bounds(const Catalog& catalog, const Component& problem,
-                                       std::uint64_t seed, std::span<const Real> x);
 bool declares_minimum(const Catalog& catalog, const Component& problem, std::uint64_t seed);
 
 // The files of the tree, by name without ".json".

@@ -37,15 +37,20 @@ namespace {
 
 volatile std::sig_atomic_t stop_requested = 0;
 
+// The message of a run that says nothing else: how many evaluations failed, and the first of them.
 void note_failures(Trace& trace) {
-  const FailedEvaluations& failed = failed_evaluations();
+  const FailedEvaluations& failed = trace.failures;
   if (failed.total == 0 || trace.message[0] != '\0') return;
-  const std::span<const Real> x(failed.first_x.data(),
-                                std::min<std::size_t>(failed.first_x.size(), 8));
+  constexpr std::size_t kShown = 8;
+  const std::span<const double> x = failed.point(0);
   set_text(trace.message,
-           fmt::format("{} evaluation{} failed, the first at x = ({:.10g}{}): {}", failed.total,
-                       failed.total == 1 ? "" : "s", fmt::join(x, ", "),
-                       failed.first_x.size() > 8 ? ", …" : "", failed.first_reason));
+           fmt::format("{} evaluation{} failed, the first{}{:.10g}{}: {}", failed.total,
+                       failed.total == 1 ? "" : "s", x.empty() ? "" : " at x = (",
+                       fmt::join(x.first(std::min(x.size(), kShown)), ", "),
+                       x.empty()           ? ""
+                       : x.size() > kShown ? ", …)"
+                                           : ")",
+                       failed.reason[0]));
 }
 
 void run(const Catalog& catalog, const Request& request, Trace& trace, Checkpoint& checkpoint,
@@ -65,7 +70,7 @@ void run(const Catalog& catalog, const Request& request, Trace& trace, Checkpoin
   if (returned && returned->size() > 0) start = *returned;
   if (perturbation != 0) start = perturbed_start(std::move(start), request, perturbation);
   checkpoint.watch(trace, request.budget);
-  failed_evaluations() = {};
+  const FailureSink sink(trace.failures);
   const Vector theta = drive(*method, meter, std::move(start), checkpoint);
   note_failures(trace);
   if (trace.status == Status::budget && !trace.stopped_by_clock) checkpoint.keep_end();
@@ -175,8 +180,32 @@ std::optional<AnswerPoints> answer_of(const Trace& trace) {
   const bool is_returned_best = kept.has_returned && trace.last.loss <= trace.best_loss;
   if (kept.has_best && !is_returned_best) add(kBest, kept.best);
   if (kept.unknowns == 0 || answer.points.empty()) return std::nullopt;
+  const std::vector<std::string> lines = lines_of(kept.names);
+  for (const std::string& line : lines) {
+    if (std::ssize(lines) != kept.unknowns) break;
+    const std::size_t tab = std::min(line.find('\t'), line.size());
+    answer.names.push_back(line.substr(0, tab));
+    answer.units.push_back(line.substr(std::min(tab + 1, line.size())));
+  }
+  if (std::ranges::all_of(answer.units, &std::string::empty)) answer.units.clear();
+  const std::vector<Real>& x = answer.x.back();  // of least loss
+  for (int i = 0; kept.is_bounded && i < kept.unknowns; ++i) {
+    const Real value = x[static_cast<std::size_t>(i)];
+    if (value <= kept.lower[i]) answer.at_lower.push_back(i);
+    if (value >= kept.upper[i]) answer.at_upper.push_back(i);
+  }
   if (answer.x[0].size() > AnswerPoints::kInline) answer.digest = digest(answer_file(answer));
   return answer;
+}
+
+std::optional<Failures> failures_of(const FailedEvaluations& kept) {
+  if (kept.total == 0) return std::nullopt;
+  Failures failures{.total = kept.total};
+  for (int i = 0; i < kept.kept; ++i) {
+    failures.x.emplace_back(kept.point(i).begin(), kept.point(i).end());
+    failures.reasons.push_back(valid_utf8(kept.reason[i]));
+  }
+  return failures;
 }
 
 Curve curve_of(const Trace& trace) {
@@ -500,6 +529,7 @@ Record record_of(const Request& request, const Trace& trace) {
   if (trace.spectra.are_wanted) record.spectrum = spectrum_of(trace.spectra);
   record.uncertainty = uncertainty_of(trace.uncertainty);
   record.answer = answer_of(trace);
+  record.failures = failures_of(trace.failures);
   record.privileges = lines_of(trace.privileges);
   record.foreign = {request.problem.foreign, request.optimizer.foreign};
   record.is_nondeterministic = trace.stopped_by_clock || record.status == Status::timeout ||

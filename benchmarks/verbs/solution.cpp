@@ -11,7 +11,6 @@
 
 #include "benchmarks/cli/terminal.h"
 #include "benchmarks/cli/verb.h"
-#include "benchmarks/plan/catalog.h"
 #include "core/errors.h"
 #include "core/json.h"
 #include "core/output.h"
@@ -49,9 +48,8 @@ void declare(VerbArguments& verb, SolutionArguments& given) {
 struct Solution {
   const Record* record = nullptr;
   AnswerPoints answer = {};
-  std::vector<std::string> active = {};  // (n), "lower" or "upper"; empty without such bounds
-  std::size_t others = 0;                // runs that reach its loss at another point
-  Real distance = 0;                     // to the farthest of those points
+  std::size_t others = 0;  // runs that reach its loss at another point
+  Real distance = 0;       // to the farthest of those points
 
   Real loss() const {
     const Summary& summary = record->summary;
@@ -96,8 +94,7 @@ void compare_with(const Solution& other, Solution& solution) {
 }
 
 // The run of least loss of each problem, among those that are wanted.
-std::vector<Solution> solutions_of(const results::Study& study, const SolutionArguments& given,
-                                   const Catalog& catalog) {
+std::vector<Solution> solutions_of(const results::Study& study, const SolutionArguments& given) {
   std::vector<Solution> all, chosen;
   for (const Record& record : study.runs)
     if (record.answer && (given.problem.empty() || is_named(record.request.problem, given.problem)))
@@ -118,19 +115,9 @@ std::vector<Solution> solutions_of(const results::Study& study, const SolutionAr
       *same = each;
   }
   for (Solution& solution : chosen) {
-    const Request& request = solution.record->request;
-    solution.active = active_bounds(catalog, request.problem, request.seed, solution.point());
     for (const Solution& other : all) compare_with(other, solution);
   }
   return chosen;
-}
-
-// With the active bounds, if there are any.
-std::vector<reports::AnswerColumn> columns_of(const Solution& solution, const char* number_format) {
-  auto columns = reports::answer_columns(*solution.record, solution.answer, number_format);
-  if (std::ranges::any_of(solution.active, [](const auto& text) { return !text.empty(); }))
-    columns.push_back({"active bound", solution.active});
-  return columns;
 }
 
 std::string table_text(const Solution& solution) {
@@ -144,7 +131,7 @@ std::string table_text(const Solution& solution) {
   if (solution.answer.residual_norm)
     text += fmt::format(", ‖y − y*‖ {:.6g}", *solution.answer.residual_norm);
   text += "\n";
-  const auto columns = columns_of(solution, "{:.10g}");
+  const auto columns = reports::answer_columns(record, solution.answer, "{:.10g}");
   const std::size_t rows = columns[0].texts.size(), shown = std::min(rows, kMostRows);
   for (std::size_t row = 0; row <= shown; ++row) {
     for (const reports::AnswerColumn& column : columns) {
@@ -162,22 +149,27 @@ std::string table_text(const Solution& solution) {
         "one solution, or the loss does not determine x.\n",
         reports::counted(solution.others, "run"), solution.others == 1 ? "is" : "are",
         solution.distance);
+  if (const auto& failures = record.failures)
+    text +=
+        fmt::format("  {} failed, the first with: {}. The record lists x and the reasons.\n",
+                    reports::counted(static_cast<std::size_t>(failures->total), "evaluation"),
+                    failures->reasons.empty() ? "" : reports::terminal_text(failures->reasons[0]));
   return text + fmt::format("  {}\n", reports::rerun_command(request));
 }
 
 std::string csv_text(const std::vector<Solution>& solutions) {
   std::string text =
-      "problem,optimizer,seed,unknown,returned,standard deviation,best,active bound\n";
+      "problem,optimizer,seed,unknown,unit,returned,standard deviation,best,active bound\n";
   for (const Solution& solution : solutions) {
     const Request& request = solution.record->request;
-    const auto columns = columns_of(solution, "{}");
+    const auto columns = reports::answer_columns(*solution.record, solution.answer, "{}");
     for (std::size_t i = 0; i < columns[0].texts.size(); ++i) {
       text += fmt::format("{},{},{}", reports::exact_csv_field(request.problem.spec),
                           reports::exact_csv_field(request.optimizer.spec), request.seed);
       for (const char* name :
-           {"unknown", "returned", "standard deviation", "best", "active bound"}) {
+           {"unknown", "unit", "returned", "standard deviation", "best", "active bound"}) {
         const auto column = std::ranges::find(columns, name, &reports::AnswerColumn::name);
-        text += "," + (column == columns.end() ? "" : column->texts[i]);
+        text += "," + (column == columns.end() ? "" : reports::exact_csv_field(column->texts[i]));
       }
       text += "\n";
     }
@@ -196,14 +188,17 @@ Json to_json(const Solution& solution) {
             {"command", reports::rerun_command(record.request)},
             {"record", record.file_name()}};
   for (std::size_t i = 0; i < solution.point().size(); ++i)
-    json["unknowns"].push_back(fmt::format("x{}", i + 1));
+    json["unknowns"].push_back(solution.answer.name(i));
   const auto add = [&](const char* name, std::span<const Real> values) {
     if (!values.empty()) json[name] = json_numbers(values);
   };
   add("returned", solution.answer.point(kReturned));
   add("best", solution.answer.point(kBest));
   add("standard_deviation", solution.deviations());
-  if (!solution.active.empty()) json["active_bounds"] = solution.active;
+  if (!solution.answer.units.empty()) json["units"] = solution.answer.units;
+  for (std::size_t i = 0; solution.answer.is_bound_active() && i < solution.point().size(); ++i)
+    json["active_bounds"].push_back(solution.answer.bound(i));
+  if (record.failures) json["failed_evaluations"] = record.failures->total;
   if (solution.answer.residual_norm)
     json["residual_norm"] = json_number(*solution.answer.residual_norm);
   return json;
@@ -222,12 +217,12 @@ std::string text_of(const std::vector<Solution>& solutions, const std::string& f
   return text;
 }
 
-int run(const SolutionArguments& given, Session& session) {
+int run(const SolutionArguments& given, Session&) {
   require(given.format != "npy" || !given.out.empty(),
           "--format npy writes a binary file: name it with --out x.npy");
   const results::Study study =
       results::read_study(given.folders, progress_on_terminal("reading records"));
-  const std::vector<Solution> solutions = solutions_of(study, given, session.catalog());
+  const std::vector<Solution> solutions = solutions_of(study, given);
   require(!solutions.empty(), [&] {
     return fmt::format(
         "no record of {}{} in {} contains an x; records of network training, and those that "

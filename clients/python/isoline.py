@@ -442,6 +442,8 @@ def problem(
     minimum=None,
     bounds=None,
     active_bounds=False,
+    names=None,
+    units=None,
     aim=None,
     name=None,
     note=None,
@@ -464,6 +466,8 @@ def problem(
     bounds=(lower, upper): numbers or lists; Isoline does not call forward outside them.
     active_bounds=True: the solution may lie on a bound; other methods than those that respect
         bounds do not apply.
+    names, units: of the unknowns, such as ["k", "c"] and ["N/m", "kg/s"], where reports show x. The
+        names of a command are those of its template.
     aim="x": the success criterion is the error in x, not the loss.
     start_scale="own": the unknowns of random starts have a standard deviation of a tenth of |start|,
     instead of a tenth of max(1, |start|).
@@ -477,6 +481,9 @@ def problem(
         if minimum is not None and not abs(float(minimum)) < float("inf"):
             raise Refused(f"minimum must be a finite number, got {minimum}")
         products = _products_of(forward, start, vjp, jvp, jacobian, differences)
+        if names is None and isinstance(forward, command):
+            names = forward.names
+        names, units = _labels(names, len(start), "names"), _labels(units, len(start), "units")
         y = _Point(products, start).y
         if target is None and truth is not None:
             target = _Point(products, _vector(_column(truth, "truth"))).y
@@ -511,10 +518,21 @@ def problem(
             "x_floor": x_floor,
             "bounds": None if bounds is None else [_bound(side, start) for side in bounds],
             "active_bounds": bool(active_bounds),
+            "names": names,
+            "units": units,
             "aim": aim,
         },
     )
     _serve(line, products, inverse, x_error, len(start), len(y))
+
+
+def _labels(given, count, what):
+    """One text for each unknown, as names and units are."""
+    if given is None:
+        return None
+    if isinstance(given, str) or len(given) != count:
+        raise Refused(f"{what} must be a list with a text for each of the {count} numbers of start, got {given!r}")
+    return [str(each or "") for each in given]
 
 
 class command:

@@ -189,6 +189,23 @@ class Said {
     table.erase(table.begin(), table.begin() + static_cast<std::ptrdiff_t>(ours));
     return table;
   }
+  // One text for each unknown; none where the member is absent.
+  std::vector<std::string> labels(const char* name, std::int64_t count) const {
+    if (!has(name)) return {};
+    const std::string law =
+        fmt::format("a list of {} strings of at most {} bytes each, without tabs and line ends",
+                    count, kMostName);
+    const Json& list = json_[name];
+    if (!list.is_array() || std::ssize(list) != count) refuse(name, law);
+    std::vector<std::string> all;
+    for (const Json& each : list) {
+      if (!each.is_string()) refuse(name, law);
+      all.push_back(each.get<std::string>());
+      if (all.back().size() > kMostName || all.back().find_first_of("\t\n\r") != std::string::npos)
+        refuse(name, law);
+    }
+    return all;
+  }
   // The lower ones, and the upper ones; both empty where there are none.
   std::pair<std::vector<Real>, std::vector<Real>> bounds(std::int64_t count) const {
     const char* name = "bounds";
@@ -306,6 +323,8 @@ ProblemHandshake problem_handshake(const std::string& text, const std::string& s
   problem.truth = said.numbers("truth", problem.inputs, false);
   std::tie(problem.lower, problem.upper) = said.bounds(problem.inputs);
   problem.has_active_bounds = said.flag("active_bounds");
+  problem.names = said.labels("names", problem.inputs);
+  problem.units = said.labels("units", problem.inputs);
   const auto require_within = [&](const char* name, const std::vector<Real>& x) {
     require(is_within(x, problem),
             [&] { return fmt::format("{} declares a {} outside its bounds", sender, name); });

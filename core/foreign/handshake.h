@@ -98,7 +98,8 @@ struct ProblemHandshake {
   std::vector<Real> truth;          // x*, where it knows it
   std::vector<Real> lower, upper;   // bounds on x (k), where it has any
   bool has_active_bounds = false;   // the solution may lie on one
-  std::optional<Real> minimum;      // f_L, if known
+  std::vector<std::string> names, units;  // of the unknowns (k), where it declares them
+  std::optional<Real> minimum;            // f_L, if known
   Aim aim = Aim::loss;
   bool has_own_scale = false;  // sampled starts differ by a tenth of each unknown
   bool has_x_error = false;    // it knows the distance from the nearest solution

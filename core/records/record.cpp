@@ -45,6 +45,10 @@ void require_equal_columns(const Record& record) {
   if (record.trajectory) of_curve(record.trajectory->x, record.trajectory->y);
   if (record.fields) require_sound(*record.fields);
   if (record.answer) require_sound(*record.answer);
+  if (const auto& failures = record.failures)
+    require(failures->x.size() == failures->reasons.size() &&
+                std::ssize(failures->x) <= failures->total,
+            "the numbers of its failed evaluations and of their reasons differ");
   if (record.spectrum)
     require(record.spectrum->iterations.size() == record.spectrum->sigma.size(),
             "the numbers of its spectra and of their iterations differ");
@@ -238,7 +242,15 @@ void fields(Like<FieldFrames> auto& frames, auto& field) {
 
 void fields(Like<AnswerPoints> auto& answer, auto& field) {
   field("unknowns", answer.unknowns, kCountLaw);
+  field.optional("names", answer.names,
+                 R"({"description": "Of the unknowns; x1, x2, … if absent"})");
+  field.optional("units", answer.units,
+                 R"({"description": "Of the unknowns; an empty text if one has no unit"})");
   field("points", answer.points, R"({"items": {"enum": ["returned", "best"]}})");
+  field.optional("at_lower", answer.at_lower,
+                 R"({"description": "Unknowns on their lower bound, from 0, where L is least"})");
+  field.optional("at_upper", answer.at_upper,
+                 R"({"description": "Unknowns on their upper bound, from 0, where L is least"})");
   field.optional("digest", answer.digest,
                  R"({"pattern": "^[0-9a-f]{16}$", "description": "Of the file with the numbers"})");
   using Field = std::remove_cvref_t<decltype(field)>;
@@ -249,6 +261,13 @@ void fields(Like<AnswerPoints> auto& answer, auto& field) {
   field.optional("x", answer.x, R"({"description": "A list for each of the points"})");
   field.optional("residual_norm", answer.residual_norm,
                  R"({"description": "‖y − y*‖ at the returned point"})");
+}
+
+void fields(Like<Failures> auto& failures, auto& field) {
+  field("total", failures.total, kCountLaw);
+  field("x", failures.x,
+        R"({"description": "Of the first ones, at most 1,000; empty if it is too long"})");
+  field("reasons", failures.reasons, R"({"description": "Of each x"})");
 }
 
 void fields(Like<Spectrum> auto& spectrum, auto& field) {
@@ -334,6 +353,7 @@ void fields(Like<Record> auto& record, auto& field) {
                  R"({"description": "Of a least-squares solution: x and its covariance"})");
   field.optional("answer", record.answer,
                  R"({"description": "θ = x of a direct problem, as returned and of least loss"})");
+  field.optional("failures", record.failures, R"({"description": "Evaluations that failed"})");
   field("privileges", record.privileges);
   field.optional("foreign", record.foreign,
                  R"({"description": "Components that other programs computed"})");
@@ -397,6 +417,7 @@ Json result_of(const Json& record) {
 Json without_timings(Json record) {
   record.erase("repeat_wall_seconds");
   record.erase("output");  // may hold addresses and times
+  if (record.contains("failures")) record["failures"].erase("reasons");  // as these
   record.erase("fields");
   record.erase("spectrum");
   record.at("provenance").erase(kRunKey);  // start time, concurrent jobs, exclusive
@@ -513,6 +534,12 @@ void require_sound(const AnswerPoints& answer) {
                           [](const auto& name) { return name == kReturned || name == kBest; }) &&
       (answer.points.size() == 1 || answer.points[0] != answer.points[1]);
   require(answer.unknowns > 0 && are_named, "its answer has no unknowns or unknown points");
+  for (const auto* texts : {&answer.names, &answer.units})
+    require(texts->empty() || std::ssize(*texts) == answer.unknowns,
+            "the names or units of its unknowns differ in number from the unknowns");
+  for (const auto* places : {&answer.at_lower, &answer.at_upper})
+    for (const Index i : *places)
+      require(i >= 0 && i < answer.unknowns, "an unknown on a bound does not exist");
   if (answer.is_in_file()) return;
   const bool are_all_there =
       answer.x.size() == answer.points.size() && std::ranges::all_of(answer.x, [&](const auto& x) {

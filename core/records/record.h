@@ -2,6 +2,7 @@
 // file each. Reports read nothing else about a run.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <filesystem>
 #include <map>
@@ -120,8 +121,12 @@ struct Uncertainty {
 struct AnswerPoints {
   static constexpr std::size_t kInline = 1000;
   Index unknowns = 0;
-  std::vector<std::string> points = {};    // kReturned, kBest or both
-  std::vector<std::vector<Real>> x = {};   // (points, unknowns); empty where the file has them
+  std::vector<std::string> names = {};    // (unknowns); empty: x1, x2, …
+  std::vector<std::string> units = {};    // (unknowns), each may be empty; empty: none has one
+  std::vector<std::string> points = {};   // kReturned, kBest or both
+  std::vector<std::vector<Real>> x = {};  // (points, unknowns); empty where the file has them
+  // Unknowns, from 0, that lie on such a bound at the point of least loss.
+  std::vector<Index> at_lower = {}, at_upper = {};
   std::optional<Real> residual_norm = {};  // ‖y − y*‖ at the returned point
   std::string digest = {};                 // of the file, if there is one
 
@@ -132,6 +137,17 @@ struct AnswerPoints {
     return {};
   }
   bool is_in_file() const { return !digest.empty(); }
+  std::string name(std::size_t i) const {
+    return i < names.size() ? names[i] : "x" + std::to_string(i + 1);
+  }
+  std::string unit(std::size_t i) const { return i < units.size() ? units[i] : ""; }
+  bool is_bound_active() const { return !at_lower.empty() || !at_upper.empty(); }
+  const char* bound(std::size_t i) const {  // "lower" or "upper", if x lies on one
+    const auto has = [&](const std::vector<Index>& all) {
+      return std::find(all.begin(), all.end(), static_cast<Index>(i)) != all.end();
+    };
+    return has(at_lower) ? "lower" : has(at_upper) ? "upper" : "";
+  }
 };
 inline constexpr const char *kReturned = "returned", *kBest = "best";
 void require_sound(const AnswerPoints& answer);       // UsageError where sizes or names disagree
@@ -142,6 +158,14 @@ inline std::filesystem::path answer_path(std::filesystem::path record) {
 // The numbers out of the file, if there is one; UsageError, naming it, where it is missing, is
 // damaged or is another run's.
 void read_answer_numbers(AnswerPoints& answer, const std::filesystem::path& path);
+
+// Evaluations that failed, because the simulator did or its y was not finite: how many, and of the
+// first ones x and the reason.
+struct Failures {
+  std::int64_t total = 0;
+  std::vector<std::vector<Real>> x = {};
+  std::vector<std::string> reasons = {};  // one for each x
+};
 
 // The parts of a run that other programs computed.
 struct ForeignParts {
@@ -199,6 +223,7 @@ struct Record {
   Provenance provenance;
   std::optional<Imported> imported;    // of a run that others made: its figures are their claims
   std::optional<AnswerPoints> answer;  // of a direct problem
+  std::optional<Failures> failures;    // where any evaluation failed
 
   std::string file_name() const { return record_file_name(cell, build); }
 };

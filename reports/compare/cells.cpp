@@ -109,7 +109,7 @@ void add_figures(ComparedCell& cell, const Record& record) {
 // The path is compared apart, to state which values differ. What follows from it is not.
 void add_digests(ComparedCell& cell, const Record& record) {
   Json json = result_of(to_json(record));
-  for (const char* known : {"build", "build_parts", "cell", "schema", "answer"})
+  for (const char* known : {"build", "build_parts", "cell", "schema", "answer", "failures"})
     json.erase(known);
   Json path = Json::object();
   for (const char* name : {"curve", "trajectory", "series", "exhibit", "hits"})

@@ -20,10 +20,13 @@ std::vector<AnswerColumn> answer_columns(const Record& record, const AnswerPoint
         [&](std::size_t i) { return fmt::format(fmt::runtime(number_format), values[i]); });
   };
   const auto n = static_cast<std::size_t>(answer.unknowns);
-  add("unknown", n, [](std::size_t i) { return fmt::format("x{}", i + 1); });
+  add("unknown", n, [&](std::size_t i) { return answer.name(i); });
+  add("unit", answer.units.size(), [&](std::size_t i) { return answer.unit(i); });
   add_numbers("returned", answer.point(kReturned));
   if (record.uncertainty) add_numbers("standard deviation", record.uncertainty->standard_deviation);
   add_numbers("best", answer.point(kBest));
+  add("active bound", answer.is_bound_active() ? n : 0,
+      [&](std::size_t i) { return answer.bound(i); });
   return columns;
 }
 

@@ -8,8 +8,8 @@
 
 namespace isoline::reports {
 
-// The x of a run as columns: "unknown", then those of "returned", "standard deviation" and "best"
-// that it has.
+// The x of a run as columns: "unknown", then those of "unit", "returned", "standard deviation",
+// "best" and "active bound" that it has.
 struct AnswerColumn {
   std::string name;
   std::vector<std::string> texts;  // (unknowns)

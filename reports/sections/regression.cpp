@@ -109,8 +109,18 @@ Table certified_table(const Comparison& c) {
 
 namespace {
 
+std::string name_of_unknown(const Record& record, std::size_t i) {
+  return record.answer ? record.answer->name(i) : AnswerPoints().name(i);
+}
+
+std::string name_with_unit(const Record& record, std::size_t i) {  // "k [N/m]"
+  const std::string unit = record.answer ? record.answer->unit(i) : "";
+  return name_of_unknown(record, i) + (unit.empty() ? "" : fmt::format(" [{}]", unit));
+}
+
 // "-0.99 with x3"
-TableCell strongest_cell(const std::vector<Real>& correlations, std::size_t i) {
+TableCell strongest_cell(const Record& record, std::size_t i) {
+  const std::vector<Real>& correlations = record.uncertainty->correlation[i];
   std::size_t strongest = i;
   Real most = 0;
   for (std::size_t j = 0; j < correlations.size(); ++j)
@@ -119,7 +129,8 @@ TableCell strongest_cell(const std::vector<Real>& correlations, std::size_t i) {
       most = correlations[j];
     }
   if (strongest == i) return "";
-  return {words("uncertainty.strongest", figure(most), strongest + 1), {{"correlation", most}}};
+  return {words("uncertainty.strongest", figure(most), name_of_unknown(record, strongest)),
+          {{"correlation", most}}};
 }
 
 }  // namespace
@@ -130,16 +141,17 @@ std::vector<Table> uncertainty_tables(const Comparison& c) {
     for (const std::size_t s : ranking(c, p)) {
       const Cell& cell = c.cell(p, s);
       if (cell.runs.empty()) continue;
-      const std::optional<Uncertainty>& known = c.runs[cell.runs[0]].record->uncertainty;
+      const Record& record = *c.runs[cell.runs[0]].record;
+      const std::optional<Uncertainty>& known = record.uncertainty;
       if (!known) continue;
       Table table = worded_table("uncertainty", problem_name(c.problems[p]));
       table.id += fmt::format("-{}", p);
       table.topic = {.optimizer = s, .problem = p};
       table.is_folded = true;
       for (std::size_t i = 0; i < known->x.size(); ++i)
-        table.rows.push_back({fmt::format("x{}", i + 1), number_cell("x", known->x[i]),
+        table.rows.push_back({name_with_unit(record, i), number_cell("x", known->x[i]),
                               number_cell("deviation", known->standard_deviation[i]),
-                              strongest_cell(known->correlation[i], i)});
+                              strongest_cell(record, i)});
       table.reading = words("uncertainty.reading", optimizer_text(c, s), known->variance,
                             known->degrees_of_freedom, known->condition);
       tables.push_back(std::move(table));

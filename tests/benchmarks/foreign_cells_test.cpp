@@ -1,7 +1,9 @@
 // Cells that another program computes: its errors affect its own cell only, its identity is
 // recorded, and its oracle calls are counted.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <fstream>
 #include <map>
 #include <regex>
@@ -68,6 +70,10 @@ TEST_F(ForeignCells, WhoseCallFailedSayWhereAndWhy) {
     EXPECT_FALSE(is_failure(record.status)) << misdeed << ": " << record.message;
     for (const char* part : {"the first at x = (1.2, 1)", "ValueError: the mesh"})
       EXPECT_NE(record.message.find(part), std::string::npos) << record.message;
+    ASSERT_TRUE(record.failures);
+    EXPECT_EQ(record.failures->total, 1);
+    EXPECT_EQ(record.failures->x, (std::vector<std::vector<Real>>{{1.2, 1}}));
+    EXPECT_NE(record.failures->reasons.at(0).find("ValueError: the mesh"), std::string::npos);
   }
 }
 
@@ -101,11 +107,13 @@ TEST_F(ForeignCells, GoOnAfterAFailedCallHoweverItFailed) {
         EXPECT_EQ(record.curve.loss, losses) << method << " " << how;
       }
       losses = record.curve.loss;
-      if (record.message.empty()) continue;  // a method that went around the region
-      EXPECT_NE(record.message.find(reason), std::string::npos) << record.message;
+      if (!record.failures) continue;  // a method that went around the region
+      for (const std::string& each : record.failures->reasons)
+        EXPECT_NE(each.find(reason), std::string::npos) << each;
+      for (const auto& x : record.failures->x) EXPECT_GT(x[1], 1.2);
     }
   }
-  EXPECT_NE(record_with("exits", "nlopt-neldermead").message, "") << "the region was visited";
+  EXPECT_TRUE(record_with("exits", "nlopt-neldermead").failures) << "the region was visited";
 }
 
 TEST_F(ForeignCells, EndAfterTooManyFailedCallsInARow) {
@@ -119,6 +127,8 @@ TEST_F(ForeignCells, EndAfterTooManyFailedCallsInARow) {
   const std::string command = "python3 " + script.string();
   const Record ten = record_of(request_of(process_of(command), "nlopt-neldermead"));
   EXPECT_EQ(ten.status, Status::failed);
+  ASSERT_TRUE(ten.failures);
+  EXPECT_EQ(ten.failures->total, 9) << "of those that did not end it";
   EXPECT_NE(ten.message.find("10 calls in a row"), std::string::npos) << ten.message;
   const Record one = record_of(request_of(process_of(command, ",failures=1"), "nlopt-neldermead"));
   EXPECT_EQ(one.status, Status::failed);
@@ -169,6 +179,57 @@ TEST_F(ForeignCells, ThatWereKilledAreAnsweredFromTheirLogAndEndAsOthers) {
   }
 }
 
+// Each point that the list names fails again, and of the curve those without a loss.
+TEST_F(ForeignCells, OfAFeatureListEachFailedEvaluation) {
+  const Record record =
+      record_of(request_of("rosenbrock[fail=0.05]", "nlopt-neldermead", {.iterations = 500}));
+  ASSERT_TRUE(record.failures);
+  EXPECT_EQ(std::ssize(record.failures->x), record.failures->total);
+  EXPECT_TRUE(record.message.starts_with(fmt::format("{} evaluation", record.failures->total)))
+      << record.message;
+  const Problem problem = make_problem(catalog(), record.request.problem, 0);
+  const auto loss_at = [&](const std::vector<Real>& x) {
+    problems::Point at;
+    problem.forward(Eigen::Map<const Vector>(x.data(), std::ssize(x)), at);
+    return at.loss;
+  };
+  for (const auto& x : record.failures->x) EXPECT_TRUE(std::isnan(loss_at(x)));
+  for (std::size_t i = 0; i < record.trajectory->x.size(); ++i)
+    EXPECT_EQ(std::isnan(loss_at(record.trajectory->x[i])), std::isnan(record.curve.loss[i])) << i;
+}
+
+TEST_F(ForeignCells, HaveTheNamesAndUnitsThatTheirScriptGives) {
+  const auto script = folder.path() / "named.py";
+  write_text(script,
+             "import ast, sys, isoline\n"
+             "names, units = map(ast.literal_eval, sys.argv[1:])\n"
+             "isoline.problem(lambda x: x, [1.0, 2.0], names=names, units=units)\n");
+  const auto record_with = [&](const std::string& names, const std::string& units) {
+    return record_of(
+        request_of(process_of(fmt::format("python3 {} {} {}", script.string(), names, units)),
+                   "nlopt-bobyqa"));
+  };
+  const Record named = record_with("'[\"k\",\"c\"]'", "'[\"N/m\",None]'");
+  ASSERT_TRUE(named.answer) << named.message;
+  EXPECT_EQ(named.answer->names, (std::vector<std::string>{"k", "c"}));
+  EXPECT_EQ(named.answer->units, (std::vector<std::string>{"N/m", ""}));
+  write_text(folder.path() / "in.tpl", "~ k ~ ~ c ~");
+  const auto calibrate = folder.path() / "calibrate.py";
+  write_text(
+      calibrate,
+      "import isoline, sys\n"
+      "isoline.problem(isoline.command(run='cat in.txt', template=sys.argv[1]), [1.0, 2.0])\n");
+  const Record of_template =
+      record_of(request_of(process_of(fmt::format("python3 {} {}", calibrate.string(),
+                                                  (folder.path() / "in.tpl").string())),
+                           "nlopt-bobyqa", {.iterations = 2}));
+  EXPECT_EQ(of_template.answer->names, (std::vector<std::string>{"k", "c"}));
+  const Record unnamed = record_with("None", "None");
+  EXPECT_TRUE(unnamed.answer->names.empty() && unnamed.answer->units.empty());
+  for (const char* wrong : {"'[\"k\"]'", "'\"kc\"'", "'[\"a\\nb\",\"c\"]'"})
+    EXPECT_NE(refusal([&] { record_with(wrong, "None"); }).find("names"), std::string::npos);
+}
+
 // Layers that are too thin for any point to lie in one.
 TEST_F(ForeignCells, OrOthersAreTheSameWhereTheRegionOfFailuresIsNeverVisited) {
   for (const char* method : {"levenberg-marquardt", "nlopt-neldermead", "gd"}) {
@@ -176,7 +237,7 @@ TEST_F(ForeignCells, OrOthersAreTheSameWhereTheRegionOfFailuresIsNeverVisited) {
     const Record failing = record_of(request_of("rosenbrock[fail=1e-15]", method));
     EXPECT_EQ(failing.curve.loss, plain.curve.loss) << method;
     EXPECT_EQ(failing.curve.work, plain.curve.work) << method;
-    EXPECT_EQ(failing.message, plain.message) << method;
+    EXPECT_FALSE(failing.failures || plain.failures) << method;
   }
 }
 

@@ -337,11 +337,11 @@ TEST(SolutionVerb, PrintsValuesAndDeviationsOfTheRunOfLeastLoss) {
       "./isoline run --problem 'nist[dataset=Misra1a],rosenbrock' --optimizer "
       "gd,levenberg-marquardt --rates none --iterations 200 --quiet --no-report --out out");
   shell.expect("./isoline solution out",
-               {.out = {"nist × ", "rosenbrock", "x1", "x2", "returned", "standard deviation",
+               {.out = {"nist × ", "rosenbrock", "b1", "x2", "returned", "standard deviation",
                         "./isoline run --problem "}});
   shell.expect("./isoline solution out --problem nist --format json --out x.json");
   const Json found = read_json(shell.folder() / "x.json").at(0);
-  EXPECT_EQ(found.at("unknowns"), (Json{"x1", "x2"}));
+  EXPECT_EQ(found.at("unknowns"), (Json{"b1", "b2"}));
   // Certified values and standard deviations of NIST's Misra1a.
   constexpr Real kB1 = 2.3894212918e2, kB2 = 5.5015643181e-4, kSd1 = 2.7070075241;
   EXPECT_NEAR(found.at("returned")[0].get<Real>(), kB1, 1e-6 * kB1);
@@ -359,6 +359,10 @@ TEST(SolutionVerb, PrintsValuesAndDeviationsOfTheRunOfLeastLoss) {
       "./isoline run --problem 'rosenbrock[bounds=active]' --optimizer nlopt-lbfgs --rates none "
       "--iterations 200 --quiet --no-report --out bounded");
   shell.expect("./isoline solution bounded", {.out = {"active bound", "upper"}});
+  shell.expect(
+      "./isoline run --problem 'rosenbrock[fail=0.05]' --optimizer nlopt-neldermead "
+      "--iterations 200 --quiet --no-report --out failing");
+  shell.expect("./isoline solution failing", {.out = {"evaluations failed"}});
   shell.expect("./isoline solution out --problem heat", {.exit_code = 1, .err = {"heat"}});
 }
 

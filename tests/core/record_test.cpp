@@ -58,8 +58,13 @@ Record sample() {
                      .rounds = {{"8", {0, -1}}},
                      .wall_seconds = {0, NAN}};
   record.trajectory = Trajectory{{{1, 2}, {3, 4}}, {{1}, {-INFINITY}}};
-  record.answer = AnswerPoints{
-      .unknowns = 2, .points = {kReturned, kBest}, .x = {{1, 0.1}, {3, 4}}, .residual_norm = 0.5};
+  record.answer = AnswerPoints{.unknowns = 2,
+                               .names = {"k", "c"},
+                               .units = {"N/m", ""},
+                               .points = {kReturned, kBest},
+                               .x = {{1, 0.1}, {3, 4}},
+                               .residual_norm = 0.5};
+  record.failures = Failures{.total = 3, .x = {{1, NAN}, {2, 3}}, .reasons = {"no mesh", ""}};
   record.repeat_wall_seconds = {0.5};
   record.provenance = Provenance(Build{.version = "0"});
   record.provenance.run.concurrent_jobs = 2;
@@ -69,6 +74,37 @@ Record sample() {
 TEST(Record, SurvivesTheRoundTrip) {
   const Json written = Json::parse(to_json(sample()).dump());
   EXPECT_EQ(to_json(record_from_text(json_text(written), "it")), written);
+}
+
+// Earlier versions wrote neither names and units nor the list of failed evaluations.
+TEST(Record, OfAnEarlierVersionHasUnknownsWithoutNames) {
+  Json json = to_json(sample());
+  EXPECT_EQ(json["answer"]["names"], (Json{"k", "c"}));
+  json.erase("failures");
+  for (const char* name : {"names", "units"}) json["answer"].erase(name);
+  const Record record = record_from_text(json_text(json), "it");
+  EXPECT_EQ(record.answer->name(1), "x2");
+  EXPECT_EQ(record.answer->unit(1), "");
+  EXPECT_FALSE(record.failures);
+  EXPECT_EQ(to_json(record), json);
+}
+
+TEST(FailedEvaluations, KeepTheFirstThousandAndOfALongXTheReasonAlone) {
+  const auto failed = std::make_unique<FailedEvaluations>();
+  const auto at_length = std::make_unique<FailedEvaluations>();
+  for (int i = 0; i < 1500; ++i)
+    failed->add(std::vector<double>{1.0 * i, 2}, std::string(300, 'a'));
+  EXPECT_EQ(failed->total, 1500);
+  EXPECT_EQ(failed->kept, FailedEvaluations::kMost);
+  EXPECT_EQ(failed->point(999)[0], 999);
+  EXPECT_EQ(std::string(failed->reason[999]), std::string(FailedEvaluations::kReason - 1, 'a'));
+  for (const std::size_t n : {3000, 3000, 3000, 2}) at_length->add(std::vector<double>(n), "a");
+  EXPECT_EQ(at_length->total, 4);
+  EXPECT_EQ(at_length->kept, 2) << "the next does not fit, and the last has another size";
+  const auto too_long = std::make_unique<FailedEvaluations>();
+  too_long->add(std::vector<double>(FailedEvaluations::kNumbers + 1), "no mesh");
+  EXPECT_TRUE(too_long->point(0).empty());
+  EXPECT_STREQ(too_long->reason[0], "no mesh");
 }
 
 TEST(Record, WhatIsNoRecordIsAUsageError) {
@@ -122,6 +158,7 @@ TEST(Record, TimesAreLeftOutOfComparisons) {
   other.hits->wall_seconds = {1, NAN};
   other.repeat_wall_seconds = {9, 10};
   other.provenance.run.concurrent_jobs = 1;
+  other.failures->reasons[0] = "no mesh in /tmp/1";
   EXPECT_EQ(without_timings(to_json(other)), without_timings(to_json(sample())));
   other.curve.loss[0] = std::nextafter(1, 2);
   EXPECT_NE(without_timings(to_json(other)), without_timings(to_json(sample())));
@@ -324,8 +361,9 @@ TEST(Answer, WhoseSizesOrNamesDisagreeIsUnsound) {
   const AnswerPoints sound{.unknowns = 2, .points = {kBest}, .x = {{1, 2}}};
   EXPECT_NO_THROW(require_sound(sound));
   for (const auto& change : std::vector<std::function<void(AnswerPoints&)>>{
-           [](AnswerPoints& a) { a.unknowns = 3; }, [](AnswerPoints& a) { a.points = {"other"}; },
-           [](AnswerPoints& a) { a.points = {}; },
+           [](AnswerPoints& a) { a.unknowns = 3; }, [](AnswerPoints& a) { a.names = {"k"}; },
+           [](AnswerPoints& a) { a.units = {"N/m"}; },
+           [](AnswerPoints& a) { a.points = {"other"}; }, [](AnswerPoints& a) { a.points = {}; },
            [](AnswerPoints& a) {
              a.x.push_back({1, 2});
            }}) {

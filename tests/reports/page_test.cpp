@@ -93,8 +93,10 @@ TEST(Page, HasTheFirstTwentyUnknownsOfARun) {
   Record record = record_of({.seed = 3});
   EXPECT_TRUE(answer_in_page(record).is_null());
   record.answer = AnswerPoints{.unknowns = kUnknowns,
+                               .units = std::vector<std::string>(kUnknowns, "N/m"),
                                .points = {kReturned},
                                .x = {std::vector<Real>(kUnknowns, 0.5)},
+                               .at_upper = {1},
                                .residual_norm = 0.25};
   record.uncertainty = Uncertainty{.x = {}, .standard_deviation = {0.125}, .correlation = {}};
   Json found = answer_in_page(record);
@@ -105,8 +107,11 @@ TEST(Page, HasTheFirstTwentyUnknownsOfARun) {
   for (const Json& column : found.at("columns")) columns[column.at(0)] = column;
   EXPECT_EQ(columns.at("unknown").size(), 21U);
   EXPECT_EQ(columns.at("unknown").at(20), "x20");
+  EXPECT_EQ(columns.at("unit").at(1), "N/m");
   EXPECT_EQ(columns.at("returned").at(1), "0.5");
   EXPECT_EQ(columns.at("standard deviation").at(1), "0.125");
+  EXPECT_EQ(columns.at("active bound").at(1), "");
+  EXPECT_EQ(columns.at("active bound").at(2), "upper");
   record.answer->digest = "0123456789abcdef";  // of many unknowns, which stand in a file
   found = answer_in_page(record);
   EXPECT_TRUE(found.at("columns").empty());

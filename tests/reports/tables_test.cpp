@@ -99,6 +99,14 @@ TEST(Tables, StandardDeviationsAreOfTheBestRunOfAProblem) {
   EXPECT_EQ(at(tables[0], "x2", "strongest correlation"), "-0.5 with x1");
   EXPECT_EQ(record_from_text(file_text(best), "").uncertainty->correlation,
             best.uncertainty->correlation);
+  best.answer = AnswerPoints{.unknowns = 2,
+                             .names = {"k", "c"},
+                             .units = {"N/m", ""},
+                             .points = {kReturned},
+                             .x = {{1, 2}}};
+  const std::vector<Table> named = uncertainty_tables(Compared({best}));
+  EXPECT_EQ(at(named[0], "k [N/m]", "x"), "1");
+  EXPECT_EQ(at(named[0], "c", "strongest correlation"), "-0.5 with k");
   best.uncertainty->x.pop_back();
   EXPECT_THROW(record_from_text(file_text(best), ""), UsageError);
 }
