@@ -47,7 +47,6 @@ class Session {
         count_failure(verb, *why);
         return *why;
       }
-      if (!std::exchange(is_live_, true) && log->replayed() > 0) ++starts_;  // it knows no point
     }
     prepare();
     const std::int64_t begin = monotonic_nanoseconds();
@@ -108,7 +107,6 @@ class Session {
   ProblemHandshake said_;
   std::unique_ptr<Line> line_;
   int starts_ = 0;
-  bool is_live_ = false;  // past the log of calls
   std::array<Index, static_cast<std::size_t>(Verb::x_error) + 1> failures_{};  // in a row, by verb
   std::uint32_t points_ = 0;
   std::vector<std::uint32_t> free_points_;
@@ -121,7 +119,7 @@ struct OwnPoint final : Scratch {
   }
   std::shared_ptr<Session> session;
   std::uint32_t number = 0;
-  int start = 0;            // of the program that knows the point
+  int start = 0;            // of the program that knows the point; 0: the log answered
   bool has_failed = false;  // the forward pass
   Matrix in, out, within;
 };
@@ -221,6 +219,7 @@ class ProcessPhysics final : public ByJacobian {
     const bool is_direct = answer.outerStride() == answer.rows();
     if (!is_direct) point.out.resize(answer.rows(), answer.cols());
     Real* const to = is_direct ? answer.data() : point.out.data();
+    if (is_forward) point.start = 0;
     const auto prepare = [&] {
       if (is_forward)
         point.start = session_->starts();

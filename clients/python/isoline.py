@@ -477,11 +477,12 @@ def problem(
         if minimum is not None and not abs(float(minimum)) < float("inf"):
             raise Refused(f"minimum must be a finite number, got {minimum}")
         products = _products_of(forward, start, vjp, jvp, jacobian, differences)
-        y = _Point(products, start).y
         if target is None and truth is not None:
             target = _Point(products, _vector(_column(truth, "truth"))).y
             minimum = 0.0 if minimum is None else minimum
-        target = _json_numbers([0.0] * len(y) if target is None else target, "target")
+        if target is None:  # else there is no call at the start of a slow program
+            target = [0.0] * len(_Point(products, start).y)
+        target = _json_numbers(target, "target")
         drawn = None if drawn is None else _json_numbers(drawn, "drawn")
         truth = None if truth is None else _json_numbers(truth, "truth")
     except Refused as error:
@@ -495,7 +496,7 @@ def problem(
             "note": note,
             "source": source,
             "inputs": len(start),
-            "outputs": len(y),
+            "outputs": len(target),
             "oracles": ["forward"] + products.oracles + (["inverse"] if inverse else []),
             "differences": products.differences,
             "pushforward_price": products.pushforward_price,
@@ -514,7 +515,7 @@ def problem(
             "aim": aim,
         },
     )
-    _serve(line, products, inverse, x_error, len(start), len(y))
+    _serve(line, products, inverse, x_error, len(start), len(target))
 
 
 class command:
