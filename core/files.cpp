@@ -231,6 +231,23 @@ void write_text(const fs::path& path, std::string_view text) {
   }
 }
 
+void make_output_folder(const fs::path& folder) {
+  std::error_code error;
+  if (!folder.empty()) fs::create_directories(folder, error);
+  const auto refuse_it = [&](const std::string& reason) {
+    throw UsageError(fmt::format("cannot write to the folder {}: {}; name another one with --out",
+                                 folder.string(), reason));
+  };
+  for (fs::path part = folder; !part.empty(); part = part.parent_path()) {
+    std::error_code unknown;
+    if (fs::exists(part, unknown) && !fs::is_directory(part, unknown))
+      refuse_it(part == folder ? "it is a file" : part.string() + " is a file");
+    if (part == part.parent_path()) break;
+  }
+  if (error) refuse_it(error.message());
+  if (::access(folder.empty() ? "." : folder.c_str(), W_OK) != 0) refuse_it(strerror(errno));
+}
+
 void require_ours(const fs::path& path, std::string_view mark) {
   std::error_code unknown;
   require(!fs::is_directory(path, unknown),
@@ -253,6 +270,7 @@ void write_output(const fs::path& path, std::string_view text, std::string_view 
   }
   const fs::path place = fs::is_symlink(path, unknown) ? fs::weakly_canonical(path) : path;
   const fs::path folder = place.has_parent_path() ? place.parent_path() : ".";
+  make_output_folder(folder);
   for (const std::string& name : names_in(folder))  // what a killed process left of this file
     if (name.starts_with(place.filename().string() + ".") && is_abandoned(folder / name))
       fs::remove(folder / name, unknown);

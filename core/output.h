@@ -13,8 +13,12 @@ struct AccessError : UsageError {
   using UsageError::UsageError;
 };
 
-// A device, a pipe or the target of a link is written to, not replaced. UsageError if the name
-// belongs to a file without the `mark` of our own such files.
+// Creates a folder that a user named, and those above it. UsageError if that fails, or if it cannot
+// be written to.
+void make_output_folder(const std::filesystem::path& folder);
+
+// Creates the folder of the file. A device, a pipe or the target of a link is written to, not
+// replaced. UsageError if the name belongs to a file without the `mark` of our own such files.
 void write_output(const std::filesystem::path& path, std::string_view text, std::string_view mark);
 void require_ours(const std::filesystem::path& path, std::string_view mark);
 

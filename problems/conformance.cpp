@@ -7,13 +7,18 @@
 #include <limits>
 
 #include "core/differences.h"
+#include "core/foreign/call_log.h"
 #include "core/workspace.h"
 
 namespace isoline::problems {
 namespace {
 
-constexpr Real kFirstStep = 1e-2;  // of Taylor's remainder, and how often it is halved
-constexpr int kHalvings = 16;
+// The steps of Taylor's remainder: the first, and each as a part of the one before.
+struct Steps {
+  Real first, ratio;
+  int count;  // after the first
+};
+constexpr Steps kSteps = {1e-2, 0.5, 16}, kFewSteps = {1e-2, 0.125, 3};
 constexpr Real kEpsilon = std::numeric_limits<Real>::epsilon();
 constexpr const char* kRounding = "rounding in double precision, with a margin for cancellation";
 constexpr const char* kDifferences =
@@ -31,12 +36,21 @@ class Examination {
     constexpr int kTries = 20;  // a problem may have no value here and there
     for (int i = 0; i < kTries && (i == 0 || !at_.y.allFinite()); ++i) {
       theta_ = near_start();
+      const double begin = call_clock();
       problem_.forward(theta_, at_);
+      if (i == 0) call_seconds_ = call_clock() - begin;
+    }
+    if (is_slow()) {  // the first call may have compiled something
+      const double begin = call_clock();
+      start();
+      call_seconds_ = std::min(call_seconds_, call_clock() - begin);
     }
     piece_ = piece_of(at_);
   }
 
   std::vector<Finding> findings;
+  bool is_slow() const { return problem_.is_elsewhere() && call_seconds_ >= kSlowSeconds; }
+  double call_seconds() const { return call_seconds_; }
 
   // NaN differs from itself, which would read as randomness.
   bool is_finite() {
@@ -54,14 +68,17 @@ class Examination {
         "forward must not be random");
   }
 
-  // At other points, a product may use random numbers of its own, or depend on earlier calls.
+  // At other points, a product may use random numbers of its own, or depend on earlier calls. The
+  // values of differences are those of forward.
   void purity() {
     const Vector v = direction();
     const Matrix u = cotangent();
-    const bool pushes = offers(Oracle::pushforward), pulls = offers(Oracle::pullback);
+    const bool has_own = !is_slow() || !problem_.products().are_differences;
+    const bool pushes = has_own && offers(Oracle::pushforward);
+    const bool pulls = has_own && offers(Oracle::pullback);
     const Matrix Jv = pushes ? push(v, at_) : Matrix();
     const Matrix JTu = pulls ? Matrix(pull(u, at_)) : Matrix();
-    point_at(near_start());
+    start();
     Point again = point_at(theta_);
     bool same = same_bits(again.y, at_.y);
     if (pushes) same = same && same_bits(push(v, again), Jv);
@@ -82,11 +99,11 @@ class Examination {
                   : product_reason());
   }
 
-  // ‖y(θ + h v) − y(θ) − h J v‖ falls by 4 when h is halved. The median is over the halvings whose
+  // ‖y(θ + h v) − y(θ) − h J v‖ falls by 4 if h is halved. The median is over the steps whose
   // remainder is well above rounding; a linear problem has none.
   void taylor() {
-    Real h = kFirstStep;
-    const Vector v = smooth_direction(h, kHalvings);
+    Real h = steps().first;
+    const Vector v = smooth_direction(h, steps().count);
     const Matrix Jv = push(v, at_);
     const Real floor = 1e4 * kEpsilon * (at_.y.norm() + Jv.norm());
     const Real slope = order_of([&](Real step) { return remainder(v, Jv, step); }, h, floor);
@@ -96,8 +113,8 @@ class Examination {
 
   // The same for Jᵀu, for a problem without J v: |⟨u, y(θ + h v) − y(θ)⟩ − h ⟨Jᵀu, v⟩|.
   void taylor_of_pullback() {
-    Real h = kFirstStep;
-    const Vector v = smooth_direction(h, kHalvings);
+    Real h = steps().first;
+    const Vector v = smooth_direction(h, steps().count);
     const Matrix u = cotangent() / std::sqrt(static_cast<Real>(problem_.residuals()));
     const Real change = pull(u, at_).dot(v);
     const Real floor = 1e4 * kEpsilon * (u.norm() * at_.y.norm() + std::abs(change));
@@ -235,7 +252,7 @@ class Examination {
   }
 
   void solution() {
-    const Point start = point_at(problem_.start());
+    const Point& start = this->start();
     if (problem_.minimum()) {
       const Real minimum = *problem_.minimum(), error = problem_.minimum_error();
       add("the loss is above the declared minimum around the start",
@@ -259,15 +276,15 @@ class Examination {
   }
 
  private:
-  // By which power of h the remainder falls: the median over the halvings that stay above `floor`.
+  // By which power of h the remainder falls: the median over the steps that stay above `floor`.
   template <class Remainder>
-  static Real order_of(const Remainder& remainder, Real h, Real floor) {
+  Real order_of(const Remainder& remainder, Real h, Real floor) const {
     std::vector<Real> slopes;
     Real previous = remainder(h);
-    for (int i = 0; i < kHalvings; ++i) {
-      h /= 2;
+    for (int i = 0; i < steps().count; ++i) {
+      h *= steps().ratio;
       const Real now = remainder(h);
-      if (now > floor) slopes.push_back(std::log2(previous / now));
+      if (now > floor) slopes.push_back(std::log(now / previous) / std::log(steps().ratio));
       previous = now;
     }
     std::nth_element(slopes.begin(), slopes.begin() + static_cast<Index>(slopes.size() / 2),
@@ -334,6 +351,11 @@ class Examination {
         .reshaped(problem_.outputs(), problem_.samples());
   }
   Vector near_start() { return near(problem_.start(), scale_, stream_); }
+  const Steps& steps() const { return is_slow() ? kFewSteps : kSteps; }
+  const Point& start() {
+    if (start_.y.size() == 0) problem_.forward(problem_.start(), start_);
+    return start_;
+  }
 
   // (PᵀP)³ of noise of 0.1
   Matrix smoothed() {
@@ -390,16 +412,25 @@ class Examination {
   Vector sizes_;  // (n), of the unknowns
   Vector theta_;
   Point at_;                      // the linearization at theta_
+  Point start_;                   // that of the problem, once it is needed
+  double call_seconds_ = 0;       // of a forward
   std::uint64_t piece_ = 0;       // that it lies on
   Real h_ = std::cbrt(kEpsilon);  // balances truncation and rounding
 };
 
 using Check = void (Examination::*)();
 
-std::vector<Check> checks_of(const Problem& problem) {
-  std::vector<Check> checks{&Examination::repeatability};
+// Purity includes repeatability, at the price of one call more.
+std::vector<Check> checks_of(const Problem& problem, bool is_slow) {
+  std::vector<Check> checks;
+  if (!is_slow) checks.push_back(&Examination::repeatability);
   if (problem.is_elsewhere()) checks.push_back(&Examination::purity);
   const Products has = problem.products();
+  if (is_slow && has.are_differences) {
+    if (has.has_pullback) checks.push_back(&Examination::gradient);
+    checks.push_back(&Examination::solution);
+    return checks;
+  }
   if (has.has_pushforward && has.has_pullback) checks.push_back(&Examination::adjoint);
   // Differences mean little in the single precision of a network: the tests of networks hold each
   // of its derivatives by itself.
@@ -418,14 +449,35 @@ std::vector<Check> checks_of(const Problem& problem) {
   return checks;
 }
 
+// Calls of forward in all checks of a slow problem, and those that its differences make.
+Index slow_calls_of(const Problem& problem) {
+  const Products has = problem.products();
+  Index calls = 3;                   // at the random point, at the start, and at the point again
+  if (has.has_pullback) calls += 2;  // the gradient
+  if (has.are_differences)
+    calls += has.has_pullback ? has.pullback_price : 0;
+  else if (has.has_pushforward || has.has_pullback)
+    calls += kFewSteps.count + 1;
+  if (problem.inverse_kind() == Inverse::exact) calls += 2;
+  if (problem.minimum() && problem.truth() && problem.has_identity_network()) ++calls;
+  return calls;
+}
+
 std::vector<Finding> examine_at(const Problem& problem, StartScale scale, RandomStream& stream,
                                 const CheckListener& before) {
-  const std::vector<Check> checks = checks_of(problem);
-  if (before) before(0, checks.size());
+  if (before) before({0, checks_of(problem, false).size()});
   Examination examination(problem, scale, stream);
   if (!examination.is_finite()) return examination.findings;
+  const bool is_slow = examination.is_slow();
+  const std::vector<Check> checks = checks_of(problem, is_slow);
+  CheckProgress progress{.done = 0, .all = checks.size()};
+  if (is_slow) {
+    progress.call_seconds = examination.call_seconds();
+    progress.calls = slow_calls_of(problem);
+  }
   for (std::size_t i = 0; i < checks.size(); ++i) {
-    if (before) before(i, checks.size());
+    progress.done = i;
+    if (before) before(progress);
     (examination.*checks[i])();
   }
   return examination.findings;

@@ -18,10 +18,20 @@ struct Finding {
   bool holds() const { return figure <= limit; }  // false for nan
 };
 
+// How far the checks are. Where another program takes 0.1 s or longer for its first call: the time
+// of that call, and about how many calls of forward all checks make.
+struct CheckProgress {
+  std::size_t done, all;
+  double call_seconds = 0;
+  Index calls = 0;
+};
+
 // Measures at a random point as close to the start as the starts of seeds. Skips what a problem
-// does not offer; uses dense matrices only up to some millions of entries.
-// Calls `before` ahead of each check, with the number of checks done and of all.
-using CheckListener = std::function<void(std::size_t done, std::size_t all)>;
+// does not offer; uses dense matrices only up to some millions of entries. Of a slow program, it
+// makes few calls: fewer steps of Taylor's remainder, and of derivatives that are differences
+// themselves only the gradient.
+// Calls `before` ahead of each check.
+using CheckListener = std::function<void(const CheckProgress&)>;
 std::vector<Finding> examine(const Problem& problem, RandomStream& stream,
                              const CheckListener& before = {});
 

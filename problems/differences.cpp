@@ -10,6 +10,7 @@
 
 #include "core/differences.h"
 #include "core/errors.h"
+#include "core/workspace.h"
 
 namespace isoline::problems {
 namespace {
@@ -118,12 +119,10 @@ class Differenced final : public Physics {
   }
   // The number of the call is a digest of x: products have no state.
   void disturb(BatchRef x, BatchOut y) const {
-    constexpr std::uint64_t kBasis = 14695981039346656037ULL, kPrime = 1099511628211ULL;  // FNV-1a
     if (!jitter_) return;
-    std::uint64_t call = kBasis;
-    for (const Real value : x.reshaped())
-      call = (call ^ std::bit_cast<std::uint64_t>(value)) * kPrime;
-    jitter_->disturb(call, target_, y);
+    PieceDigest call;
+    for (const Real value : x.reshaped()) call.add(std::bit_cast<std::uint64_t>(value));
+    jitter_->disturb(call.value(), target_, y);
   }
 
   std::unique_ptr<Physics> inside_;

@@ -38,7 +38,7 @@ class Session {
         announced_point_(take_point()) {}
 
   const ProblemHandshake& said() const { return workers_.said(); }
-  int starts() const { return workers_.starts() + forgotten_; }
+  int starts() const { return workers_.starts(); }
 
   // Why the call failed; empty if it did not. LineError where too many of its kind have in a row.
   // From the log of calls, if it has this one; else from a program, after `prepare(start)`: that of
@@ -53,7 +53,6 @@ class Session {
         count_failure(verb, *why);
         return *why;
       }
-      if (!std::exchange(is_live_, true) && log->replayed() > 0) ++forgotten_;
     }
     prepare(is_announced ? kNowhere : starts());
     const std::int64_t begin = monotonic_nanoseconds();
@@ -109,8 +108,6 @@ class Session {
   Index failures_allowed_;
   bool has_several_;
   Workers workers_;
-  int forgotten_ = 0;
-  bool is_live_ = false;  // past the log of calls
   std::array<Index, static_cast<std::size_t>(Verb::x_error) + 1> failures_{};  // in a row, by verb
   std::uint32_t points_ = 0;
   std::vector<std::uint32_t> free_points_;
@@ -124,7 +121,7 @@ struct OwnPoint final : Scratch {
   }
   std::shared_ptr<Session> session;
   std::uint32_t number = 0;
-  int start = 0;            // of the program that knows the point
+  int start = 0;            // of the program that knows the point; 0: the log answered
   bool has_failed = false;  // the forward pass
   Matrix in, out, within;
 };
@@ -229,6 +226,7 @@ class ProcessPhysics final : public ByJacobian {
     const bool is_direct = answer.outerStride() == answer.rows();
     if (!is_direct) point.out.resize(answer.rows(), answer.cols());
     Real* const to = is_direct ? answer.data() : point.out.data();
+    if (is_forward) point.start = 0;
     const auto prepare = [&](int start) {
       if (is_forward)
         point.start = start;

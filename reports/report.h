@@ -20,6 +20,7 @@
 #include <type_traits>
 
 #include "core/files.h"
+#include "core/output.h"
 #include "core/results/study.h"
 #include "core/text.h"
 #include "core/threads.h"
@@ -52,7 +53,7 @@ inline void trim_for_report(Record& record, bool is_claimed) {
 // is, all files belong to it, and no kill leaves files of two reports.
 inline void write_report(const Document& document, const std::filesystem::path& out) {
   namespace fs = std::filesystem;
-  fs::create_directories(out);
+  make_output_folder(out);
   for (const std::string& name : names_in(out))
     if (is_abandoned(out / name)) fs::remove(out / name);
   malloc_trim(0);  // what the sections took and gave back

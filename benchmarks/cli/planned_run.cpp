@@ -120,7 +120,7 @@ void declare_run(VerbArguments& verb, RunArguments& given) {
   declare_what_is_done(verb, given);
   verb.flag("--no-report", given.no_report, "Do not write a report");
   verb.flag("--uncertified", given.uncertified,
-            "Also run problems from other programs that fail their checks; each table marks these "
+            "Run problems from other programs without checking them first; each table marks these "
             "problems");
   verb.flag("--keep-output", given.keeps_output,
             "Keep the output of each cell in its record, up to 64 KiB");

@@ -18,11 +18,11 @@
 #include "core/errors.h"
 #include "core/files.h"
 #include "core/json.h"
+#include "core/output.h"
 #include "core/records/json_view.h"
 #include "core/records/record.h"
 #include "core/records/request.h"
 #include "core/records/sheet.h"
-#include "core/records/suites.h"
 #include "core/seeds.h"
 #include "core/text.h"
 
@@ -329,7 +329,7 @@ MergeOutcome merge_folders(const std::vector<fs::path>& given, const fs::path& o
   const InterruptGuard guard;  // what is half made is removed before the program ends
   try {
     fs::remove_all(unfinished);
-    fs::create_directories(unfinished);
+    make_output_folder(unfinished);
     MergeOutcome outcome = Merge(folders, unfinished, listener).run();
     if (!outcome.conflicts.empty()) {
       fs::remove_all(unfinished);

@@ -361,7 +361,7 @@ IsolatedText isolated_text(const std::function<std::string(Trace&)>& work, doubl
         {.startup_seconds = seconds,
          .hard_seconds = seconds,
          .idle_seconds = idle_seconds,
-         .waits_for_others = false,
+         .waits_for_others = seconds >= kForeignSeconds,
          .memory_bytes = memory_bytes},
         1);
   } catch (const std::runtime_error& error) {  // of the system, out of processes or of files

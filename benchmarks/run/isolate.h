@@ -177,6 +177,13 @@ struct IsolatedText {
   std::string failure;  // "it threw: …", "it was ended by signal 11 (Segmentation fault)", …
 };
 
+// The limit of work that makes calls to another program, each of which may take hours, and during
+// which it is not idle.
+inline constexpr double kForeignSeconds = 86'400;
+inline bool is_elsewhere(const Component& component) {
+  return component.foreign && component.foreign->door == "process";
+}
+
 // Ends it after this many seconds of processor time, or five times as many of wall time, or if it
 // and all that it started are idle for as long, at most a minute, or when this process is to end.
 // Calls `waiting` fifty times a second.

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <climits>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
@@ -17,6 +18,7 @@
 #include <utility>
 
 #include "core/clock.h"
+#include "core/foreign/call_log.h"
 #include "core/foreign/line.h"
 #include "core/threads.h"
 #include "optimizers/optimizer.h"
@@ -41,6 +43,7 @@ struct PointToJudge {
   std::size_t slot;
   std::uint64_t seed;
   int threads;
+  char calls[PATH_MAX];  // the log of calls; may be empty
 };
 
 struct JudgesReply {
@@ -107,6 +110,10 @@ JudgesReply reply_to(const PointToJudge& asked, const Worker& worker, Instances&
   PointToJudge asked;
   while (recv(socket, &asked, sizeof asked, 0) == sizeof asked) {
     const Worker& worker = workers[asked.slot];
+    const std::filesystem::path calls = asked.calls;
+    call_log() = calls.empty() ? nullptr
+                               : std::make_unique<CallLog>(calls, calls.stem().string(), false,
+                                                           Answers::in_any_order);
     JudgesReply reply = reply_to(asked, worker, instances, make);
     if (!reply.is_judged) reply = reply_to(asked, worker, instances, make);  // a fresh one
     if (send(socket, &reply, sizeof reply, MSG_NOSIGNAL) != sizeof reply) break;
@@ -147,8 +154,9 @@ Judges::~Judges() {
 }
 
 // Creating the problem again may take its startup time.
-void Judges::ask(std::size_t slot, const Request& request, const Limits& limits) {
-  Question question{slot, &request, limits};
+void Judges::ask(std::size_t slot, const Request& request, const Limits& limits,
+                 const std::filesystem::path& calls) {
+  Question question{slot, &request, limits, calls};
   question.limits.hard_seconds = std::max(limits.hard_seconds, limits.startup_seconds);
   try {
     send(judge_of(request.problem), question);
@@ -193,7 +201,9 @@ void Judges::start(Judge& judge, const Component& problem) {
 
 void Judges::send(Judge& judge, const Question& question) {
   const Request& request = *question.request;
-  const PointToJudge asked{question.slot, request.seed, request.threads};
+  PointToJudge asked{question.slot, request.seed, request.threads, {}};
+  if (question.calls.native().size() < sizeof asked.calls)
+    question.calls.native().copy(asked.calls, sizeof asked.calls - 1);
   judge.open.push_back(question);
   if (judge.open.size() == 1) watch_first(judge);
   ::send(judge.socket, &asked, sizeof asked, MSG_NOSIGNAL);  // a dead judge is met when collected

@@ -5,6 +5,7 @@
 #include <poll.h>
 
 #include <deque>
+#include <filesystem>
 #include <list>
 #include <optional>
 #include <string>
@@ -44,8 +45,10 @@ class Judges {
   Judges(const Judges&) = delete;
   Judges& operator=(const Judges&) = delete;
 
-  // Has the point judged that the worker of this slot returned, within the limits of its cell.
-  void ask(std::size_t slot, const Request& request, const Limits& limits);
+  // Has the point judged that the worker of this slot returned, within the limits of its cell. The
+  // log of its calls to a slow program, if there is one, answers those at the start and the point.
+  void ask(std::size_t slot, const Request& request, const Limits& limits,
+           const std::filesystem::path& calls);
   std::vector<Verdict> collect();  // those that have come by now
   void add_to(std::vector<pollfd>& waiting) const;
 
@@ -54,6 +57,7 @@ class Judges {
     std::size_t slot;
     const Request* request;
     Limits limits;
+    std::filesystem::path calls;
     bool is_asked_again = false;  // a judge has died of it, or was killed over it
   };
   struct Judge {

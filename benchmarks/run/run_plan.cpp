@@ -7,11 +7,14 @@
 #include <array>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <utility>
 
 #include "benchmarks/run/sheets.h"
 #include "core/clock.h"
 #include "core/errors.h"
 #include "core/files.h"
+#include "core/foreign/call_log.h"
+#include "core/foreign/line.h"
 #include "core/json.h"
 #include "core/output.h"
 #include "optimizers/optimizer.h"
@@ -25,9 +28,11 @@ namespace {
 std::string broken_property_of(const Catalog& catalog, const Request& request, Trace& trace) {
   const Problem problem = make_problem(catalog, request.problem, request.seed);
   RandomStream stream(request.seed, request.problem.name, "check");
-  const auto show = [&](std::size_t done, std::size_t all) {
-    trace.last.iteration = static_cast<std::int64_t>(done);
-    trace.last.work = static_cast<std::int64_t>(all);
+  const auto show = [&](const problems::CheckProgress& now) {
+    trace.last.iteration = static_cast<std::int64_t>(now.done);
+    trace.last.work = static_cast<std::int64_t>(now.all);
+    trace.last.wall_seconds = now.call_seconds;
+    trace.last.counts[0] = now.calls;
   };
   for (const problems::Finding& finding : problems::examine(problem, stream, show))
     if (!finding.holds())
@@ -53,11 +58,36 @@ std::string certified_in(const std::filesystem::path& folder, const Component& p
   return "";
 }
 
+// "3 of 9 checks of SPEC", and of a slow program how many calls they make.
+std::string checks_text(const TracePoint& now, const std::string& problem) {
+  const std::string calls =
+      now.counts[0] > 0
+          ? fmt::format(" (about {} calls of {})", now.counts[0], duration_text(now.wall_seconds))
+          : "";
+  return fmt::format("{} of {} checks{} of {}", now.iteration, now.work, calls, problem);
+}
+
+// As broken_property_of, but calls of checks that were killed are not made again.
+std::string checked(const Catalog& catalog, const Request& request, const Store& store, bool logs,
+                    Trace& trace) {
+  if (is_elsewhere(request.problem))
+    call_log() = std::make_unique<CallLog>(store.check_path(request.problem, request.seed),
+                                           build_of(request.problem), logs);
+  try {
+    return broken_property_of(catalog, request, trace);
+  } catch (const KilledProgram&) {
+    throw;
+  } catch (...) {
+    store.remove_checks(request.problem);
+    throw;
+  }
+}
+
 // UsageError with the first violated property of a problem of another program, and the measured
-// value, or with the reason if a problem cannot be checked, since it fails or does not answer; with
-// --uncertified, the label of such a problem says so instead, in each table.
-// Checks only problems with cells to run, each at the first of its seeds, in its own process, and
-// once for each build. Returns the builds that have passed, by problem.
+// value, or with the reason if a problem cannot be checked, since it fails or does not answer. With
+// --uncertified, none is checked, and the labels of those without a certificate say so in each
+// table. Checks only problems with cells to run, each at the first of its seeds, in its own
+// process, and once for each build. Returns the builds that have passed, by problem.
 Certificates require_certified(const Catalog& catalog, std::vector<Request>& requests,
                                const Store& store, const RunOptions& options) {
   constexpr double kCertificateSeconds = 120;
@@ -74,28 +104,34 @@ Certificates require_certified(const Catalog& catalog, std::vector<Request>& req
       firsts.push_back(&request);
   }
   std::set<std::string> uncertified;
+  if (options.uncertified)
+    for (const Request* request : std::exchange(firsts, {})) {
+      uncertified.insert(request->problem.spec);
+      passed[request->problem.spec].clear();
+    }
   Progress progress(options.progress, "certified", static_cast<std::int64_t>(firsts.size()), 0);
   for (const Request* request : firsts) {
     progress.started(request->problem.spec);
+    bool is_announced = false;
     const auto [broken, failure] = isolated_text(
-        [&](Trace& trace) { return broken_property_of(catalog, *request, trace); },
-        kCertificateSeconds, Limits{}.memory_bytes,
+        [&](Trace& trace) { return checked(catalog, *request, store, options.logs_calls, trace); },
+        is_elsewhere(request->problem) ? kForeignSeconds : kCertificateSeconds,
+        Limits{}.memory_bytes,
         [&](const Trace& trace) {
-          if (trace.last.work > 0)
-            progress.started(fmt::format("{} of {} checks of {}", trace.last.iteration,
-                                         trace.last.work, request->problem.spec));
-          progress.show();
+          if (trace.last.work > 0) progress.started(checks_text(trace.last, request->problem.spec));
+          const bool has_calls = trace.last.counts[0] > 0;
+          progress.show(has_calls && !std::exchange(is_announced, has_calls));
         });
     if (asked_to_end() != Asked::nothing) return passed;
     const std::string reason = broken.value_or("it cannot be checked: " + failure);
-    require(reason.empty() || options.uncertified, [&] {
+    if (broken && !reason.empty()) store.remove_checks(request->problem);
+    require(reason.empty(), [&] {
       return fmt::format(
           "{} failed a check and was not run: {}; `isoline check` prints all its checks, and "
-          "--uncertified runs it anyway",
+          "--uncertified runs it without them",
           request->problem.spec, reason);
     });
-    if (!reason.empty()) uncertified.insert(request->problem.spec);
-    passed[request->problem.spec] = reason.empty() ? build_of(request->problem) : "";
+    passed[request->problem.spec] = build_of(request->problem);
     progress.finished({});
   }
   for (Request& request : requests)

@@ -30,7 +30,7 @@ struct WholePlan {
 };
 
 // UsageError, and nothing written, if a component of the plan cannot be created, or a problem of
-// another program fails the tests of this tree (unless it may, and is then marked). Otherwise
+// another program fails its checks (with --uncertified, none is checked). Otherwise
 // stores the plan before anything runs, so that a part never passes for the complete plan; then the
 // rates that it uses and the component metadata; then runs the cells. Stores the plan again if
 // records have disappeared meanwhile: the folder may have been emptied.

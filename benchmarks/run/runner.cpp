@@ -227,8 +227,12 @@ class Runner {
 
   // A run whose time counts makes its calls.
   bool logs_calls_of(const Request& request) const {
-    return request.problem.foreign && request.problem.foreign->door == "process" &&
-           options_.repeat == 1 && !options_.exclusive && options_.perturbation == 0;
+    return is_elsewhere(request.problem) && options_.repeat == 1 && !options_.exclusive &&
+           options_.perturbation == 0;
+  }
+  std::filesystem::path calls_path(const Request& request) const {
+    if (!logs_calls_of(request)) return {};
+    return store_.checkpoint_path(request).replace_extension(".calls");
   }
 
   // A repetition for its time begins at the start, as does a run that records more than others.
@@ -269,7 +273,7 @@ class Runner {
       task.is_being_judged =
           !is_failure(status) && status != Status::inapplicable && status != Status::interrupted;
       if (task.is_being_judged)
-        judges_.ask(i, *task.request, limits(*task.request));
+        judges_.ask(i, *task.request, limits(*task.request), calls_path(*task.request));
       else
         keep(i);
     }

@@ -50,7 +50,7 @@ std::string title_of(const Request& request);  // "problem × optimizer, seed 0"
 struct RunOptions {
   int jobs = 1;
   bool force = false;           // repeat cells that are done
-  bool uncertified = false;     // run problems that fail their checks, and mark them
+  bool uncertified = false;     // run problems without their checks, and mark them
   bool reuse = false;           // a cell that another build has done counts as done
   std::set<Status> retry = {};  // cells that ended so are repeated
   bool exclusive = false;       // one at a time, for tables of wall time

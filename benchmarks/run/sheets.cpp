@@ -20,6 +20,7 @@
 #include "core/decompose.h"
 #include "core/errors.h"
 #include "core/files.h"
+#include "core/foreign/call_log.h"
 #include "core/json.h"
 #include "core/options.h"
 #include "core/records/provenance.h"
@@ -86,9 +87,15 @@ double seconds_by(bool is_elsewhere) {
 }
 
 // The time of one call: processor time if it is long enough to be interrupted, otherwise by its
-// time-stamp counter, which costs little beside a microsecond.
+// time-stamp counter, which costs little beside a microsecond. Of another program, as it was when
+// the call was made.
 double seconds_of(const Problem& problem, double expected, const std::function<void()>& call) {
-  if (expected > kClockSeconds && !problem.is_elsewhere()) {
+  if (problem.is_elsewhere()) {
+    const double begin = call_clock();
+    call();
+    return call_clock() - begin;
+  }
+  if (expected > kClockSeconds) {
     const double begin = processor_seconds();
     call();
     return processor_seconds() - begin;
@@ -194,12 +201,14 @@ std::vector<Real> small(const Matrix& values) {
   return {values.data(), values.data() + values.size()};
 }
 
-// σ_max / σ_min of J there; nothing if it is not a number.
+// σ_max / σ_min of J there; nothing if it is not a number, or of a slow program.
 std::optional<Real> condition_at(const Problem& problem, VectorRef theta) {
   Point at;
   Matrix J;
   Svd svd;
+  const double begin = call_clock();
   problem.forward(theta, at);
+  if (problem.is_elsewhere() && call_clock() - begin >= kSlowSeconds) return std::nullopt;
   problem.jacobian(J, at);
   if (!J.allFinite() || !thin_svd(J, svd)) return std::nullopt;
   const Real least = J.rows() < J.cols() ? 0 : svd.sigma[svd.sigma.size() - 1];
@@ -311,25 +320,30 @@ class SheetWriter {
     if (!known_.insert("problem " + component.spec).second) return;
     progress_.started(component.spec);
     Sheet sheet = described_problem(catalog_, component);
-    if (replace(sheet, [&] { return problem_sheet(catalog_, component); }))
-      sheet.prices = prices_of(component, store_.folder() / "components" / sheet.file_name());
+    std::optional<Sheet> stored = stored_sheet(component, sheet);
+    if (stored && is_elsewhere(component))
+      sheet = std::move(*stored);  // without a call
+    else if (replace(sheet, component, [&] { return problem_sheet(catalog_, component); }))
+      sheet.prices = stored ? stored->prices : measured_prices(component);
     const auto passed = certificates_.find(component.spec);
     if (passed != certificates_.end()) sheet.certified = passed->second;
     write(sheet);
+    if (is_elsewhere(component) && asked_to_end() == Asked::nothing)
+      store_.remove_checks(component);
   }
 
   void write_optimizer(const Component& component) {
     if (!known_.insert("optimizer " + component.spec).second) return;
     Sheet sheet = described_optimizer(catalog_, component);
-    replace(sheet, [&] { return optimizer_sheet(catalog_, component); });
+    replace(sheet, component, [&] { return optimizer_sheet(catalog_, component); });
     write(sheet);
   }
 
  private:
   // By the whole one, where that can be made.
-  bool replace(Sheet& sheet, const std::function<Sheet()>& make) {
+  bool replace(Sheet& sheet, const Component& component, const std::function<Sheet()>& make) {
     std::string reason;
-    if (auto made = made_apart(make, reason)) {
+    if (auto made = made_apart(component, make, reason)) {
       sheet = std::move(*made);
       return true;
     }
@@ -345,35 +359,54 @@ class SheetWriter {
     }
   }
 
-  // Costs that this build has already measured on this processor: a continued run does not change
-  // the report of finished cells. The problem is created again, and a failure of the measurement
-  // does not cost the metadata: then declared costs are counted with.
-  std::optional<MeasuredPrices> prices_of(const Component& component,
-                                          const std::filesystem::path& file) {
-    const std::string build = build_digest({.problem = component, .optimizer = {}});
+  // That with costs which this build has already measured on this processor: a continued run does
+  // not change the report of finished cells.
+  std::optional<Sheet> stored_sheet(const Component& component, const Sheet& described) {
+    const auto file = store_.folder() / "components" / described.file_name();
     if (is_there(file)) try {
-        const auto stored = sheet_from_text(read_text(file), file.string()).prices;
-        if (stored && stored->build == build && stored->processor == this_build()->processor)
+        Sheet stored = sheet_from_text(read_text(file), file.string());
+        if (stored.prices && stored.prices->build == build_of(component) &&
+            stored.prices->processor == this_build()->processor)
           return stored;
       } catch (const std::exception& error) {
         store_.set_aside(file, error.what());
       }
+    return std::nullopt;
+  }
+
+  static std::string build_of(const Component& problem) {
+    return build_digest({.problem = problem, .optimizer = {}});
+  }
+
+  // The problem is created again, and a failure of the measurement does not cost the metadata: then
+  // declared costs are counted with.
+  std::optional<MeasuredPrices> measured_prices(const Component& component) {
     std::string reason;
     const auto measured = made_apart(
+        component,
         [&] {
           Sheet sheet;
           sheet.options_text = "[]";
-          sheet.prices = measure_prices(make_problem(catalog_, component, 0), build);
+          sheet.prices = measure_prices(make_problem(catalog_, component, 0), build_of(component));
           return sheet;
         },
         reason);
     return measured ? measured->prices : std::nullopt;
   }
 
-  std::optional<Sheet> made_apart(const std::function<Sheet()>& make, std::string& reason) {
+  // The calls of its checks are not made again.
+  std::optional<Sheet> made_apart(const Component& component, const std::function<Sheet()>& make,
+                                  std::string& reason) {
     constexpr double kSeconds = 30;
-    const IsolatedText made = isolated_text([&] { return file_text(make()); }, kSeconds,
-                                            Limits{}.memory_bytes, [&] { progress_.show(); });
+    const auto work = [&] {
+      if (is_elsewhere(component))
+        call_log() = std::make_unique<CallLog>(store_.check_path(component, 0), build_of(component),
+                                               false, Answers::in_any_order);
+      return file_text(make());
+    };
+    const IsolatedText made =
+        isolated_text(work, is_elsewhere(component) ? kForeignSeconds : kSeconds,
+                      Limits{}.memory_bytes, [&] { progress_.show(); });
     reason = made.failure;
     if (made.text) try {
         return sheet_from_text(*made.text, "its output");
@@ -404,7 +437,13 @@ MeasuredPrices measure_prices(const Problem& problem, const std::string& build) 
   Point at;
   const std::function<void()> solve = [&] { problem.forward(problem.start(), at); };
   const double begin = seconds_by(problem.is_elsewhere());
-  seconds_of(problem, 1, solve);  // allocates
+  const double first = seconds_of(problem, 1, solve);  // allocates
+  if (problem.is_elsewhere() && first >= kSlowSeconds) {
+    measured.forward_seconds = first;
+    measured.oracles.push_back(price_of(name_of(Oracle::forward), 1, first, {{first}, {1}, 1}));
+    return measured;
+  }
+  if (problem.is_elsewhere()) call_log().reset();  // the others are made, and timed
   const double once = std::max(seconds_of(problem, 1, solve), 1e-9);
   Rounds alone = rounds_of(problem, {once, once});
   const double forward = at_share(alone.forward_seconds, 0.5);

@@ -21,7 +21,8 @@ bool is_resolved(const MeasuredPrice& price, double forward_seconds);
 // The cost in forward solves of every oracle that the problem offers, at its start; for a learned
 // problem, also of its network alone. Budgets count nominal costs; these are for reports. Takes
 // some 10 ms per oracle. Omits a dense matrix that would take more than 10 ms by its nominal cost,
-// and everything that is left after one second.
+// and everything that is left after one second. If another program takes 0.1 s or longer for a
+// forward solve, measures that one call.
 MeasuredPrices measure_prices(const Problem& problem, const std::string& build);
 
 // The registry's view of a component: nothing is created, so nothing can fail.

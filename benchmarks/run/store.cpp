@@ -23,7 +23,6 @@
 #include "core/json.h"
 #include "core/output.h"
 #include "core/records/request.h"
-#include "core/records/suites.h"
 #include "core/text.h"
 
 namespace isoline::benchmarks {
@@ -165,17 +164,7 @@ bool Store::has(const Request& request) const {
 }
 
 void Store::make_folders() const {
-  for (const char* part : kParts) {
-    std::error_code error;
-    fs::create_directories(folder_ / part, error);
-    require(!error, [&] {
-      return fmt::format("cannot create {}: {}", (folder_ / part).string(), error.message());
-    });
-    // Said before anything runs: a disk may be there to be read only.
-    require(::access((folder_ / part).c_str(), W_OK) == 0, [&] {
-      return fmt::format("cannot write to {}: {}", (folder_ / part).string(), strerror(errno));
-    });
-  }
+  for (const char* part : kParts) make_output_folder(folder_ / part);
 }
 
 void Store::set_aside(const fs::path& path, const std::string& reason) {
@@ -312,6 +301,25 @@ void Store::remove_checkpoint(const Request& request) const {
   std::error_code missing;
   fs::remove(checkpoint_path(request), missing);
   fs::remove(checkpoint_path(request).replace_extension(".calls"), missing);
+}
+
+namespace {
+
+std::string check_stem(const Component& problem) {
+  const Sheet sheet{.kind = "problem", .name = problem.name, .spec = problem.spec};
+  return fs::path(sheet.file_name()).stem().string() + "-seed-";
+}
+
+}  // namespace
+
+fs::path Store::check_path(const Component& problem, std::uint64_t seed) const {
+  return folder_ / "checkpoints" / fmt::format("{}{}.calls", check_stem(problem), seed);
+}
+
+void Store::remove_checks(const Component& problem) const {
+  for (const std::string& name : names_in(folder_ / "checkpoints"))
+    if (std::error_code missing; name.starts_with(check_stem(problem)))
+      fs::remove(folder_ / "checkpoints" / name, missing);
 }
 
 fs::path Store::end_stem(const Request& request) const {

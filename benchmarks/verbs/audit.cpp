@@ -8,6 +8,7 @@
 
 #include "benchmarks/cli/verb.h"
 #include "benchmarks/plan/catalog.h"
+#include "core/output.h"
 #include "core/spec.h"
 #include "core/text.h"
 #include "reports/report.h"
@@ -33,12 +34,10 @@ int run(const AuditArguments& given, Session& session) {
   const Catalog& catalog = session.catalog();
   for (const std::string& name : given.names)
     complete_optimizer(catalog, parse_spec(name));  // or says what is wrong
+  if (!given.out.empty()) make_output_folder(given.out);
   const std::vector<AuditedOptimizer> all =
       audit_all(catalog, given.names.empty() ? catalog.optimizers.ready().names() : given.names);
-  if (!given.out.empty()) {
-    std::filesystem::create_directories(given.out);
-    write_audit(all, std::filesystem::path(given.out) / "audit.json");
-  }
+  if (!given.out.empty()) write_audit(all, std::filesystem::path(given.out) / "audit.json");
   say(stdout, given.as_json ? audit_text(all)
                             : reports::terminal_section(
                                   reports::properties_section(all),

@@ -55,7 +55,10 @@ int run(const BaselineArguments& given, Session& session) {
   std::erase_if(study.runs, [](const Record& run) { return run.imported.has_value(); });
   require(!study.runs.empty(),
           "no records in these folders; `isoline run --out FOLDER` creates some");
-  if (!given.out.empty()) require_ours(given.out, reports::kBaselineSchema);
+  if (!given.out.empty()) {
+    make_output_folder(std::filesystem::path(given.out).parent_path());
+    require_ours(given.out, reports::kBaselineSchema);
+  }
   if (given.perturbations > 0)
     for (const Record& run : study.runs) require_trust(given.trust, run);
   const std::vector<reports::Study> perturbed = perturbed_studies(given, session, study);
@@ -68,8 +71,6 @@ int run(const BaselineArguments& given, Session& session) {
     say(stdout, text);
     return kGood;
   }
-  const std::filesystem::path folder = std::filesystem::path(given.out).parent_path();
-  if (!folder.empty()) std::filesystem::create_directories(folder);
   write_output(given.out, text, reports::kBaselineSchema);
   say(stdout, fmt::format("{}: {}\n", given.out, reports::counted(study.runs.size(), "cell")));
   return kGood;

@@ -14,6 +14,7 @@
 #include "core/errors.h"
 #include "core/files.h"
 #include "core/json.h"
+#include "core/output.h"
 #include "core/seeds.h"
 #include "core/text.h"
 
@@ -56,6 +57,7 @@ std::string best_losses_text(const Json& table) {
 }
 
 int run(const BestArguments& given, Session& session) {
+  make_output_folder(fs::path(given.out).parent_path());
   BestLosses best;
   if (fs::exists(given.out)) best = BestLosses::from_json(read_json(given.out), given.out);
   std::map<std::string, bool> declares;  // by problem, whether it knows its least loss

@@ -65,8 +65,9 @@ Json findings_of(const Catalog& catalog, const Component& component, std::uint64
 
 // The findings, from a process of its own: a broken problem costs its own check alone.
 Json isolated_findings(const Catalog& catalog, const Component& component, std::uint64_t seed) {
-  const auto [text, failure] = isolated_text(
-      [&] { return json_text(findings_of(catalog, component, seed)); }, kCheckSeconds);
+  const auto [text, failure] =
+      isolated_text([&] { return json_text(findings_of(catalog, component, seed)); },
+                    is_elsewhere(component) ? kForeignSeconds : kCheckSeconds);
   if (text) return parse_json(*text, component.spec);
   return Json::array({{{"property", "the problem can be created and checked"},
                        {"figure", "nan"},

@@ -37,7 +37,6 @@ void declare(VerbArguments& verb, ExportArguments& given) {
 }
 
 void write_file(const fs::path& out, const std::string& text) {
-  if (out.has_parent_path()) fs::create_directories(out.parent_path());
   write_output(out, text, text.substr(0, text.find('\n')));
 }
 

@@ -70,7 +70,7 @@ int run(const FiguresArguments& given, Session& session) {
   }
   const fs::path out =
       given.out.empty() ? given.folders.front() / fs::path("figures") : fs::path(given.out);
-  fs::create_directories(out);
+  make_output_folder(out);
   for (const std::string& format : given.formats)
     for (const reports::NamedDrawing& one : all) write_figure(one, format, out);
   say(stdout, fmt::format("{}: {} as {}\n", out.string(), reports::counted(all.size(), "figure"),

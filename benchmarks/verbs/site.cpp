@@ -65,7 +65,7 @@ std::vector<Record> claimed_runs(const std::deque<reports::Study>& studies,
 void write_results(const reports::SiteResults& results, const fs::path& out) {
   const fs::path report = out / "reports" / reports::file_name_of(results.name);
   reports::write_report(*results.document, report);
-  fs::create_directories(report / "figures");
+  make_output_folder(report / "figures");
   for (const reports::NamedDrawing& one : results.drawings) {
     write_text(report / "figures" / (one.name + ".svg"), reports::paper_svg(one.drawing));
     write_text(report / "figures" / (one.name + ".csv"), reports::points_csv(one.drawing));
@@ -74,6 +74,7 @@ void write_results(const reports::SiteResults& results, const fs::path& out) {
 
 int run(const SiteArguments& given, Session& session) {
   const fs::path out = given.out;
+  make_output_folder(out);
   std::deque<reports::Study> studies;
   std::deque<reports::Document> documents;
   const std::vector<Claim> claims = builtin_claims_of(session.catalog());
@@ -95,7 +96,7 @@ int run(const SiteArguments& given, Session& session) {
   std::size_t bytes = 0;
   const std::map<std::string, std::string> pages = reports::site_pages(site);
   for (const auto& [path, text] : pages) {
-    fs::create_directories((out / path).parent_path());
+    make_output_folder((out / path).parent_path());
     write_text(out / path, text);
     bytes += text.size();
   }

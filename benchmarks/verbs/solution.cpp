@@ -236,6 +236,7 @@ int run(const SolutionArguments& given, Session&) {
                          solutions.size());
     });
     const auto x = solutions[0].point();
+    make_output_folder(std::filesystem::path(given.out).parent_path());
     write_npy(given.out, {{static_cast<Index>(x.size())}, {x.begin(), x.end()}});
   } else {
     const std::string text = text_of(solutions, given.format);

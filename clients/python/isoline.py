@@ -484,11 +484,12 @@ def problem(
         if names is None and isinstance(forward, command):
             names = forward.names
         names, units = _labels(names, len(start), "names"), _labels(units, len(start), "units")
-        y = _Point(products, start).y
         if target is None and truth is not None:
             target = _Point(products, _vector(_column(truth, "truth"))).y
             minimum = 0.0 if minimum is None else minimum
-        target = _json_numbers([0.0] * len(y) if target is None else target, "target")
+        if target is None:  # else there is no call at the start of a slow program
+            target = [0.0] * len(_Point(products, start).y)
+        target = _json_numbers(target, "target")
         drawn = None if drawn is None else _json_numbers(drawn, "drawn")
         truth = None if truth is None else _json_numbers(truth, "truth")
     except Refused as error:
@@ -502,7 +503,7 @@ def problem(
             "note": note,
             "source": source,
             "inputs": len(start),
-            "outputs": len(y),
+            "outputs": len(target),
             "oracles": ["forward"] + products.oracles + (["inverse"] if inverse else []),
             "differences": products.differences,
             "pushforward_price": products.pushforward_price,
@@ -523,7 +524,7 @@ def problem(
             "aim": aim,
         },
     )
-    _serve(line, products, inverse, x_error, len(start), len(y))
+    _serve(line, products, inverse, x_error, len(start), len(target))
 
 
 def _labels(given, count, what):

@@ -5,33 +5,31 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cstddef>
 #include <cstring>
 #include <utility>
 
+#include "core/clock.h"
 #include "core/text.h"
+#include "core/workspace.h"
 
 namespace isoline {
 namespace {
 
-constexpr double kSlowSeconds = 0.1;  // a call from which on a file is worth its bytes
-
-std::string heading_of(const std::string& identity) { return "isoline.calls/1 " + identity + "\n"; }
+std::string heading_of(const std::string& identity) { return "isoline.calls/2 " + identity + "\n"; }
 
 void add(std::vector<char>& bytes, const void* data, std::size_t count) {
   const char* const from = static_cast<const char*>(data);
   bytes.insert(bytes.end(), from, from + count);
 }
 
-// FNV-1a by words of eight bytes: a file that was cut short does not have it.
-std::uint64_t checksum_of(std::span<const char> bytes) {
-  std::uint64_t state = 0xcbf29ce484222325;
-  for (std::size_t i = 0; i < bytes.size(); i += sizeof state) {
+// By words of eight bytes: a file that was cut short does not have it.
+void add_words(PieceDigest& digest, std::span<const char> bytes) {
+  for (std::size_t i = 0; i < bytes.size(); i += sizeof(std::uint64_t)) {
     std::uint64_t word = 0;
     std::memcpy(&word, &bytes[i], std::min(sizeof word, bytes.size() - i));
-    state = (state ^ word) * 0x100000001b3;
-    state ^= state >> 29;
+    digest.add(word);
   }
-  return state;
 }
 
 }  // namespace
@@ -39,11 +37,25 @@ std::uint64_t checksum_of(std::span<const char> bytes) {
 struct CallLog::Head {
   std::uint32_t verb = 0, point = 0;
   std::uint64_t request = 0, answer = 0, why = 0;  // bytes of each
-  std::uint64_t checksum = 0;
+  double seconds = 0;
+  std::uint64_t checksum = 0;  // of all before it and of the bytes
+
+  std::span<const char> bytes() const {
+    return {reinterpret_cast<const char*>(this), sizeof *this};
+  }
+  std::uint64_t checksum_with(std::span<const char> rest) const {
+    PieceDigest digest;
+    add_words(digest, bytes().first(offsetof(Head, checksum)));
+    add_words(digest, rest);
+    return digest.value();
+  }
 };
 
-CallLog::CallLog(std::filesystem::path path, std::string identity, bool is_forced)
-    : path_(std::move(path)), identity_(heading_of(identity)), is_forced_(is_forced) {
+CallLog::CallLog(std::filesystem::path path, std::string identity, bool is_forced, Answers answers)
+    : path_(std::move(path)),
+      identity_(heading_of(identity)),
+      is_forced_(is_forced),
+      answers_(answers) {
   file_.reset(std::fopen(path_.c_str(), "r+be"));
   if (!file_) return;
   std::string heading(identity_.size(), '\0');
@@ -56,6 +68,11 @@ CallLog::CallLog(std::filesystem::path path, std::string identity, bool is_force
   }
   end_ = std::ssize(identity_);
   is_reading_ = is_decided_ = true;
+  if (answers_ == Answers::in_order) return;
+  Head head;
+  if (read_next(head)) first_seconds_ = head.seconds;
+  is_reading_ = is_slow();
+  if (!is_reading_) file_.reset();
 }
 
 // Whether the file has a further call, and that is whole.
@@ -70,42 +87,73 @@ bool CallLog::read_next(Head& head) {
   bytes_.resize(is_possible ? head.request + head.answer + head.why : 0);
   if (!is_possible ||
       (!bytes_.empty() && std::fread(bytes_.data(), bytes_.size(), 1, file_.get()) != 1) ||
-      checksum_of(bytes_) != head.checksum) {
+      head.checksum_with(bytes_) != head.checksum) {
     cut("its last call is damaged");
     return false;
   }
   return true;
 }
 
+void CallLog::pass(const Head& head) {
+  end_ += static_cast<std::int64_t>(sizeof head + bytes_.size());
+  ++calls_;
+}
+
 // From here on, the run is another one than that of the file, or the file is damaged.
 void CallLog::cut(const char* why) {
-  say(stderr, fmt::format("isoline: the log of evaluations is cut off after {} calls: {}\n",
-                          replayed_, why));
+  say(stderr,
+      fmt::format("isoline: the log of evaluations is cut off after {} calls: {}\n", calls_, why));
   if (ftruncate(fileno(file_.get()), end_) != 0) file_.reset();
 }
 
-std::optional<std::string> CallLog::replay(Verb verb, std::uint32_t point, Numbers request,
-                                           std::span<Real> answer) {
-  if (!is_reading_) return std::nullopt;
-  Head head;
-  const bool has_next = read_next(head);
+bool CallLog::is_call(const Head& head, Verb verb, Numbers request,
+                      std::size_t answer_bytes) const {
   std::size_t at = 0;
-  bool is_same = has_next && head.verb == static_cast<std::uint32_t>(verb) && head.point == point &&
-                 (head.answer == 0 || head.answer == answer.size_bytes());
+  bool is_same = head.verb == static_cast<std::uint32_t>(verb) &&
+                 (head.answer == 0 || head.answer == answer_bytes);
   for (const std::span<const Real> part : request) {
     is_same = is_same && at + part.size_bytes() <= head.request &&
               std::memcmp(&bytes_[at], part.data(), part.size_bytes()) == 0;
     at += part.size_bytes();
   }
-  if (!is_same || at != head.request) {
-    if (has_next) cut("the run makes another call");
-    is_reading_ = false;
-    return std::nullopt;
+  return is_same && at == head.request;
+}
+
+// From the beginning; where the file does not have it, `end_` is that of its whole calls.
+bool CallLog::find(Head& head, Verb verb, Numbers request, std::size_t answer_bytes) {
+  const bool is_product =
+      verb == Verb::pushforward || verb == Verb::pullback || verb == Verb::jacobian;
+  end_ = std::ssize(identity_);
+  calls_ = 0;
+  std::fflush(file_.get());  // what was read before calls were appended
+  size_ = std::fseek(file_.get(), 0, SEEK_END) == 0 ? std::ftell(file_.get()) : end_;
+  std::fseek(file_.get(), end_, SEEK_SET);
+  while (end_ < size_ && read_next(head)) {
+    if (!is_product && is_call(head, verb, request, answer_bytes)) return true;
+    pass(head);
   }
-  const char* const from = bytes_.data() + at;
+  return false;
+}
+
+std::optional<std::string> CallLog::replay(Verb verb, std::uint32_t point, Numbers request,
+                                           std::span<Real> answer) {
+  if (!is_reading_ || !file_) return std::nullopt;
+  Head head;
+  if (answers_ == Answers::in_any_order) {
+    if (!find(head, verb, request, answer.size_bytes())) return std::nullopt;
+  } else {
+    const bool has_next = read_next(head);
+    if (!has_next || head.point != point || !is_call(head, verb, request, answer.size_bytes())) {
+      if (has_next) cut("the run makes another call");
+      is_reading_ = false;
+      return std::nullopt;
+    }
+    pass(head);
+  }
+  const char* const from = bytes_.data() + head.request;
   if (head.answer > 0) std::memcpy(answer.data(), from, head.answer);
-  end_ += static_cast<std::int64_t>(sizeof head + bytes_.size());
-  ++replayed_;
+  if (first_seconds_ < 0) first_seconds_ = head.seconds;
+  replayed_seconds_ += head.seconds;
   return std::string(from + head.answer, head.why);
 }
 
@@ -118,6 +166,7 @@ void CallLog::write_bytes(std::span<const char> bytes) {
 
 void CallLog::append(Verb verb, std::uint32_t point, Numbers request, std::span<const Real> answer,
                      const std::string& why, double seconds) {
+  if (first_seconds_ < 0) first_seconds_ = seconds;
   if (!is_decided_ && (is_forced_ || seconds >= kSlowSeconds)) {
     std::error_code error;
     std::filesystem::create_directories(path_.parent_path(), error);
@@ -126,7 +175,7 @@ void CallLog::append(Verb verb, std::uint32_t point, Numbers request, std::span<
   }
   is_decided_ = true;
   if (!file_) return;
-  Head head{.verb = static_cast<std::uint32_t>(verb), .point = point};
+  Head head{.verb = static_cast<std::uint32_t>(verb), .point = point, .seconds = seconds};
   bytes_.clear();
   for (const std::span<const Real> part : request) add(bytes_, part.data(), part.size_bytes());
   head.request = bytes_.size();
@@ -134,9 +183,15 @@ void CallLog::append(Verb verb, std::uint32_t point, Numbers request, std::span<
   head.answer = bytes_.size() - head.request;
   add(bytes_, why.data(), why.size());
   head.why = why.size();
-  head.checksum = checksum_of(bytes_);
-  write_bytes({reinterpret_cast<const char*>(&head), sizeof head});
+  head.checksum = head.checksum_with(bytes_);
+  write_bytes(head.bytes());
   if (file_) write_bytes(bytes_);
+}
+
+double call_clock() {
+  const CallLog* const log = call_log().get();
+  return 1e-9 * static_cast<double>(monotonic_nanoseconds()) +
+         (log != nullptr ? log->replayed_seconds() : 0);
 }
 
 }  // namespace isoline

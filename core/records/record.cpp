@@ -484,6 +484,25 @@ Budget budget_from(const JsonView& json) {
   return budget;
 }
 
+void add_suite(std::vector<std::string>& suites, const std::string& suite) {
+  const auto name_in = [](const std::string& one) { return one.substr(0, one.find('@')); };
+  const auto with_version = [](const std::string& one) {
+    return one.find('@') == one.npos ? one + "@1" : one;
+  };
+  for (std::string& known : suites) {
+    if (name_in(known) != name_in(suite)) continue;
+    require(with_version(known) == with_version(suite), [&] {
+      return fmt::format(
+          "results of {} and {} cannot be combined, since the settings of a suite differ between "
+          "its versions; keep each version in its own folder, and report it alone",
+          with_version(known), with_version(suite));
+    });
+    if (suite.size() > known.size()) known = suite;  // the one that states its version
+    return;
+  }
+  suites.push_back(suite);
+}
+
 Json to_json(const Plan& plan) { return json_of(plan); }
 std::string file_text(const Plan& plan) { return json_text(to_json(plan)) + "\n"; }
 Plan plan_from_text(const std::string& text, const std::string& origin) {

@@ -79,9 +79,12 @@ struct PlannedCell {
   std::uint64_t seed = 0;
 };
 struct Plan {
-  std::vector<std::string> suites;
+  std::vector<std::string> suites;  // each with its version, "quick@1"; without one, it is 1
   std::vector<PlannedCell> cells;
 };
+// Adds a suite that is not there yet. UsageError if another version of it is there: the settings of
+// two versions differ, so their results never stand in one ranking.
+void add_suite(std::vector<std::string>& suites, const std::string& suite);
 std::string file_text(const Plan& plan);
 Json to_json(const Plan& plan);
 Plan plan_from_text(const std::string& text, const std::string& origin);

@@ -11,7 +11,6 @@
 #include "core/errors.h"
 #include "core/files.h"
 #include "core/records/fields.h"
-#include "core/records/suites.h"
 #include "core/results/statistics.h"
 #include "core/seeds.h"
 

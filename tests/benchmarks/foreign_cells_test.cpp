@@ -7,6 +7,7 @@
 #include <fstream>
 #include <map>
 #include <regex>
+#include <sstream>
 
 #include "benchmarks/plan/catalog.h"
 #include "benchmarks/run/process_group.h"
@@ -342,19 +343,110 @@ TEST_F(ForeignCells, WaitForACertificateThatSaysHowFarItIs) {
   EXPECT_TRUE(std::regex_search(shown, std::regex("[0-9]+ of [0-9]+ checks"))) << shown;
 }
 
-TEST_F(ForeignCells, OfAnUncertifiedProblemAreMarkedInEachTable) {
+TEST_F(ForeignCells, OfAnUncheckedProblemAreMarkedInEachTable) {
+  const Request sound = request_of(kValley, "gd");
+  run_plan(catalog(), "trial", {sound}, folder.path(), options, {});
   options.uncertified = true;
   const Request wrong =
       request_of(process_of(misbehaving("misbehaving.py has-a-wrong-sign")), "gd");
-  run_plan(catalog(), "trial", {wrong, request_of(kValley, "gd")}, folder.path(), options, {});
-  std::size_t marked = 0;
+  const Request known = request_of(kValley, "levenberg-marquardt");
+  run_plan(catalog(), "trial", {wrong, known}, folder.path(), options, {});
+  std::size_t marked = 0, all = 0;
   for (const std::string& name : names_in(folder.path() / "runs")) {
     const Record record = read_record(folder.path() / "runs" / name);
     const bool is_marked = record.foreign.problem->label.ends_with(" (uncertified)");
-    EXPECT_EQ(is_marked, record.cell == wrong.cell);
+    EXPECT_EQ(is_marked, record.cell == wrong.cell) << "the other one has a certificate";
     marked += is_marked;
+    ++all;
   }
   EXPECT_EQ(marked, 1U);
+  EXPECT_EQ(all, 3U);
+}
+
+// A program that writes a line per call, of 0.11 s each: the process that it computes for.
+class SlowProgram : public ForeignCells {
+ protected:
+  Request request_with(const std::string& derivatives, const std::string& method) {
+    write_text(script,
+               "import os, signal, time, isoline\n"
+               "log, mortal = '" +
+                   log.string() + "', '" + mortal.string() +
+                   "'\n"
+                   "def forward(x):\n"
+                   "    with open(log, 'a') as file: file.write(f'{os.getppid()}\\n')\n"
+                   "    time.sleep(0.11)\n"
+                   "    if os.path.exists(mortal):\n"
+                   "        with open(log) as file: calls = len(list(file))\n"
+                   "        if calls == 4: os.kill(os.getppid(), signal.SIGKILL)\n"
+                   "    return [x[0] ** 2 - x[1], 2 * x[1]]\n"
+                   "isoline.problem(forward, [1.0, 1.0], target=[0, 0], minimum=0" +
+                   derivatives + ")\n");
+    write_text(log, "");
+    return request_of(process_of("python3 " + script.string()), method, {.work = 6});
+  }
+  // Calls for each process, in the order of its first.
+  std::vector<std::size_t> calls() const {
+    std::vector<std::string> processes;
+    std::vector<std::size_t> counts;
+    std::istringstream lines(read_text(log));
+    for (std::string line; std::getline(lines, line);) {
+      if (processes.empty() || processes.back() != line) {
+        processes.push_back(line);
+        counts.push_back(0);
+      }
+      ++counts.back();
+    }
+    return counts;
+  }
+  std::int64_t run(const Request& request) {
+    return run_plan(catalog(), "trial", {request}, folder.path(), options, {}).run;
+  }
+
+  std::filesystem::path script = folder.path() / "slow.py", log = folder.path() / "calls",
+                        mortal = folder.path() / "mortal";
+};
+
+// Neither the metadata nor the verification makes one.
+TEST_F(SlowProgram, MakesTheAnnouncedCallsAndThoseOfItsCell) {
+  options.progress = Progress::Style::plain;
+  const std::map<std::string, std::size_t> expected = {
+      {"", 3}, {", jacobian=lambda x: [[2 * x[0], -1], [0, 2]]", 9}, {", differences=True", 9}};
+  for (const auto& [derivatives, count] : expected) {
+    const Request request = request_with(derivatives, "nlopt-neldermead");
+    testing::internal::CaptureStderr();
+    EXPECT_EQ(run(request), 1);
+    const std::string shown = testing::internal::GetCapturedStderr();
+    std::smatch found;
+    ASSERT_TRUE(std::regex_search(shown, found, std::regex("([0-9]+) calls of [0-9.]+ s")))
+        << shown;
+    EXPECT_EQ(std::stoul(found[1]), count) << derivatives;
+    const std::vector<std::size_t> made = calls();
+    ASSERT_EQ(made.size(), 2U) << derivatives << ": the checks and the cell";
+    EXPECT_EQ(made[0], count) << derivatives;
+    EXPECT_EQ(run(request), 0);
+    EXPECT_EQ(calls(), made) << "a second run makes none";
+    EXPECT_TRUE(names_in(folder.path() / "checkpoints").empty());
+    const Component& problem = request.problem;
+    Sheet sheet{.kind = "problem", .name = problem.name, .spec = problem.spec};
+    const auto file = folder.path() / "components" / sheet.file_name();
+    sheet = sheet_from_text(read_text(file), file.string());
+    ASSERT_TRUE(sheet.prices.has_value());
+    EXPECT_GE(sheet.prices->forward_seconds, 0.11);
+  }
+}
+
+// At the fourth call of its checks, which is made again.
+TEST_F(SlowProgram, WhoseChecksWereKilledMakesTheOthersAlone) {
+  const Request request = request_with(", jacobian=lambda x: [[2 * x[0], -1], [0, 2]]", "gd");
+  write_text(mortal, "");
+  const std::string reason = refusal([&] { run(request); });
+  EXPECT_NE(reason.find("cannot be checked"), std::string::npos) << reason;
+  EXPECT_EQ(calls(), std::vector<std::size_t>{4});
+  std::filesystem::remove(mortal);
+  EXPECT_EQ(run(request), 1);
+  const std::vector<std::size_t> made = calls();
+  ASSERT_EQ(made.size(), 3U) << "the checks twice, and the cell";
+  EXPECT_EQ(made[1], 9U - 3U);
 }
 
 TEST_F(ForeignCells, HandOverACopyOfX) {

@@ -18,7 +18,7 @@
 #include "core/json.h"
 #include "core/random.h"
 #include "core/records/json_view.h"
-#include "core/records/suites.h"
+#include "core/records/request.h"
 #include "core/spec.h"
 #include "core/text.h"
 #include "problems/problem.h"

@@ -430,7 +430,7 @@ class Judging : public testing::Test {
     const Request request = asked("trap", {{"deed", deed}}, "gd", {});
     for (std::size_t slot = 0; slot < workers.size(); ++slot) {
       workers[slot].keep_returned(std::vector<Real>{points[slot]});
-      judges.ask(slot, request, limits);
+      judges.ask(slot, request, limits, {});
     }
     std::vector<Verdict> all;
     wait_until([&] {

@@ -39,6 +39,36 @@ TEST(Choose, NamesAMethodThatNeedsNoMoreThanTheUserHas) {
   shell.expect("./isoline choose out --have wings", {.exit_code = 1});
 }
 
+TEST(Output, InAFolderThatCannotBeIsRefusedWithTheReason) {
+  const Shell shell;
+  shell.expect(
+      "./isoline run --problem square --optimizer gd,adam --seeds 2 --iterations 20 "
+      "--out out --no-report --quiet");
+  write_text(shell.folder() / "README.md", "mine");
+  const std::vector<std::string> with_folder = {"report out",
+                                                "site out",
+                                                "figures out",
+                                                "merge out",
+                                                "audit gd",
+                                                "claims",
+                                                "run --problem square --optimizer gd",
+                                                "export out --format coco"};
+  for (const std::string& verb : with_folder) {
+    shell.expect("./isoline " + verb + " --out README.md/x",
+                 {.exit_code = 1, .err = {"README.md is a file", "--out"}});
+    shell.expect("./isoline " + verb + " --out /proc/nowhere",
+                 {.exit_code = 1, .err = {"/proc", "--out"}});
+  }
+  for (const std::string verb : {"report out", "site out", "figures out"})
+    shell.expect("./isoline " + verb + " --out README.md",
+                 {.exit_code = 1, .err = {"README.md: it is a file", "--out"}});
+  for (const std::string verb :
+       {"export out", "baseline out", "best out", "solution out --format npy"})
+    shell.expect("./isoline " + verb + " --out README.md/x",
+                 {.exit_code = 1, .err = {"README.md: it is a file", "--out"}});
+  EXPECT_EQ(read_text(shell.folder() / "README.md"), "mine");
+}
+
 // A feature belongs to the setting; its default is the plain problem.
 TEST(Features, AreOptionsOfEveryProblemAndFactorsOfASuite) {
   const Shell shell;

@@ -119,7 +119,8 @@ class Copies : public testing::Test {
   Result result_of(const std::string& method, int copies, const std::string& how = "raises",
                    const OptionValues& features = {}) const {
     for (const char* name : {"shared", "calls"}) std::filesystem::remove(folder.path() / name);
-    failed_evaluations() = {};
+    const auto failures = std::make_unique<FailedEvaluations>();
+    const FailureSink sink(*failures);
     call_log() = std::make_unique<CallLog>(log, "a run", true);
     const std::string command = "python3 " + script.string() + " " + how + " " +
                                 std::to_string(copies) + " " + folder.path().string();
@@ -128,8 +129,11 @@ class Copies : public testing::Test {
         Draw(0, "process"));
     Result result{.outcome = run(problem, method, {.iterations = 100, .work = 60, .target = 0})};
     call_log().reset();
-    result.failed = failed_evaluations().total;
-    result.first_failed = failed_evaluations().first_x;
+    result.failed = failures->total;
+    if (failures->kept > 0) {
+      const std::span<const Real> x = failures->point(0);
+      result.first_failed = Eigen::Map<const Vector>(x.data(), std::ssize(x));
+    }
     result.log = read_text(log);
     if (copies > 1 && how != "naps") {
       EXPECT_TRUE(std::filesystem::exists(folder.path() / "shared")) << method;
