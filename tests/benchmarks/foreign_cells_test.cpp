@@ -136,47 +136,74 @@ TEST_F(ForeignCells, EndAfterTooManyFailedCallsInARow) {
   EXPECT_NE(one.message.find("KeyError"), std::string::npos) << one.message;
 }
 
-// A program that kills Isoline's cell at its n-th call: the process above it.
-TEST_F(ForeignCells, ThatWereKilledAreAnsweredFromTheirLogAndEndAsOthers) {
+// Two of Rosenbrock's valleys, with a part that fails. Writes a letter per call, and kills
+// Isoline's cell, the process above it, at call `every` of each program, as often as `kills` says.
+TEST_F(ForeignCells, ThatWereKilledTwentyTimesAreAnsweredFromTheirLogAndEndAsOthers) {
   const auto script = folder.path() / "mortal.py", log = folder.path() / "calls",
-             last = folder.path() / "last";
-  write_text(script,
-             "import os, signal, isoline\n"
-             "log, last = '" +
-                 log.string() + "', '" + last.string() +
-                 "'\n"
-                 "def forward(x):\n"
-                 "    open(log, 'a').write('.')\n"
-                 "    if os.path.exists(last) and os.path.getsize(log) >= int(open(last).read()):\n"
-                 "        os.remove(last)\n"
-                 "        os.kill(os.getppid(), signal.SIGKILL)\n"
-                 "    if x[1] > 1.2: raise KeyError('mesh')\n"
-                 "    return [10 * (x[1] - x[0] * x[0]), 1 - x[0]]\n"
-                 "isoline.problem(forward, [-1.2, 1], truth=[1, 1],\n"
-                 "                jacobian=lambda x: [[-20 * x[0], 10], [-1, 0]])\n");
-  const std::string problem = process_of("python3 " + script.string());
-  const std::string scipy = process_of(example("scipy_optimize.py BFGS", python_with("scipy")));
+             kills = folder.path() / "kills";
+  write_text(
+      script,
+      "import os, signal, sys\n"
+      "sys.modules['numpy'] = None  # a quick start\n"
+      "import isoline\n"
+      "log, kills = '" +
+          log.string() + "', '" + kills.string() +
+          "'\n"
+          "every = 0\n"
+          "if os.path.exists(kills): every, left = map(int, open(kills).read().split())\n"
+          "calls = 0\n"
+          "def count():\n"
+          "    global calls\n"
+          "    calls += 1\n"
+          "    with open(log, 'a') as file: file.write('.')\n"
+          "    if every == calls and left > 0:\n"
+          "        with open(kills, 'w') as file: file.write(f'{every} {left - 1}')\n"
+          "        os.kill(os.getppid(), signal.SIGKILL)\n"
+          "def forward(x):\n"
+          "    count()\n"
+          "    if x[1] > 1.2 and len(sys.argv) == 1: raise KeyError('mesh')\n"
+          "    return [10 * (x[1] - x[0] ** 2), 1 - x[0], 10 * (x[3] - x[2] ** 2), 1 - x[2]]\n"
+          "def jacobian(x):\n"
+          "    count()\n"
+          "    return [[-20 * x[0], 10, 0, 0], [-1, 0, 0, 0],\n"
+          "            [0, 0, -20 * x[2], 10], [0, 0, -1, 0]]\n"
+          "isoline.problem(forward, [-1.2, 1, -1.1, 1.1], target=[0] * 4, jacobian=jacobian)\n");
+  const std::string command = "python3 " + script.string();
+  constexpr std::size_t kKills = 20;
   options.logs_calls = true;
-  for (const std::string& method :
-       {std::string("nlopt-bobyqa"), std::string("ceres-lm"), std::string("levenberg-marquardt"),
-        std::string("nlopt-neldermead"), python_with("scipy").empty() ? "gd" : scipy}) {
-    const Request request = request_of(problem, method, {.iterations = 40});
+  std::vector<std::string> methods = {"nlopt-bobyqa",
+                                      "ceres-lm",
+                                      "levenberg-marquardt",
+                                      "dfo-gn",
+                                      "levenberg-marquardt[jacobian=differences]",
+                                      "eki"};
+  if (const std::string python = python_with("scipy"); !python.empty())
+    methods.push_back(process_of(example("scipy_optimize.py bfgs", python)));
+  for (const std::string& method : methods) {
+    const bool is_script = method.starts_with("process");  // whose line search fails for good
+    const Request request = request_of(process_of(command + (is_script ? " safe" : "")), method,
+                                       {.iterations = 40, .target = 0});
     options.force = true;
     write_text(log, "");
-    const Json whole = without_timings(to_json(record_of(request)));
+    std::filesystem::remove(kills);
+    const Record uninterrupted = record_of(request);
+    EXPECT_FALSE(is_failure(uninterrupted.status)) << method << ": " << uninterrupted.message;
+    const Json whole = without_timings(to_json(uninterrupted));
     const std::size_t calls = read_text(log).size();
-    for (const std::size_t kill : {calls / 4, calls / 2}) {
-      options.force = true;
-      write_text(log, "");
-      write_text(last, std::to_string(kill));
-      EXPECT_EQ(record_of(request).status, Status::interrupted) << method << " " << kill;
+    ASSERT_GT(calls, 2 * kKills + 5) << method;
+    const std::size_t every = std::max<std::size_t>(3, calls / (kKills + 1));
+    write_text(kills, std::to_string(every) + " " + std::to_string(kKills));
+    write_text(log, "");
+    for (std::size_t kill = 0; kill < kKills; ++kill) {
+      const Record record = record_of(request);
+      ASSERT_EQ(record.status, Status::interrupted) << method << " " << kill << record.message;
       options.force = false;
-      EXPECT_EQ(without_timings(to_json(record_of(request))), whole) << method << " " << kill;
-      EXPECT_FALSE(
-          std::filesystem::exists(store.checkpoint_path(request).replace_extension(".calls")));
-      // Each program that is started, and the check of the returned point, make calls of their own.
-      EXPECT_LE(read_text(log).size(), calls + 10) << method << " " << kill;
     }
+    EXPECT_EQ(without_timings(to_json(record_of(request))), whole) << method;
+    EXPECT_FALSE(
+        std::filesystem::exists(store.checkpoint_path(request).replace_extension(".calls")));
+    // A call that was cut short is made again, and the point of a product that follows it.
+    EXPECT_LE(read_text(log).size(), calls + 2 * kKills) << method;
   }
 }
 
