@@ -415,8 +415,10 @@ void Meter::measure(VectorRef theta) {
   last.x_error = problem_.x_error(judged_.x(), judging());
   last.gradient_norm = last.kkt_residual = TracePoint::kAbsent;
   if (problem_.noise_level()) last.discrepancy = problem_.discrepancy(judged_);
-  // A second pass over the network for a validation of many samples would cost more than the step.
-  if (measures_gradients_ && !problem_.is_learned() && problem_.products().has_pullback) {
+  // A second pass over the network for a validation of many samples would cost more than the step,
+  // and differences would cost calls that the method does not make.
+  const problems::Products has = problem_.products();
+  if (measures_gradients_ && !problem_.is_learned() && has.has_pullback && !has.are_differences) {
     judged_g_.resize(problem_.outputs(), problem_.samples());
     judged_gradient_.resize(problem_.unknowns());
     problem_.cotangent(judged_, judged_g_);
