@@ -118,7 +118,7 @@ struct ProblemParts {
   std::optional<Jitter> jitter = {};  // of the calls
   Index penalties = 0;                // last rows of y that are no data, but a penalty
   std::optional<Bounds> bounds;       // on θ = x of a direct problem
-  // Of the unknowns of a direct problem, such as "k" and "N/m", (n); empty: x1, x2, …, no units.
+  // Names and units of the unknowns of a direct problem, (n); empty: x1, x2, … without units.
   std::vector<std::string> names = {}, units = {};
   // Distance from x to the nearest solution, the mean over samples, where solutions are known.
   std::function<Real(BatchRef x, const Batch& batch)> x_error;

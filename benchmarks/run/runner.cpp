@@ -6,6 +6,7 @@
 #include <poll.h>
 
 #include <algorithm>
+#include <cmath>
 #include <deque>
 #include <memory>
 #include <thread>
@@ -61,6 +62,11 @@ bool RunOptions::redoes(const std::optional<Record>& done) const {
 }
 
 namespace {
+
+// A call that failed once may succeed when it is repeated.
+bool ends_at_a_failure(const Trace& trace) {
+  return trace.failures.total > 0 && std::isnan(trace.last.loss);
+}
 
 // The remaining runs of a plan. Each is given to one process of those that share the folder.
 class Pending {
@@ -286,7 +292,7 @@ class Runner {
         worker.conclude(verdict.is_interrupted ? Status::interrupted : Status::failed,
                         "the returned point could not be verified: " + verdict.failure);
       else if (const auto found = contradiction(told_by(worker.trace()), *verdict.judged);
-               !found.empty())
+               !found.empty() && !ends_at_a_failure(worker.trace()))
         worker.conclude(Status::failed, found);
       keep(verdict.slot);
     }

@@ -298,9 +298,12 @@ Section papers_section(const std::vector<Judgement>& judgements) {
                                      : fmt::format("{:.0f} min", seconds / kMinute);
     };
     const bool has_runs = judgement.measured.has_value();
+    const auto is_short_enough = [&](const CellSet& set) {
+      return !set.is_long && set.iterations >= judgement.needs;
+    };
     const bool is_long =
-        takes_hours(judgement.sets) || (judgement.verdict == Verdict::too_short &&
-                                        std::ranges::any_of(judgement.sets, &CellSet::is_long));
+        takes_hours(judgement.sets) || (std::ranges::any_of(judgement.sets, &CellSet::is_long) &&
+                                        std::ranges::none_of(judgement.sets, is_short_enough));
     std::string verdict = verdict_text(judgement);
     if (!is_decided(judgement.verdict) && !judgement.why.empty()) verdict += ": " + judgement.why;
     if (is_not_run(judgement) && judgement.verdict != Verdict::undecidable) verdict = "not run";

@@ -71,14 +71,14 @@ const std::vector<std::pair<std::string, std::string>> kMistakes = {
     {"infer absent.json --input x.csv --output y.csv", "absent.json: no such file"},
     {"train rosenbrock --out net.json",
      "burgers, coupled-oscillators, exponential, heat, hig-toy, linear-chain, navier-stokes"},
-    {"run --problem 'rosenbrock[mode=learn]'", "rosenbrock does not support mode=learn"},
+    {"run --problem 'rosenbrock[mode=learn]'", "rosenbrock cannot train a network"},
     {"claims sip-bettr-in-x", "did you mean 'sip-better-in-x-worse-in-loss'"},
     {"claims zzzz", "`isoline claims --list --all`"},
     {"run quick --in-process --dry-run", "--dry-run"},
     {"run quick --shard 5/4", "1 ≤ I ≤ N"},
     {"run quick --shard auto", "ISOLINE_SHARD, SLURM_ARRAY_TASK_ID"},
     {"plan quick --shards 0", "--shards"},
-    {"status absent", "absent contains neither"},
+    {"status absent", "absent: no such result folder"},
     {"run quik", "did you mean 'quick'"},
     {"run --problem square --optimizer 'adam[beta3=1]'", "did you mean 'beta"},
     {"run --problem 'sine[xi=-3]' --optimizer gd", "sine: xi must"},
@@ -422,7 +422,7 @@ TEST(Terminal, ATuningSaysEdgesAndTies) {
 TEST(Terminal, CellsRunInOneProcessForADebuggerAndLeaveNoRecord) {
   const Shell shell;
   shell.expect("./isoline run --problem square --optimizer newton,gd --in-process",
-               {.out = {"square × newton, seed 0: ", "no record was written"}});
+               {.out = {"square × newton, seed 0: ", "writes no records"}});
   EXPECT_FALSE(std::filesystem::exists(shell.folder() / "results"));
 }
 
@@ -442,7 +442,7 @@ TEST(Terminal, ACrashSaysHowToDebugItAndTheCommandCrashesAgain) {
       << result.err;
   const Finished again = shell("ulimit -c 0; " + found[1].str());
   EXPECT_NE(again.exit_code, 0);
-  EXPECT_FALSE(contains(again.out, "no record was written")) << "it ended before";
+  EXPECT_FALSE(contains(again.out, "writes no records")) << "it ended before";
 }
 
 TEST(Terminal, AComparisonBeginsWithItsVerdictAndIsShort) {

@@ -403,7 +403,7 @@ TEST(Library, ThatAbortsInItsCertificateHasNoCells) {
   const Shell shell;
   const Finished refused = run_of_valley(shell, "abort()");
   EXPECT_EQ(refused.exit_code, 1) << refused.out << refused.err;
-  EXPECT_TRUE(contains(refused.err, "rosenbrock-c fails its checks")) << refused.err;
+  EXPECT_TRUE(contains(refused.err, "rosenbrock-c failed a check")) << refused.err;
   EXPECT_TRUE(contains(refused.err, "signal 6")) << refused.err;
   EXPECT_EQ(count_records(shell.folder() / "out"), 0U);
 }

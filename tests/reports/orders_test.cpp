@@ -192,7 +192,7 @@ TEST(Orders, TheFirstSentenceSaysHowItsRunsDiffer) {
   const Compared c(study);
   ASSERT_TRUE(c.is_any_timed_together);
   const std::string first = verdict(c).at(0);
-  EXPECT_TRUE(has(first, "other runs), kin")) << first;
+  EXPECT_TRUE(has(first, "approximate wall time, kin")) << first;
   EXPECT_LE(std::ranges::count(first, ' '), 59) << first;
   for (const Record& record : std::vector(study.runs)) {
     study.runs.push_back(record);
