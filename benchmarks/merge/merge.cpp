@@ -328,8 +328,9 @@ MergeOutcome merge_folders(const std::vector<fs::path>& given, const fs::path& o
   const fs::path place = fs::weakly_canonical(out), unfinished = temporary_of(place);
   const InterruptGuard guard;  // what is half made is removed before the program ends
   try {
-    fs::remove_all(unfinished);
     make_output_folder(unfinished);
+    fs::remove_all(unfinished);  // what a killed process of this number left
+    fs::create_directory(unfinished);
     MergeOutcome outcome = Merge(folders, unfinished, listener).run();
     if (!outcome.conflicts.empty()) {
       fs::remove_all(unfinished);

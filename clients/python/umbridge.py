@@ -139,8 +139,8 @@ class Model:
         try:
             status, text = self.exchange(path, members)
         except (OSError, http.client.HTTPException) as error:
-            end = f"; the server {self.ending()}" if self.process else ""
-            raise RuntimeError(f"{self.url}{path}: {error or type(error).__name__}{end}") from None
+            end = f"the server {self.ending()}: " if self.process else ""
+            raise RuntimeError(f"{end}{self.url}{path}: {error or type(error).__name__}") from None
         try:
             answer = json.loads(text)
         except ValueError:
