@@ -154,8 +154,8 @@ Real discrepancy_of(const std::string& stop) {
   const Spec spec = parse_spec(stop);
   require(spec.name == "discrepancy" || stop == "none", [&] {
     return fmt::format(
-        "a stopping rule must be none or discrepancy, which has the option tau, as in "
-        "discrepancy[tau=1.5]; got {}",
+        "a stopping rule must be 'none' or 'discrepancy' (with the option tau, as in "
+        "'discrepancy[tau=1.5]'), got '{}'",
         stop);
   });
   if (stop == "none") return 0;
