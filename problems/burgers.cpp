@@ -203,12 +203,12 @@ void BurgersFlow::reverse(VectorRef y, VectorOut x) const {
 
 namespace {
 
-struct BurgersOptions {
+struct Options {
   Index N = 64, steps = 0;
   Real viscosity = 0.005, time = 0.1;
   Learning learning{.network = "mlp[layers=128-128]", .batch = 64};
 };
-void fields(BurgersOptions& o, auto& field) {
+void fields(Options& o, auto& field) {
   field("N", o.N, between(4, 4096), "cells of the ring");
   field("steps", o.steps, between(0, 1e6),
         "time steps; 0: the number that T N/steps ≤ ½ and ν T N²/steps ≤ 0.4 require");
@@ -217,7 +217,7 @@ void fields(BurgersOptions& o, auto& field) {
   fields(o.learning, field);
 }
 
-auto flow_of(const BurgersOptions& o) {
+auto flow_of(const Options& o) {
   return std::make_unique<BurgersFlow>(o.N, o.steps, o.viscosity, o.time);
 }
 
@@ -251,7 +251,7 @@ History history_of(const std::shared_ptr<const BurgersFlow>& flow) {
   return [flow](VectorRef x, BatchOut states) { flow->history(x, states); };
 }
 
-ProblemParts learn_burgers(const BurgersOptions& o, const Draw& draw) {
+ProblemParts learn_burgers(const Options& o, const Draw& draw) {
   const auto physics = std::shared_ptr<const BurgersFlow>(flow_of(o));
   const auto sample = [physics](RandomStream& stream, Index b, Batch& batch) {
     batch.truth.col(b) = random_state(physics->inputs(), stream);
@@ -269,7 +269,7 @@ ProblemParts learn_burgers(const BurgersOptions& o, const Draw& draw) {
                 .history = history_of(physics)});
 }
 
-ProblemParts make_burgers(const BurgersOptions& o, const Draw& draw) {
+ProblemParts make_burgers(const Options& o, const Draw& draw) {
   if (o.learning.is_on()) return learn_burgers(o, draw);
   RandomStream stream = draw.stream("target");
   const auto shown = std::shared_ptr<const BurgersFlow>(flow_of(o));

@@ -12,11 +12,11 @@
 namespace isoline::problems {
 namespace {
 
-struct ExponentialOptions {
+struct Options {
   Index n = 1;
   Learning learning{.network = "mlp[layers=16-64-16,activation=sigmoid]", .batch = 100};
 };
-void fields(ExponentialOptions& o, auto& field) {
+void fields(Options& o, auto& field) {
   field("n", o.n, between(1, 1e6), "number of components");
   fields(o.learning, field);
 }
@@ -81,7 +81,7 @@ void errors_by_decade(const Problem&, VectorRef, Point& at, VectorOut values) {
 }
 
 // x* = −12u, u ~ U[0, 1); the network sees y* as it is.
-ProblemParts learn_exponential(const ExponentialOptions& o, const Draw& draw) {
+ProblemParts learn_exponential(const Options& o, const Draw& draw) {
   const auto sample = [](RandomStream& stream, Index b, Batch& batch) {
     for (Real& x : batch.truth.col(b)) x = kSpan * stream.uniform();
     batch.target.col(b) = batch.truth.col(b).unaryExpr(kExp);
@@ -98,7 +98,7 @@ ProblemParts learn_exponential(const ExponentialOptions& o, const Draw& draw) {
        .series = {.names = {kDecades.begin(), kDecades.end()}, .evaluate = errors_by_decade}});
 }
 
-ProblemParts make_exponential(const ExponentialOptions& o, const Draw& draw) {
+ProblemParts make_exponential(const Options& o, const Draw& draw) {
   if (o.learning.is_on()) return learn_exponential(o, draw);
   const Real n = static_cast<Real>(o.n);
   const Matrix truth = draw.is_published()

@@ -29,11 +29,11 @@ using networks::make_network;
 using networks::MeanMatched;
 namespace {
 
-struct HeatOptions {
+struct Options {
   Index N = 64;
   Learning learning{.network = "unet", .batch = 128};
 };
-void fields(HeatOptions& o, auto& field) {
+void fields(Options& o, auto& field) {
   field("N", o.N, between(2, 1024), "cells along each side");
   fields(o.learning, field);
 }
@@ -182,7 +182,7 @@ Real learned_floor(const Heat& physics, const Batch& batch) {
 }
 
 // The mean of x* is that of y*, which a network is given: x ← N(y*) + mean(y*) − mean(N(y*)).
-ProblemParts make_heat(const HeatOptions& o, const Draw& draw) {
+ProblemParts make_heat(const Options& o, const Draw& draw) {
   const Index N = o.N;
   const Field field{
       .rows = N, .columns = N, .x = {"initial temperature"}, .y = {"final temperature"}};

@@ -15,7 +15,7 @@
 namespace isoline::problems {
 namespace {
 
-struct NavierStokesOptions {
+struct Options {
   Index N = 64, steps = 8;
   Real dt = 0.25, viscosity = 0;
   std::string ground_truth = "staggered", rescale = "component", loss;
@@ -37,7 +37,7 @@ struct NavierStokesOptions {
   Index cells() const { return N * N; }
 };
 
-void fields(NavierStokesOptions& o, auto& field) {
+void fields(Options& o, auto& field) {
   field("N", o.N, between(6, 128), "cells along each side, an even number");
   field("steps", o.steps, between(1, 1000), "time steps");
   field("dt", o.dt, above(0), "time step Δt; a cell is 128/N wide");
@@ -62,7 +62,7 @@ void fields(NavierStokesOptions& o, auto& field) {
 
 // The fastest flow of draw_flow must not cross more than half the domain in one step: otherwise a
 // back-trace would come from the other side.
-void check_speed(const NavierStokesOptions& o) {
+void check_speed(const Options& o) {
   constexpr Real kVortex = 25, kFluctuation = 1;  // 2 · 20 e^(−½), and above ten deviations
   const Real fastest = 32 / o.time() + kVortex + kFluctuation;
   const Real passed = fastest * o.dt;
@@ -74,7 +74,7 @@ void check_speed(const NavierStokesOptions& o) {
   });
 }
 
-std::unique_ptr<FlowPhysics> physics_of(const NavierStokesOptions& o) {
+std::unique_ptr<FlowPhysics> physics_of(const Options& o) {
   const FlowPhysics::Back back = o.inverse == "coarse"    ? FlowPhysics::Back::coarse
                                  : o.track == "published" ? FlowPhysics::Back::published
                                                           : FlowPhysics::Back::consistent;
@@ -84,7 +84,7 @@ std::unique_ptr<FlowPhysics> physics_of(const NavierStokesOptions& o) {
 // Samples a flow and simulates it as the generator of the data does.
 class Generator {
  public:
-  explicit Generator(const NavierStokesOptions& o)
+  explicit Generator(const Options& o)
       : N_(o.N), time_(o.time()), simulation_(o.flow(o.truth()), o.steps) {}
 
   void draw(RandomStream& stream) {
@@ -108,7 +108,7 @@ class Generator {
 };
 
 // The common parts of all instances.
-ProblemParts flow_parts(const NavierStokesOptions& o) {
+ProblemParts flow_parts(const Options& o) {
   const auto measure = std::make_shared<FlowDistance>(o.flow(Arrangement::staggered), o.truth());
   ProblemParts parts{
       .physics = physics_of(o),
@@ -127,7 +127,7 @@ ProblemParts flow_parts(const NavierStokesOptions& o) {
   return parts;
 }
 
-ProblemParts learn_navier_stokes(const NavierStokesOptions& o, const Draw& draw) {
+ProblemParts learn_navier_stokes(const Options& o, const Draw& draw) {
   require(o.learning.watch != "spectrum",
           "navier-stokes: watch=spectrum needs one number per cell in x; a velocity has two");
   const auto generator = std::make_shared<Generator>(o);
@@ -175,7 +175,7 @@ Real spectral_floor(const FlowPhysics& physics, FlowDistance& measure, const Vec
 
 // The standard start is the uniform flow that carries the marker's centre from its first place to
 // its last. All advections are nondifferentiable at 0.
-ProblemParts make_navier_stokes(const NavierStokesOptions& o, const Draw& draw) {
+ProblemParts make_navier_stokes(const Options& o, const Draw& draw) {
   check(o.flow(Arrangement::staggered));
   check_speed(o);
   if (o.learning.is_on()) return learn_navier_stokes(o, draw);

@@ -240,14 +240,14 @@ void ParticleInABox::project(BatchRef a, Index columns, BatchOut y) const {
 
 namespace {
 
-struct QuantumDipoleOptions {
+struct Options {
   Index steps = ParticleInABox::kSteps;
   std::string loss;
   Index epoch = 1024;
   Learning learning{.network = "mlp[layers=20-20-20,activation=tanh,precision=double,init=glorot]",
                     .batch = 16};
 };
-void fields(QuantumDipoleOptions& o, auto& field) {
+void fields(Options& o, auto& field) {
   field("steps", o.steps, between(48, 3072),
         "number of time steps, each with one control; the total time is 19.2 for any number");
   field("loss", o.loss, {"", "residual"},
@@ -295,7 +295,7 @@ Vector interleaved(const Vector& a) {
 
 constexpr Real kRounding = 1e-12;  // of 1 − |⟨a, ψ⟩|², as ‖ψ‖ is kept to it over all steps
 
-ProblemParts make_quantum_dipole(const QuantumDipoleOptions& o, const Draw& draw) {
+ProblemParts make_quantum_dipole(const Options& o, const Draw& draw) {
   const bool is_residual = o.loss == "residual";
   ProblemParts parts;
   if (!o.learning.is_on()) {

@@ -15,12 +15,12 @@
 namespace isoline::problems {
 namespace {
 
-struct SineOptions {
+struct Options {
   Real gamma = 10, xi = 10, phi = 45;
   std::string form = "code";
   Learning learning{.network = "mlp[layers=32-64-32]", .batch = 100};
 };
-void fields(SineOptions& o, auto& field) {
+void fields(Options& o, auto& field) {
   field("gamma", o.gamma, between(0.1, 100), "scale γ of both coordinates");
   field("xi", o.xi, between(1, 1000), "conditioning ξ");
   field("phi", o.phi, between(-180, 180), "rotation φ in degrees");
@@ -30,7 +30,7 @@ void fields(SineOptions& o, auto& field) {
 
 class Sine final : public DensePhysics {
  public:
-  explicit Sine(const SineOptions& o) : DensePhysics(2, 2) {
+  explicit Sine(const Options& o) : DensePhysics(2, 2) {
     const bool inside = o.form == "code";
     amplitude_ = inside ? 1 : 1 / o.xi;
     frequency_ = inside ? o.gamma / o.xi : o.gamma;
@@ -98,7 +98,7 @@ Real distance(const Sine& physics, BatchRef target, BatchRef x) {
 
 // y* ~ U([−1, 1]²), the network's input; x* is the solution nearest a random phase of three periods
 // of the sine, so that what it teaches is a multivalued map.
-ProblemParts learn_sine(const SineOptions& o, const Draw& draw) {
+ProblemParts learn_sine(const Options& o, const Draw& draw) {
   const auto physics = std::make_shared<const Sine>(o);
   const auto sample = [physics](RandomStream& stream, Index b, Batch& batch) {
     batch.target.col(b) << physics->amplitude() * stream.uniform(-1, 1), stream.uniform(-1, 1);
@@ -114,7 +114,7 @@ ProblemParts learn_sine(const SineOptions& o, const Draw& draw) {
        .samples = {.draw = sample}});
 }
 
-ProblemParts make_sine(const SineOptions& o, const Draw& draw) {
+ProblemParts make_sine(const Options& o, const Draw& draw) {
   if (o.learning.is_on()) return learn_sine(o, draw);
   const auto physics = std::make_shared<const Sine>(o);
   Vector target = draw.is_published() ? Vector(Eigen::Vector2d(0.3, -0.5))

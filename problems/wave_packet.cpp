@@ -17,12 +17,12 @@
 namespace isoline::problems {
 namespace {
 
-struct WavePacketOptions {
+struct Options {
   Index samples = 64;
   Real noise = 0.05;
   Learning learning{.network = "mlp[layers=64-64]", .batch = 100};
 };
-void fields(WavePacketOptions& o, auto& field) {
+void fields(Options& o, auto& field) {
   field("samples", o.samples, between(8, 65536), "times m at which the signal is sampled");
   field("sigma", o.noise, between(0, 10), "standard deviation σ of the noise in y*");
   fields(o.learning, field);
@@ -146,7 +146,7 @@ struct Signal {
   }
 };
 
-ProblemParts learn_wave_packet(const WavePacketOptions& o, const Draw& draw) {
+ProblemParts learn_wave_packet(const Options& o, const Draw& draw) {
   const auto physics = std::make_shared<const WavePacket>(o.samples);
   const auto sample = [physics, noise = o.noise](RandomStream& stream, Index b, Batch& batch) {
     const Signal signal(*physics, noise, stream);
@@ -166,7 +166,7 @@ ProblemParts learn_wave_packet(const WavePacketOptions& o, const Draw& draw) {
 
 // With noise no x makes y*: what attains the least loss is the fit from x*, and its distance from
 // x* is what the data leave. x* is then no label that attains it, and none is given.
-ProblemParts make_wave_packet(const WavePacketOptions& o, const Draw& draw) {
+ProblemParts make_wave_packet(const Options& o, const Draw& draw) {
   if (o.learning.is_on()) return learn_wave_packet(o, draw);
   auto physics = std::make_unique<WavePacket>(o.samples);
   RandomStream stream = draw.stream("target");

@@ -43,10 +43,6 @@ std::string broken_property_of(const Catalog& catalog, const Request& request, T
   return "";
 }
 
-std::string build_of(const Component& problem) {
-  return build_digest({.problem = problem, .optimizer = {}});
-}
-
 // The build that has passed its checks in an earlier run of this folder; empty if none has.
 std::string certified_in(const std::filesystem::path& folder, const Component& problem) {
   const Sheet sheet{.kind = "problem", .name = problem.name, .spec = problem.spec};

@@ -29,6 +29,11 @@
 #include "problems/problem.h"
 
 namespace isoline::benchmarks {
+
+std::string build_of(const Component& problem) {
+  return build_digest({.problem = problem, .optimizer = {}});
+}
+
 namespace {
 
 constexpr double kRoundSeconds = 2e-4;  // so that a round is many calls of the short ones
@@ -372,10 +377,6 @@ class SheetWriter {
         store_.set_aside(file, error.what());
       }
     return std::nullopt;
-  }
-
-  static std::string build_of(const Component& problem) {
-    return build_digest({.problem = problem, .optimizer = {}});
   }
 
   // The problem is created again, and a failure of the measurement does not cost the metadata: then

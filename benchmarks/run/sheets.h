@@ -25,6 +25,9 @@ bool is_resolved(const MeasuredPrice& price, double forward_seconds);
 // forward solve, measures that one call.
 MeasuredPrices measure_prices(const Problem& problem, const std::string& build);
 
+// The digest of the sources of a problem alone, to which its certificate and its prices belong.
+std::string build_of(const Component& problem);
+
 // The registry's view of a component: nothing is created, so nothing can fail.
 Sheet described_problem(const Catalog& catalog, const Component& problem);
 Sheet described_optimizer(const Catalog& catalog, const Component& optimizer);

@@ -79,7 +79,7 @@ int run(const BaselineArguments& given, Session& session) {
 }  // namespace
 
 void register_baseline(VerbRegistry& registry) {
-  registry.add(verb_of<BaselineArguments>(
+  registry.add(verb_of(
       {.name = "baseline",
        .help_position = 50,
        .summary = "Write a small file that later results are compared with",

@@ -78,7 +78,7 @@ int run(const BestArguments& given, Session& session) {
 }  // namespace
 
 void register_best(VerbRegistry& registry) {
-  registry.add(verb_of<BestArguments>(
+  registry.add(verb_of(
       {.name = "best",
        .help_position = 100,
        .summary =

@@ -100,7 +100,7 @@ int run(const ChooseArguments& given, Session&) {
 }  // namespace
 
 void register_choose(VerbRegistry& registry) {
-  registry.add(verb_of<ChooseArguments>(
+  registry.add(verb_of(
       {.name = "choose",
        .help_position = 45,
        .summary = "Name the methods that suit your simulator, based on the runs of a study",

@@ -153,13 +153,12 @@ int run(const CompletionArguments& given, Session& session) {
 }  // namespace
 
 void register_completion(VerbRegistry& registry) {
-  registry.add(verb_of<CompletionArguments>(
-      {.name = "completion",
-       .help_position = 240,
-       .summary = "Print the completion script for bash, zsh or fish",
-       .examples = "  isoline completion bash > ~/.isoline-completion\n"
-                   "  isoline completion words -- run --optimizer newt"},
-      declare, run));
+  registry.add(verb_of({.name = "completion",
+                        .help_position = 240,
+                        .summary = "Print the completion script for bash, zsh or fish",
+                        .examples = "  isoline completion bash > ~/.isoline-completion\n"
+                                    "  isoline completion words -- run --optimizer newt"},
+                       declare, run));
 }
 
 }  // namespace isoline::benchmarks

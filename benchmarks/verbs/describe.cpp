@@ -160,7 +160,7 @@ int run(const DescribeArguments& given, Session& session) {
 }  // namespace
 
 void register_describe(VerbRegistry& registry) {
-  registry.add(verb_of<DescribeArguments>(
+  registry.add(verb_of(
       {.name = "describe",
        .help_position = 150,
        .summary =

@@ -90,12 +90,11 @@ int run(const InferArguments& given, Session& session) {
 }  // namespace
 
 void register_infer(VerbRegistry& registry) {
-  registry.add(verb_of<InferArguments>(
-      {.name = "infer",
-       .help_position = 220,
-       .summary = "Apply a network that `isoline train` wrote to observations",
-       .examples = "  isoline infer net.json --input observed.csv --output x.csv"},
-      declare, run));
+  registry.add(verb_of({.name = "infer",
+                        .help_position = 220,
+                        .summary = "Apply a network that `isoline train` wrote to observations",
+                        .examples = "  isoline infer net.json --input observed.csv --output x.csv"},
+                       declare, run));
 }
 
 }  // namespace isoline::benchmarks

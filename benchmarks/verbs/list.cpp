@@ -84,12 +84,11 @@ int run(const ListArguments& given, Session& session) {
 }  // namespace
 
 void register_list(VerbRegistry& registry) {
-  registry.add(
-      verb_of<ListArguments>({.name = "list",
-                              .help_position = 140,
-                              .summary = "List the problems, networks, optimizers and suites",
-                              .examples = "  isoline list\n  isoline list optimizers --names"},
-                             declare, run));
+  registry.add(verb_of({.name = "list",
+                        .help_position = 140,
+                        .summary = "List the problems, networks, optimizers and suites",
+                        .examples = "  isoline list\n  isoline list optimizers --names"},
+                       declare, run));
 }
 
 }  // namespace isoline::benchmarks

@@ -62,11 +62,11 @@ int run(const ManArguments&, Session&) {
 }  // namespace
 
 void register_man(VerbRegistry& registry) {
-  registry.add(verb_of<ManArguments>({.name = "man",
-                                      .help_position = 250,
-                                      .summary = "Print the manual page",
-                                      .examples = "  isoline man > isoline.1 && man ./isoline.1"},
-                                     declare, run));
+  registry.add(verb_of({.name = "man",
+                        .help_position = 250,
+                        .summary = "Print the manual page",
+                        .examples = "  isoline man > isoline.1 && man ./isoline.1"},
+                       declare, run));
 }
 
 }  // namespace isoline::benchmarks

@@ -125,7 +125,7 @@ int run(const PlanArguments& given, Session& session) {
 }  // namespace
 
 void register_plan(VerbRegistry& registry) {
-  registry.add(verb_of<PlanArguments>(
+  registry.add(verb_of(
       {.name = "plan",
        .help_position = 20,
        .summary = "Print what a run would do, its predicted time, and its division into shards",

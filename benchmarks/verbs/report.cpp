@@ -108,7 +108,7 @@ int run(const ReportArguments& given, Session& session) {
 }  // namespace
 
 void register_report(VerbRegistry& registry) {
-  registry.add(verb_of<ReportArguments>(
+  registry.add(verb_of(
       {.name = "report",
        .help_position = 30,
        .summary = "Write " + format_names(),

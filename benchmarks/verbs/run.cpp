@@ -125,7 +125,7 @@ int run(const RunArguments& given, Session& session) {
 }  // namespace
 
 void register_run(VerbRegistry& registry) {
-  registry.add(verb_of<RunArguments>(
+  registry.add(verb_of(
       {.name = "run",
        .help_position = 10,
        .summary = "Run a suite or your own study; finished cells do not run again",

@@ -132,7 +132,7 @@ int run(const ScoreArguments& given, Session& session) {
 }  // namespace
 
 void register_score(VerbRegistry& registry) {
-  registry.add(verb_of<ScoreArguments>(
+  registry.add(verb_of(
       {.name = "score",
        .help_position = 15,
        .summary =

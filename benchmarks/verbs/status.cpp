@@ -181,7 +181,7 @@ int run(const StatusArguments& given, Session&) {
 }  // namespace
 
 void register_status(VerbRegistry& registry) {
-  registry.add(verb_of<StatusArguments>(
+  registry.add(verb_of(
       {.name = "status",
        .help_position = 24,
        .summary = "Show the progress of a run",

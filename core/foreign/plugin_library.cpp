@@ -18,7 +18,7 @@ namespace isoline {
 namespace {
 
 constexpr std::uint64_t kMostComponents = 1000, kMostOptions = 100;
-constexpr std::size_t kLongestName = 64, kMostText = 4096;
+constexpr std::size_t kMostName = 64, kMostText = 4096;
 
 constexpr std::uint64_t kOfBoth = ISOLINE_FORWARD | ISOLINE_PUSHFORWARD | ISOLINE_PULLBACK |
                                   ISOLINE_JACOBIAN | ISOLINE_INVERSE | ISOLINE_BOUNDS;
@@ -68,16 +68,16 @@ class Reader {
 
   std::string name_of(const char* given, const char* what) const {
     hold(given != nullptr, "`{}` is null", what);
-    const std::string name(given, strnlen(given, kLongestName + 1));
+    const std::string name(given, strnlen(given, kMostName + 1));
     const auto is_allowed = [](char letter) {
       return (letter >= 'a' && letter <= 'z') || (letter >= '0' && letter <= '9') || letter == '-';
     };
-    const bool is_name = !name.empty() && name.size() <= kLongestName && name[0] >= 'a' &&
+    const bool is_name = !name.empty() && name.size() <= kMostName && name[0] >= 'a' &&
                          name[0] <= 'z' && std::ranges::all_of(name, is_allowed);
     hold(is_name,
          "`{}` must be lower-case letters, digits and hyphens, {} at most and the first a letter, "
          "got '{}'",
-         what, kLongestName, valid_utf8(name));
+         what, kMostName, valid_utf8(name));
     return name;
   }
 

@@ -31,7 +31,7 @@ std::vector<std::vector<std::size_t>> by_family(const std::vector<std::string>& 
   return all;
 }
 
-bool equal_but_for_rounding(Real a, Real b) { return std::abs(a - b) <= kRounding; }
+bool are_tied(Real a, Real b) { return std::abs(a - b) <= kRounding; }
 
 // a_{p,s} of the methods that are ranked, which alone decide what the least cost is.
 std::vector<Row> scores_of(const Costs& costs, const std::vector<std::size_t>& methods, Real end) {
@@ -58,7 +58,7 @@ std::vector<std::size_t> firsts(const Row& scores) {
   std::vector<std::size_t> all;
   const Real most = scores.empty() ? 0 : std::ranges::max(scores);
   for (std::size_t s = 0; s < scores.size() && most > 0; ++s)
-    if (equal_but_for_rounding(scores[s], most)) all.push_back(s);
+    if (are_tied(scores[s], most)) all.push_back(s);
   return all;
 }
 
@@ -220,7 +220,7 @@ class Decider {
     std::vector<std::size_t> order(methods_.size());
     std::iota(order.begin(), order.end(), 0);
     std::ranges::stable_sort(order, [&](std::size_t a, std::size_t b) {
-      return means_[a] > means_[b] && !equal_but_for_rounding(means_[a], means_[b]);
+      return means_[a] > means_[b] && !are_tied(means_[a], means_[b]);
     });
     std::vector<Row> sums(families_.size(), Row(methods_.size(), 0));
     for (std::size_t g = 0; g < families_.size(); ++g)

@@ -30,7 +30,7 @@ std::string part_text(const Table& table, const Part& part, std::size_t most_row
   return text + "\n";
 }
 
-std::string table_markdown(const Table& table, std::size_t most_rows = kSummaryRows) {
+std::string table_text(const Table& table, std::size_t most_rows = kSummaryRows) {
   std::string text;
   if (!table.title.empty()) text += fmt::format("### {}\n\n", markdown_text(table.title));
   if (!table.reading.empty()) text += markdown_text(table.reading) + "\n\n";
@@ -61,7 +61,7 @@ std::string markdown_section(const Section& section, std::size_t most_rows) {
         reading.title.empty() ? "" : fmt::format("**{}:** ", markdown_text(reading.title)),
         markdown_text(reading.text));
   if (!section.readings.empty()) text += "\n";
-  for (const Table& table : section.tables) text += table_markdown(table, most_rows);
+  for (const Table& table : section.tables) text += table_text(table, most_rows);
   return text;
 }
 
@@ -76,7 +76,7 @@ std::string claim_text(const Section& claim) {
         fmt::format("- **{}:** {}\n", markdown_text(reading.title), markdown_text(reading.text));
   if (!claim.command.empty()) text += fmt::format("- **To repeat it:** `{}`\n", claim.command);
   text += "\n";
-  for (const Table& table : claim.tables) text += table_markdown(table);
+  for (const Table& table : claim.tables) text += table_text(table);
   return text + "</details>\n\n";
 }
 

@@ -226,7 +226,7 @@ std::string method_page(const std::string& name, const std::vector<Place>& place
 }
 
 // The first method for each kind of simulator, and what it solves. Empty without an answer.
-Table choices_table(const SiteResults& results, const std::string& up) {
+Table choices_table(const SiteResults& results) {
   const Comparison& c = results.document->comparison;
   Table table = worded_table("site-choices");
   std::size_t answers = 0;
@@ -242,7 +242,7 @@ Table choices_table(const SiteResults& results, const std::string& up) {
       const Advised& first = advice.ranked[0];
       ++answers;
       cell.text = shown_spec(c.optimizers[first.optimizer].name_of_all());
-      cell.link = up + method_address(c.optimizers[first.optimizer].method);
+      cell.link = "../" + method_address(c.optimizers[first.optimizer].method);
       cell.remark = first.work < kNever
                         ? words("site.choice", first.solved, advice.settings.size(), first.work)
                         : words("site.choice-some", first.solved, advice.settings.size());
@@ -252,7 +252,17 @@ Table choices_table(const SiteResults& results, const std::string& up) {
   return table;
 }
 
-std::string suite_page(const SiteResults& results) {
+// Those tables that have an answer, by the names of the results.
+using Choices = std::map<std::string, Table>;
+Choices choices_of(const Site& site) {
+  Choices all;
+  for (const SiteResults& results : site.results)
+    if (Table table = choices_table(results); !table.rows.empty())
+      all[results.name] = std::move(table);
+  return all;
+}
+
+std::string suite_page(const SiteResults& results, const Choices& choices) {
   const Document& document = *results.document;
   std::string html = fmt::format("<p class=lead>{}</p>\n", html_text(document.headline));
   if (!document.incomplete.empty())
@@ -263,8 +273,8 @@ std::string suite_page(const SiteResults& results) {
       html += drawing_html(results, one, "../");
       break;
     }
-  if (const Table choices = choices_table(results, "../"); !choices.rows.empty())
-    html += section_html({.title = choices.title, .tables = {choices}});
+  if (const auto found = choices.find(results.name); found != choices.end())
+    html += section_html({.title = found->second.title, .tables = {found->second}});
   for (const char* id : {"standings", "problems", "learned"}) {
     const Section& section = document.section(id);
     if (!section.is_empty())
@@ -417,16 +427,16 @@ std::string findings_html(const Site& site, const Section& papers) {
 
 // The way to the answers of three readers: an author of a paper, an owner of a simulator, and one
 // who doubts a figure.
-std::string start_html(const Site& site) {
-  std::string choices, runs;
+std::string start_html(const Site& site, const Choices& choices) {
+  std::string suites, runs;
   for (const SiteResults& results : site.results) {
-    if (!choices_table(results, "").rows.empty())
-      choices += " " + link(suite_address(results) + "#site-choices", results.name);
+    if (choices.contains(results.name))
+      suites += " " + link(suite_address(results) + "#site-choices", results.name);
     runs += " " + link(report_address(results) + "#runs", results.name);
   }
   std::string html = fmt::format("<li>{} {}</li>\n", html_text(words("site.start-paper")),
                                  link("#papers", words("site.papers")));
-  html += fmt::format("<li>{}{}", html_text(words("site.start-simulator")), choices);
+  html += fmt::format("<li>{}{}", html_text(words("site.start-simulator")), suites);
   for (const char* page : {"bring-a-simulator", "calibrate-a-simulator"})
     if (const auto doc = site.docs.find(page); doc != site.docs.end())
       html += fmt::format(" · <a href=\"docs/{}.html\">{}</a>", page, doc_title(doc->second));
@@ -456,13 +466,13 @@ std::string groups_html(const Groups& groups) {
 }
 
 std::string index_page(const Site& site, const Places& problems, const Places& methods,
-                       const Section& papers) {
+                       const Section& papers, const Choices& choices) {
   const auto part = [](const char* id) {
     return fmt::format("<h2 id={}>{}</h2>\n", id, html_text(words(std::string("site.") + id)));
   };
   std::string html = "<p class=lead>" + html_text(words("site.lead")) + "</p>\n";
-  html += start_html(site) + part("findings") + findings_html(site, papers) + part("pictures") +
-          pictures_html(site);
+  html += start_html(site, choices) + part("findings") + findings_html(site, papers) +
+          part("pictures") + pictures_html(site);
   html += part("results") + "<ul>\n";
   for (const SiteResults& results : site.results)
     html += fmt::format("<li>{}: {} · {}</li>\n", link(suite_address(results), results.name),
@@ -491,8 +501,9 @@ std::string index_page(const Site& site, const Places& problems, const Places& m
 std::map<std::string, std::string> site_pages(const Site& site) {
   const Places problems = problems_of(site), methods = methods_of(site);
   const Section papers = papers_section(site.claims);
+  const Choices choices = choices_of(site);
   std::map<std::string, std::string> pages = {
-      {"index.html", index_page(site, problems, methods, papers)},
+      {"index.html", index_page(site, problems, methods, papers, choices)},
       {"style.css", std::string(embedded_page_css()) + std::string(embedded_site_css())},
       {"papers/items.html", whole_page(words("site.items"), section_html(site.items), "../")}};
   for (const auto& [name, places] : problems)
@@ -501,7 +512,7 @@ std::map<std::string, std::string> site_pages(const Site& site) {
     pages[method_address(name)] = method_page(name, places);
   for (const Table& paper : papers.tables) pages[paper_address(paper)] = paper_page(site, paper);
   for (const SiteResults& results : site.results)
-    pages[suite_address(results)] = suite_page(results);
+    pages[suite_address(results)] = suite_page(results, choices);
   for (const auto& [name, text] : site.docs) {
     const std::size_t end = text.find("</h1>");
     pages["docs/" + name + ".html"] =
