@@ -9,6 +9,7 @@
 
 #include "core/decompose.h"
 #include "core/errors.h"
+#include "core/foreign/call_log.h"
 #include "core/frames.h"
 #include "core/status.h"
 
@@ -404,7 +405,10 @@ bool Meter::look_at(VectorRef theta) {
 // The loss and related values at θ, evaluated by the harness; they count for no oracle.
 void Meter::measure(VectorRef theta) {
   is_prepaid_ = is_prepaid_ && judged_theta_ == theta;
-  problem_.forward(theta, judging(), judged_);
+  {
+    const Recalling recalling;
+    problem_.forward(theta, judging(), judged_);
+  }
   judged_theta_ = theta;  // only where it could be
   TracePoint& last = trace_.last;
   last.iteration = iteration_;

@@ -48,6 +48,8 @@ class Session {
     const bool is_announced = verb == Verb::linearize && workers_.is_next(numbers[0]);
     CallLog* const log = call_log().get();
     if (log != nullptr) {
+      if (Recalling::is_on() && verb == Verb::linearize && !is_announced)
+        if (const auto why = log->recall(numbers, answer)) return *why;
       if (const auto why = log->replay(verb, number, numbers, answer)) {
         if (is_announced) workers_.skip();
         count_failure(verb, *why);

@@ -32,6 +32,13 @@ void add_words(PieceDigest& digest, std::span<const char> bytes) {
   }
 }
 
+std::uint64_t digest_of(CallLog::Numbers request) {
+  PieceDigest digest;
+  for (const std::span<const Real> part : request)
+    add_words(digest, {reinterpret_cast<const char*>(part.data()), part.size_bytes()});
+  return digest.value();
+}
+
 }  // namespace
 
 struct CallLog::Head {
@@ -99,6 +106,33 @@ void CallLog::pass(const Head& head) {
   ++calls_;
 }
 
+// Before `end_` passes the call.
+void CallLog::note(Verb verb, Numbers request) {
+  if (verb == Verb::linearize) places_[digest_of(request)] = end_;
+}
+
+std::optional<std::string> CallLog::recall(Numbers request, std::span<Real> answer) {
+  const auto place = places_.find(digest_of(request));
+  if (!file_ || place == places_.end()) return std::nullopt;
+  const auto read = [&](void* to, std::size_t count, std::int64_t at) {
+    return pread(fileno(file_.get()), to, count, at) == static_cast<ssize_t>(count);
+  };
+  Head head;
+  if (!read(&head, sizeof head, place->second)) return std::nullopt;
+  bytes_.resize(head.request + head.answer + head.why);
+  if (!read(bytes_.data(), bytes_.size(), place->second + std::ssize(head.bytes())) ||
+      !is_call(head, Verb::linearize, request, answer.size_bytes()))
+    return std::nullopt;
+  return take(head, answer);
+}
+
+// Of the call in `bytes_`.
+std::string CallLog::take(const Head& head, std::span<Real> answer) const {
+  const char* const from = bytes_.data() + head.request;
+  if (head.answer > 0) std::memcpy(answer.data(), from, head.answer);
+  return {from + head.answer, head.why};
+}
+
 // From here on, the run is another one than that of the file, or the file is damaged.
 void CallLog::cut(const char* why) {
   say(stderr,
@@ -148,13 +182,12 @@ std::optional<std::string> CallLog::replay(Verb verb, std::uint32_t point, Numbe
       is_reading_ = false;
       return std::nullopt;
     }
+    note(verb, request);
     pass(head);
   }
-  const char* const from = bytes_.data() + head.request;
-  if (head.answer > 0) std::memcpy(answer.data(), from, head.answer);
   if (first_seconds_ < 0) first_seconds_ = head.seconds;
   replayed_seconds_ += head.seconds;
-  return std::string(from + head.answer, head.why);
+  return take(head, answer);
 }
 
 // On a full disk, the run continues without the file.
@@ -170,7 +203,7 @@ void CallLog::append(Verb verb, std::uint32_t point, Numbers request, std::span<
   if (!is_decided_ && (is_forced_ || seconds >= kSlowSeconds)) {
     std::error_code error;
     std::filesystem::create_directories(path_.parent_path(), error);
-    file_.reset(std::fopen(path_.c_str(), "wbe"));
+    file_.reset(std::fopen(path_.c_str(), "w+be"));
     if (file_) write_bytes({identity_.data(), identity_.size()});
   }
   is_decided_ = true;
@@ -184,6 +217,7 @@ void CallLog::append(Verb verb, std::uint32_t point, Numbers request, std::span<
   add(bytes_, why.data(), why.size());
   head.why = why.size();
   head.checksum = head.checksum_with(bytes_);
+  note(verb, request);
   write_bytes(head.bytes());
   if (file_) write_bytes(bytes_);
 }

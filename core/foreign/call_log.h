@@ -10,6 +10,8 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "core/foreign/line.h"
@@ -38,6 +40,8 @@ class CallLog {
                                     std::span<Real> answer);
   void append(Verb verb, std::uint32_t point, Numbers request, std::span<const Real> answer,
               const std::string& why, double seconds);
+  // The answer of an earlier linearize of this run at the same x, bit for bit; none without a file.
+  std::optional<std::string> recall(Numbers request, std::span<Real> answer);
   bool is_slow() const { return first_seconds_ >= kSlowSeconds; }  // the first call
   double replayed_seconds() const { return replayed_seconds_; }    // that they took when made
 
@@ -49,7 +53,9 @@ class CallLog {
   bool read_next(Head& head);
   bool is_call(const Head& head, Verb verb, Numbers request, std::size_t answer_bytes) const;
   bool find(Head& head, Verb verb, Numbers request, std::size_t answer_bytes);
+  std::string take(const Head& head, std::span<Real> answer) const;
   void pass(const Head& head);
+  void note(Verb verb, Numbers request);
   void cut(const char* why);
   void write_bytes(std::span<const char> bytes);
 
@@ -61,6 +67,22 @@ class CallLog {
   std::int64_t calls_ = 0, end_ = 0, size_ = 0;  // those before `end_`, where one follows; bytes
   double first_seconds_ = -1, replayed_seconds_ = 0;
   std::vector<char> bytes_;  // of a call behind its head
+  // Where the answers of linearize begin in the file, by the digest of x; the last of each.
+  std::unordered_map<std::uint64_t, std::int64_t> places_;
+};
+
+// While one lives, calls are recalled: the harness looks at a point that the method has evaluated.
+class Recalling {
+ public:
+  Recalling() : before_(std::exchange(is_on_, true)) {}
+  ~Recalling() { is_on_ = before_; }
+  Recalling(const Recalling&) = delete;
+  Recalling& operator=(const Recalling&) = delete;
+  static bool is_on() { return is_on_; }
+
+ private:
+  inline static bool is_on_ = false;
+  bool before_;
 };
 
 // The one of this process, which runs one cell; the cell sets it before it makes its problem.

@@ -126,6 +126,34 @@ TEST_F(Calls, AreAnsweredInAnyOrderWhereTheFirstWasSlow) {
   EXPECT_EQ(read_text(path), fast);
 }
 
+TEST_F(Calls, AreRecalledByX) {
+  const auto recall = [](CallLog& calls, Real x) {
+    Answer answer{{}, {0, 0}};
+    const std::span<const Real> request(&x, 1);
+    answer.why = calls.recall(std::span(&request, 1), answer.y);
+    return answer;
+  };
+  CallLog none = log(false);
+  append(none, 1);
+  EXPECT_FALSE(recall(none, 1).why) << "there is no file";
+  {
+    CallLog begun = log();
+    append(begun, 1);
+    EXPECT_EQ(recall(begun, 1).why, "");
+  }
+  write_three();
+  CallLog calls = log();
+  EXPECT_FALSE(recall(calls, 1).why) << "the run has not made it yet";
+  EXPECT_TRUE(replay(calls, 1).why && replay(calls, 2).why);
+  EXPECT_EQ(recall(calls, 1).y, (std::array<Real, 2>{2, -1}));
+  EXPECT_EQ(recall(calls, 2).why, "no mesh");
+  EXPECT_FALSE(recall(calls, 3).why);
+  EXPECT_EQ(replay(calls, 3).why, "") << "recalls do not move it";
+  append(calls, 4);
+  EXPECT_EQ(recall(calls, 4).y, (std::array<Real, 2>{8, -4}));
+  EXPECT_EQ(recall(calls, 3).y, (std::array<Real, 2>{6, -3}));
+}
+
 TEST_F(Calls, AreWrittenWhereTheFirstIsSlowOrAllAreWanted) {
   for (const auto& [is_forced, seconds, is_written] :
        {std::tuple{false, 0.01, false}, {false, 0.2, true}, {true, 0.0, true}}) {
