@@ -24,8 +24,24 @@ struct Expansion {
 
 std::vector<Request> expanded(const Expansion& from, Json block) {
   constexpr std::uint64_t kMost = 10'000;  // cells that decide one claim
-  for (const char* own : {"long", "deviation"}) block.erase(own);
-  const Json suite{{"schema", "isoline.suite/1"}, {"name", "claims"}, {"matrix", {block}}};
+  Json matrix = Json::array({block});
+  const Json budgets = block.value("budgets", Json::object());
+  // An optimizer with a budget of its own is a block of its own.
+  for (const auto& [optimizer, budget] : budgets.items()) {
+    auto& others = matrix[0]["optimizers"].get_ref<Json::array_t&>();
+    require(std::erase(others, Json(optimizer)) == 1, [&] {
+      return fmt::format("the claim {} states a budget of {}, which is not among its optimizers",
+                         from.claim, optimizer);
+    });
+    Json& own = matrix.emplace_back(block);
+    own["optimizers"] = {optimizer};
+    own["budget"] = budget;
+  }
+  std::erase_if(matrix.get_ref<Json::array_t&>(), [&](Json& part) {
+    for (const char* own : {"long", "deviation", "budgets"}) part.erase(own);
+    return part["optimizers"].empty();
+  });
+  const Json suite{{"schema", "isoline.suite/1"}, {"name", "claims"}, {"matrix", matrix}};
   const std::string origin = "the claim " + from.claim;
   return expand(from.catalog, suite_from_json(suite, origin), from.rates, kMost);
 }
@@ -44,6 +60,10 @@ Json alternative(const Expansion& from, const std::string& problem, const std::s
                  Json block, const std::set<std::string>& known) {
   block["problems"] = {problem};
   block["optimizers"] = {optimizer};
+  if (block.contains("budgets")) {
+    block["budget"] = block["budgets"].value(optimizer, block["budget"]);
+    block.erase("budgets");
+  }
   Json cells = Json::array();
   for (const Request& request : expanded(from, block)) {
     cells.push_back(request.cell);

@@ -173,6 +173,21 @@ TEST(ClaimsOfTheTree, AreChosenByIdOrGroupAndRunWhatIsLongOnlyWhenAsked) {
   EXPECT_TRUE(std::ranges::any_of(cells_of(claims(), true), is_hours));
 }
 
+TEST(ClaimsOfTheTree, MayGiveAnOptimizerABudgetOfItsOwn) {
+  Json file = parse_json(std::string(builtin_claims().at("half-inverse")), "half-inverse");
+  Json claim;
+  for (const Json& one : file.at("claims"))
+    if (one.at("id") == "hig-oscillators-time") claim = one;
+  const auto of = [&] {
+    file["claims"] = {claim};
+    return claims_from_json(catalog(), Rates::builtin(), file, "a test").at(0).cells.at(0);
+  };
+  for (const Request& request : of().requests)
+    EXPECT_EQ(request.budget.iterations, request.optimizer.name == "adam" ? 40'000 : 10'000);
+  claim["cells"][0]["budgets"]["adam[rate=1]"] = {{"iterations", 5}};
+  EXPECT_THROW(of(), UsageError);
+}
+
 // --- verdicts
 
 Json claims_of(const std::vector<std::string>& names) {
