@@ -219,6 +219,19 @@ std::string verdict_text(const Judgement& judgement) {
 
 namespace {
 
+// What its number is, before it, where it is not that of the sentence: "ratio ".
+std::string kind_of_measure(const Judgement& judgement) {
+  const std::string& kind = judgement.evidence.kind;
+  if (!judgement.measured || kind == "value" || kind == "equality") return "";
+  return (kind == "position"          ? "place"
+          : kind == "greatest"        ? "largest"
+          : kind == "ratio_slope"     ? "slope"
+          : kind == "mean_difference" ? "difference"
+          : kind == "crossing"        ? "crossing at"
+                                      : kind) +
+         " ";
+}
+
 bool is_not_run(const Judgement& judgement) {
   return !judgement.measured && !judgement.sets.empty();
 }
@@ -284,7 +297,9 @@ Section claims_section(const std::vector<Judgement>& judgements) {
 
 Section papers_section(const std::vector<Judgement>& judgements) {
   Section section = worded_section("papers");
-  section.readings = {{"", claims_reading(judgements)}, {"", words("papers.thresholds")}};
+  section.readings = {{"", claims_reading(judgements)},
+                      {"", words("papers.thresholds")},
+                      {"", words("papers.kinds")}};
   for (const Judgement& judgement : judgements) {
     auto table = std::ranges::find(section.tables, judgement.paper, &Table::title);
     if (table == section.tables.end()) {
@@ -318,7 +333,9 @@ Section papers_section(const std::vector<Judgement>& judgements) {
         verdict += "; " + words("claim.paper-other", other.how, figure(other.measured.value),
                                 name_of(other.verdict));
     }
-    if (!judgement.reached.empty()) verdict += "; " + judgement.reached;
+    if (!judgement.reached.empty() && judgement.verdict != Verdict::too_short)
+      verdict += "; " + judgement.reached;
+    if (!judgement.deviation.empty()) verdict += ". " + judgement.deviation;
     table->row_topics.push_back({.claim = judgement.id});
     table->rows.push_back(
         {judgement.sentence, judgement.place,
@@ -327,7 +344,7 @@ Section papers_section(const std::vector<Judgement>& judgements) {
          : has_runs                              ? rough_time(judgement.seconds)
          : is_long                               ? "hours"
                                                  : kNothing,
-         judgement.published, measured_text(judgement), verdict});
+         judgement.published, kind_of_measure(judgement) + measured_text(judgement), verdict});
   }
   return section;
 }

@@ -199,9 +199,10 @@ struct Judgement {
   std::string paper, place;  // of the source: "Someone (2022)", "Figure 1"
   std::string fact;          // the claim whose fact this one restates, or itself
   Verdict verdict = Verdict::not_comparable;
-  std::string why;      // it is too short, undecidable, or not comparable
-  std::string reading;  // how the published figure was read off a plot, where it was
-  std::string reached;  // the share of its iterations and seeds that published records have
+  std::string why;        // it is too short, undecidable, or not comparable
+  std::string reading;    // how the published figure was read off a plot, where it was
+  std::string deviation;  // of the cells from the source, a sentence
+  std::string reached;    // the share of its iterations and seeds that published records have
   std::optional<Measurement> measured;
   std::optional<Agreement> band;
   Evidence evidence;          // none where nothing decides it

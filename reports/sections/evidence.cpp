@@ -120,7 +120,8 @@ std::vector<Term> terms_of(const Json& claim, const Json& cells, const ByCell& r
 std::string tolerance_text(const Json& tolerance) {
   const std::string from = tolerance.at("from");
   if (from == "none" || from == "order") return words("tolerance." + from);
-  if (from == "digits") return words("tolerance.digits", real_of(tolerance["absolute"]));
+  if (tolerance.contains("absolute"))
+    return words("tolerance." + from, real_of(tolerance["absolute"]));
   const Real t = real_of(tolerance["relative"]);
   const std::string text = words("tolerance." + from, 100 * t);
   if (from == "about" || tolerance.value("values", 1) != 2) return text;
@@ -407,7 +408,9 @@ void measure_in(Judgement& out, const Measured& from) {
   for (const std::string& cell : std::set<std::string>(out.cells.begin(), out.cells.end()))
     out.seconds += from.runs.at(cell)->summary.processor_seconds;
   const bool is_known = take(out, from);
-  if (set.contains("deviation")) out.caveats.insert(out.caveats.begin(), set["deviation"]);
+  out.deviation = set.value("deviation", "");
+  for (const char* difference : {"deviation", "builds"})
+    if (set.contains(difference)) out.caveats.insert(out.caveats.begin(), set[difference]);
   out.reached = set.value("reached", "");
   out.evidence = evidence_of(claim, set.at("terms"), from.runs, from.iterations());
   for (std::size_t i = 0; i < out.contrasts.size(); ++i)
@@ -556,9 +559,8 @@ std::optional<Json> published_part(const Json& set, const Beginnings& beginnings
   part["reached"] =
       words("claim.published-part", isoline::count_text(std::uint64_t(iterations)),
             isoline::count_text(set.at("iterations").get<std::uint64_t>()), kept[0].size(), seeds);
-  part["deviation"] =
-      words("claim.published-builds", joined({builds.begin(), builds.end()}), builds.size()) +
-      (set.contains("deviation") ? " " + set["deviation"].get<std::string>() : "");
+  part["builds"] =
+      words("claim.published-builds", joined({builds.begin(), builds.end()}), builds.size());
   return part;
 }
 
