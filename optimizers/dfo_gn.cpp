@@ -65,7 +65,7 @@ Vector trust_region_step(const Svd& J, const Vector& r, Real radius) {
 }
 
 struct DfoGn {
-  Real radius = 3, simplex = 2e-3, noisy_radius = 0.05, least_radius = 1e-14, refinement = 5;
+  Real radius = 3.6, simplex = 2e-3, noisy_radius = 0.05, least_radius = 1e-14, refinement = 5;
 
   struct State {
     Matrix X, R;     // (n, n + 1) the points, (m, n + 1) their residuals
@@ -233,14 +233,17 @@ struct DfoGn {
     else if (ratio <= kGood)
       s.delta = std::max(decrease(s) * s.delta, length);
     else
-      s.delta = std::min(std::max(2 * s.delta, 4 * length), kMost);
+      s.delta = std::min(2 * s.delta, kMost);
     if (s.delta <= 1.5 * s.rho) s.delta = s.rho;
   }
-  // The point far from the best one whose Lagrange polynomial is large at the new one.
+  // The point far from the best one whose Lagrange polynomial is large at the new one: by the
+  // square of its distance, as in Powell (2009); with noise, which keeps the points apart, far ones
+  // go sooner.
   static Index replaced_by(const State& s, const Vector& d, bool is_better) {
     const Vector lagrange = s.inverse * d;
+    const Real power = s.noise > 0 ? 4 : 2;
     const auto score = [&](Real polynomial, Real distance) {
-      return std::abs(polynomial) * std::max<Real>(1, std::pow(distance / s.delta, 4));
+      return std::abs(polynomial) * std::max<Real>(1, std::pow(distance / s.delta, power));
     };
     Index out = s.best;
     Real most = is_better ? score(1 - lagrange.sum(), d.norm()) : 0;

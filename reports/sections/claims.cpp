@@ -333,6 +333,10 @@ Section papers_section(const std::vector<Judgement>& judgements) {
         verdict += "; " + words("claim.paper-other", other.how, figure(other.measured.value),
                                 name_of(other.verdict));
     }
+    if (const auto& measured = judgement.measured;
+        measured && measured->predicted && judgement.is_of_one_run)
+      verdict +=
+          "; " + words("claim.paper-one-run", measured->predicted->low, measured->predicted->high);
     if (!judgement.reached.empty() && judgement.verdict != Verdict::too_short)
       verdict += "; " + judgement.reached;
     if (!judgement.deviation.empty()) verdict += ". " + judgement.deviation;
