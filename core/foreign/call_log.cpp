@@ -16,7 +16,7 @@
 namespace isoline {
 namespace {
 
-std::string heading_of(const std::string& identity) { return "isoline.calls/2 " + identity + "\n"; }
+std::string heading_of(const std::string& identity) { return "isoline.calls/3 " + identity + "\n"; }
 
 void add(std::vector<char>& bytes, const void* data, std::size_t count) {
   const char* const from = static_cast<const char*>(data);
@@ -126,7 +126,7 @@ std::optional<std::string> CallLog::recall(Numbers request, std::span<Real> answ
   return take(head, answer);
 }
 
-// Of the call in `bytes_`.
+// The answer of the call in `bytes_`.
 std::string CallLog::take(const Head& head, std::span<Real> answer) const {
   const char* const from = bytes_.data() + head.request;
   if (head.answer > 0) std::memcpy(answer.data(), from, head.answer);

@@ -219,7 +219,7 @@ std::string verdict_text(const Judgement& judgement) {
 
 namespace {
 
-// What its number is, before it, where it is not that of the sentence: "ratio ".
+// The kind of its number, to stand before it, where that is not the value in the sentence: "ratio ".
 std::string kind_of_measure(const Judgement& judgement) {
   const std::string& kind = judgement.evidence.kind;
   if (!judgement.measured || kind == "value" || kind == "equality") return "";
