@@ -219,7 +219,8 @@ std::string verdict_text(const Judgement& judgement) {
 
 namespace {
 
-// The kind of its number, to stand before it, where that is not the value in the sentence: "ratio ".
+// The kind of its number, to stand before it, where that is not the value in the sentence: "ratio
+// ".
 std::string kind_of_measure(const Judgement& judgement) {
   const std::string& kind = judgement.evidence.kind;
   if (!judgement.measured || kind == "value" || kind == "equality") return "";
