@@ -80,6 +80,8 @@ void register_deconvolution_1d(ProblemRegistry& registry) {
        .note = "CUQIpy’s data have noise of 0.01: run it with the option noise. Every start is 0. "
                "The smallest singular values of A are about 1e-10 of the largest one.",
        .aim = Aim::x,
+       .family = "gaussian-blur",
+       .is_linear = true,
        .in_all = false},
       make_deconvolution_1d));
 }

@@ -165,6 +165,7 @@ void register_diffusivity(ProblemRegistry& registry) {
        .note = "The Jacobian is sparse: each row has at most ten values. The data are exact, and "
                "the standard start is m = 0 with u as observed.",
        .aim = Aim::x,
+       .family = "diffusion",
        .in_all = false},
       make_diffusivity));
 }

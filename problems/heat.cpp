@@ -232,6 +232,8 @@ void register_heat(ProblemRegistry& registry) {
            "problems, 1e-8. The floor under the error in x is that of the best spectral cut-off: "
            "modes that the rounding of the data hides stay where the iteration starts.",
        .aim = Aim::x,  // P is one to one; how far the data give x back is the floor
+       .family = "gaussian-blur",
+       .is_linear = true,
        .panels = {{.title = "Fig. 6d: learning curves", .kind = "curve"},
                   {.title = "Fig. 6c: one sample of the validation", .kind = "pictures"},
                   {.title = "Detail in the gradient (watch=spectrum): share of its power at wave "

@@ -98,6 +98,8 @@ void register_heat_1d(ProblemRegistry& registry) {
        .note = "CUQIpy’s data have noise of ‖y*‖/200 per value, which is noise=0.0566 here. Every "
                "start is 0. At T = 0.2, the data determine the first three or four modes of x.",
        .aim = Aim::x,
+       .family = "gaussian-blur",
+       .is_linear = true,
        .in_all = false},
       make_heat_1d));
 }

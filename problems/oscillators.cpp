@@ -271,6 +271,8 @@ void register_oscillators(ProblemRegistry& registry) {
            "controls (24 by default) of one initial state. Infinitely many controls lead back to "
            "this state, and the error in x is the distance from the nearest of them.",
        .aim = Aim::loss,  // any control that returns will do
+       .family = "oscillators",
+       .is_linear = true,
        .panels = panels_of("Learning curves")},
       make_linear_chain));
   registry.add(problem_entry(
@@ -285,6 +287,7 @@ void register_oscillators(ProblemRegistry& registry) {
            "controls (96 by default) of one initial state. The network is that of the scripts; "
            "that of the book has activation=tanh.",
        .aim = Aim::loss,  // any control that returns will do
+       .family = "oscillators",
        .in_all = false,
        .panels = panels_of("Fig. 2b: learning curves")},
       make_coupled_oscillators));

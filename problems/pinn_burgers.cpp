@@ -124,6 +124,7 @@ void register_pinn_burgers(ProblemRegistry& registry) {
                "relative L2 error of u on points without noise; a series of the record is the "
                "relative error of ν.",
        .aim = Aim::x,
+       .family = "burgers",
        .in_all = false,
        .panels =
            {{.title = "Relative L2 error of u", .kind = "curve"},

@@ -193,6 +193,7 @@ void register_pinn_poisson(ProblemRegistry& registry) {
                "unknowns and a grid of 904 points, 5 has 10,065 and 3,500 new points in each step, "
                "10 has 118,145 and 150. The error in x is the relative L2 error on fixed points.",
        .aim = Aim::x,
+       .family = "laplacian",
        .in_all = false,
        .panels = {{.title = "Relative L2 error", .kind = "curve"}}},
       make_pinn_poisson));

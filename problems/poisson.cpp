@@ -250,6 +250,8 @@ void register_poisson(ProblemRegistry& registry) {
            "training on exact labels. With jacobi, networks are trained by an inexact solve and "
            "judged by the exact one; a call counts once for each iteration of its solve.",
        .aim = Aim::x,  // P is one to one
+       .family = "laplacian",
+       .is_linear = true,
        .panels = {{.title = "Fig. 6b: learning curves", .kind = "curve"},
                   {.title = "Fig. 6a: one sample of the validation", .kind = "pictures"}}},
       make_poisson<true>));
@@ -264,6 +266,8 @@ void register_poisson(ProblemRegistry& registry) {
                "`poisson` has the inverse physics, P = ∇⁻². P is linear and inverted exactly, so "
                "SIP's target is x* itself.",
        .aim = Aim::loss,  // what the published curve shows
+       .family = "laplacian",
+       .is_linear = true,
        .in_all = false,
        .panels = {{.title = "Learning curves", .kind = "curve"},
                   {.title = "Saturated neurons", .kind = "series", .quantity = "saturated neurons"},

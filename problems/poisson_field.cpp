@@ -254,6 +254,7 @@ void register_poisson_field(ProblemRegistry& registry) {
                "linear on the triangles of m, not quadratic, and the prior of x* is isotropic. A "
                "constant added to m changes no data, and errors ignore it. Every start is 0.",
        .aim = Aim::x,
+       .family = "diffusion",
        .in_all = false},
       make_poisson_field));
 }

@@ -36,6 +36,11 @@ struct ProblemEntry {
   std::string source;     // author, year, equation
   std::string note = {};  // deviations and what a reader should know
   Aim aim = Aim::loss;    // success criterion: a small loss, or the true x
+  // Problems that share an operator or its inverse are one witness: tests flip the signs of a
+  // family together, and tuning leaves it out as a whole. Empty: the problem is a family of its
+  // own.
+  std::string family = {};
+  bool is_linear = false;  // P(x) = A x + b in its direct mode
   OptionTable options = {};
   // Whether `*` of a suite means it: not where a forward solve takes over a millisecond or an
   // argument is required.
@@ -50,6 +55,9 @@ struct ProblemEntry {
   std::function<Foreign(const OptionValues& complete_options)> introduce = {};
   std::function<Problem(const OptionValues& complete_options, const Draw&)> make = {};
 };
+inline const std::string& family_of(const ProblemEntry& entry) {
+  return entry.family.empty() ? entry.name : entry.family;
+}
 using ProblemRegistry = Registry<ProblemEntry>;
 
 void register_problems(ProblemRegistry& registry);  // generated: one call a file

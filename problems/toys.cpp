@@ -155,7 +155,8 @@ void register_toys(ProblemRegistry& registry) {
        .note =
            "The loss of the book is |P|² (loss=square). The default loss is half of it, so a step "
            "length of 2η here equals η there.",
-       .aim = Aim::x},  // P is one to one
+       .aim = Aim::x,  // P is one to one
+       .is_linear = true},
       make_scaling));
   registry.add(problem_entry({.name = "square",
                               .title = "One squared coordinate",

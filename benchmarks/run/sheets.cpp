@@ -478,6 +478,8 @@ Sheet described_problem(const Catalog& catalog, const Component& component) {
   Sheet sheet = described("problem", entry, component);
   sheet.aim = entry.aim;
   sheet.group = std::string(name_of(entry.group));
+  sheet.family = component.foreign ? entry.name : family_of(entry);
+  sheet.linear = entry.is_linear && !component.is_learned;
   sheet.panels = entry.panels;
   return sheet;
 }

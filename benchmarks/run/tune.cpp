@@ -178,7 +178,7 @@ Candidate candidate_of(const Catalog& catalog, const TunedPair& pair, const Tuni
                                : grid_of(*knob, knob->standard);
   }
   Candidate candidate{.pair = pair, .knob = *knob, .may_grow = !plan.grid && !plan.is_common};
-  candidate.tuned.family = pair.problem.name;
+  candidate.tuned.family = family_of(catalog.problems.at(pair.problem.name));
   candidate.tuned.standard = knob->standard;
   candidate.tuned.problem = pair.problem.spec;
   candidate.tuned.optimizer = pair.optimizer;

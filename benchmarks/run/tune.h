@@ -102,7 +102,7 @@ struct TunedOption {
   std::vector<TuningScore> scores = {};
   std::size_t best = 0;
   bool is_at_edge = false;  // of the grid, and better than its neighbour
-  std::string family = {};  // the problem's name
+  std::string family = {};  // by the problem's operator
   Real standard = 1;        // the default
   std::int64_t work = 0;    // nominal, of all trials
 };

@@ -122,13 +122,12 @@ void print(const Sheet& sheet) {
   say(stdout, fmt::format("{}: {} ({})\n\n  {}\n\nSource      {}\n", sheet.name, sheet.title,
                           sheet.kind, sheet.formula, sheet.source));
   if (!sheet.note.empty()) say(stdout, fmt::format("Note        {}\n", sheet.note));
+  say(stdout, fmt::format("Family      {}{}\n", sheet.family, sheet.linear ? " (linear)" : ""));
   if (is_problem)
     say(stdout,
         fmt::format("Size        {} unknowns, {} residuals\nInverse     {}\nCriterion   {}\n",
                     sheet.unknowns, sheet.residuals, sheet.inverse,
                     aim_text(sheet.aim.value_or(Aim::loss))));
-  else
-    say(stdout, fmt::format("Family      {}\n", sheet.family));
   say(stdout, fmt::format("{:11} {}\n", is_problem ? "Offers" : "Requires",
                           fmt::join(sheet.oracles, ", ")));
   if (!is_problem)

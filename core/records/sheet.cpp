@@ -92,6 +92,7 @@ void fields(Like<Sheet> auto& sheet, auto& field) {
   field.optional("group", sheet.group);
   field.optional("tunable", sheet.tunable);
   field("inverse", sheet.inverse);
+  field.optional("linear", sheet.linear);
   field("unknowns", sheet.unknowns);
   field("residuals", sheet.residuals);
   field.optional("aim", sheet.aim);

@@ -60,13 +60,15 @@ struct Sheet {
   std::string options_text;             // describe_options() as JSON text
   std::vector<std::string> oracles;     // offered by a problem, required by an optimizer
   std::vector<std::string> privileges;  // of an optimizer
-  std::string family;                   // of an optimizer: its group by required oracles
-  std::string mathematics;              // of an optimizer: the kind of its step
-  std::string group;                    // of a problem: toy, physics, classical
-  std::string tunable;                  // of an optimizer: the option that tuning chooses, if any
-  std::string inverse;                  // of a problem: none, exact, damped, estimate, approximate
-  Index unknowns = 0, residuals = 0;    // of a problem
-  std::optional<Aim> aim;               // of a problem: the success criterion
+  // Of an optimizer: its group by required oracles; of a problem: what shares its operator.
+  std::string family;
+  std::string mathematics;            // of an optimizer: the kind of its step
+  std::string group;                  // of a problem: toy, physics, classical
+  std::string tunable;                // of an optimizer: the option that tuning chooses, if any
+  std::string inverse;                // of a problem: none, exact, damped, estimate, approximate
+  bool linear = false;                // of a problem: P(x) = A x + b
+  Index unknowns = 0, residuals = 0;  // of a problem
+  std::optional<Aim> aim;             // of a problem: the success criterion
   // For a direct problem with a small J (residuals, unknowns): σ_max / σ_min of J at the standard
   // start and, if known, at the solution; infinite if J is rank-deficient.
   std::optional<Real> start_condition, condition;

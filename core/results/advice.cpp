@@ -78,7 +78,7 @@ std::vector<std::size_t> settings_of_size(const Comparison& c, const Means& mean
   std::set<std::string> physics;
   const auto is_physics = [&](std::size_t p) { return c.problems[p].group() == "physics"; };
   for (const std::size_t p : settings)
-    if (is_physics(p)) physics.insert(c.problems[p].name);
+    if (is_physics(p)) physics.insert(c.problems[p].family());
   constexpr std::size_t kFew = 4;
   if (physics.size() >= kFew)
     std::erase_if(settings, [&](std::size_t p) { return !is_physics(p); });
@@ -175,7 +175,7 @@ Advice advise(const Comparison& c, const Means& means) {
   Trial trial = trial_of(c, means, advice.settings, methods);
   const auto decided = [&] {
     Evidence evidence{.costs = trial.costs, .families = {}, .repetitions = {}, .others = {}};
-    for (const std::size_t p : advice.settings) evidence.families.push_back(c.problems[p].name);
+    for (const std::size_t p : advice.settings) evidence.families.push_back(c.problems[p].family());
     return advice.settings.empty() ? std::nullopt : decide(evidence);
   };
   auto decision = decided();

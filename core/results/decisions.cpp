@@ -31,6 +31,16 @@ std::vector<std::vector<std::size_t>> by_family(const std::vector<std::string>& 
   return all;
 }
 
+// The sum of the scores of each family: [family][method].
+std::vector<Row> sums_of(const std::vector<Row>& scores,
+                         const std::vector<std::vector<std::size_t>>& families) {
+  std::vector<Row> sums(families.size(), Row(scores.empty() ? 0 : scores[0].size(), 0));
+  for (std::size_t g = 0; g < families.size(); ++g)
+    for (const std::size_t p : families[g])
+      for (std::size_t s = 0; s < sums[g].size(); ++s) sums[g][s] += scores[p][s];
+  return sums;
+}
+
 bool are_tied(Real a, Real b) { return std::abs(a - b) <= kRounding; }
 
 // a_{p,s} of the methods that are ranked, which alone decide what the least cost is.
@@ -87,14 +97,14 @@ struct Flips {
   // use(sums under a flip) for each flip; the first flip is the identity. A flip of all signs
   // leaves every |u| unchanged: the last family keeps its sign where flips are enumerated.
   template <class Use>
-  std::size_t each(const Use& use) const {
+  std::size_t each(const Use& use, std::size_t exact_families, std::size_t drawn_flips) const {
     const std::size_t families = sums.size();
     Row flipped = total;
     const auto flip = [&](std::size_t g, bool is_minus) {
       const Real sign = is_minus ? -2 : 2;
       for (std::size_t s = 0; s < flipped.size(); ++s) flipped[s] += sign * sums[g][s];
     };
-    if (families <= kExactFlips) {
+    if (families <= exact_families) {
       const std::size_t count = std::size_t{1} << (families - 1);
       for (std::size_t i = 0, code = 0; i < count; ++i) {  // Gray's code: one sign at a time
         const std::size_t next = i ^ (i >> 1U);
@@ -110,7 +120,7 @@ struct Flips {
     }
     use(flipped);
     Draws random(0, "report", "joint signs");
-    for (std::size_t i = 1; i < kDrawnFlips; ++i) {
+    for (std::size_t i = 1; i < drawn_flips; ++i) {
       flipped.assign(total.size(), 0);
       for (const Row& row : sums) {
         const Real sign = random.uniform() < 0.5 ? -1 : 1;
@@ -118,7 +128,7 @@ struct Flips {
       }
       use(flipped);
     }
-    return kDrawnFlips;
+    return drawn_flips;
   }
 };
 
@@ -222,10 +232,7 @@ class Decider {
     std::ranges::stable_sort(order, [&](std::size_t a, std::size_t b) {
       return means_[a] > means_[b] && !are_tied(means_[a], means_[b]);
     });
-    std::vector<Row> sums(families_.size(), Row(methods_.size(), 0));
-    for (std::size_t g = 0; g < families_.size(); ++g)
-      for (const std::size_t p : families_[g])
-        for (std::size_t s = 0; s < methods_.size(); ++s) sums[g][s] += scores_[p][s];
+    const std::vector<Row> sums = sums_of(scores_, families_);
     const FlipLevels levels = flip_levels(sums);
     out.is_lead = levels.is_lead;
     for (const std::size_t s : order) {
@@ -284,32 +291,53 @@ class Decider {
   }
 
   void add_choice(Decision& out, Varied varied, std::string value, const Costs& costs,
-                  Real end = kProfileEnd) const {
+                  const std::vector<std::string>& families, Real end = kProfileEnd) const {
     Choice choice{.varied = varied, .value = std::move(value), .first = {}};
-    for (const std::size_t s : firsts(mean_scores(scores_of(costs, methods_, end))))
-      choice.first.push_back(methods_[s]);
+    const std::vector<Row> scores = scores_of(costs, methods_, end);
+    for (const std::size_t s : firsts(mean_scores(scores))) choice.first.push_back(methods_[s]);
     choice.is_kept = std::ranges::find(choice.first, out.places[0].method) != choice.first.end();
+    if (!choice.first.empty()) {
+      // Of a size that is compared with others, the flips may be few.
+      constexpr std::size_t kExact = 12, kDrawn = 4096;
+      const FlipLevels levels = flip_levels(sums_of(scores, by_family(families)), kExact, kDrawn);
+      for (std::size_t s = 0; s < methods_.size(); ++s) choice.group += levels.is_in_group(s);
+    }
     out.choices.push_back(std::move(choice));
   }
 
+  // Only the settings that is_kept(setting) keeps.
+  template <class Kept>
+  void add_subset(Decision& out, Varied varied, std::string value, Kept is_kept) const {
+    Costs costs;
+    std::vector<std::string> families;
+    for (std::size_t p = 0; p < evidence_.costs.size(); ++p) {
+      if (!is_kept(p)) continue;
+      costs.push_back(evidence_.costs[p]);
+      families.push_back(evidence_.families[p]);
+    }
+    if (!costs.empty()) add_choice(out, varied, std::move(value), costs, families);
+  }
+
   void fill_choices(Decision& out) const {
+    const auto& families = evidence_.families;
     for (const int end : {16, 256})
-      add_choice(out, Varied::profile_end, std::to_string(end), evidence_.costs, end);
+      add_choice(out, Varied::profile_end, std::to_string(end), evidence_.costs, families, end);
     for (const OtherCosts& other : evidence_.others)
-      add_choice(out, other.varied, other.value, other.costs);
+      add_choice(out, other.varied, other.value, other.costs, families);
     for (const auto& left_out : families_) {
       if (families_.size() < 2) break;
-      Costs costs;
-      for (const auto& family : families_)
-        for (const std::size_t p : family)
-          if (&family != &left_out) costs.push_back(evidence_.costs[p]);
-      add_choice(out, Varied::family, evidence_.families[left_out[0]], costs);
+      const std::string& name = families[left_out[0]];
+      add_subset(out, Varied::family, name, [&](std::size_t p) { return families[p] != name; });
     }
+    const auto& linear = evidence_.linear;
+    if (std::ranges::find(linear, true) != linear.end())
+      add_subset(out, Varied::linear, "", [&](std::size_t p) { return !linear[p]; });
     std::set<std::uint64_t> seeds;
     for (const auto& repetitions : evidence_.repetitions)
       for (const Repetition& each : repetitions) seeds.insert(each.seed);
     for (const std::uint64_t seed : seeds)
-      if (seeds.size() > 1) add_choice(out, Varied::seed, seed_text(seed), costs_of_seed(seed));
+      if (seeds.size() > 1)
+        add_choice(out, Varied::seed, seed_text(seed), costs_of_seed(seed), families);
   }
 
   Costs costs_of_seed(std::uint64_t seed) const {
@@ -332,7 +360,8 @@ class Decider {
 
 // All pairs and all steps in one pass over the flips: a pair that is (i, j > i) in the order of
 // leaving belongs to what remains at the steps up to i.
-FlipLevels flip_levels(const std::vector<Row>& sums) {
+FlipLevels flip_levels(const std::vector<Row>& sums, std::size_t exact_families,
+                       std::size_t drawn_flips) {
   const Flips flips(sums);
   const std::size_t k = flips.total.size();
   const auto [order, sizes] = leaving_order(flips);
@@ -345,7 +374,7 @@ FlipLevels flip_levels(const std::vector<Row>& sums) {
     }
   hits.assign(scale.size(), 0);
   Row sorted(k);
-  const std::size_t count = flips.each([&](const Row& flipped) {
+  const auto count_hits = [&](const Row& flipped) {
     for (std::size_t i = 0; i < k; ++i) sorted[i] = flipped[order[i]];
     Real most = 0;
     std::size_t pair = scale.size();
@@ -359,7 +388,8 @@ FlipLevels flip_levels(const std::vector<Row>& sums) {
       }
       steps[i] += most >= sizes[i] - kRounding ? 1 : 0;
     }
-  });
+  };
+  const std::size_t count = flips.each(count_hits, exact_families, drawn_flips);
   FlipLevels levels{.pairs = std::vector<Row>(k, Row(k, 1)), .leaves = Row(k, 1)};
   Real level = 0;
   for (std::size_t i = 0, pair = 0; i < k; ++i) {
@@ -447,6 +477,20 @@ std::vector<std::size_t> Decision::group() const {
   for (const Place& place : places)
     if (place.is_in_group) methods.push_back(place.method);
   return methods;
+}
+
+std::pair<std::size_t, std::size_t> Decision::group_sizes() const {
+  std::pair<std::size_t, std::size_t> sizes{group().size(), group().size()};
+  for (const Choice& choice : choices)
+    if (choice.group > 0)
+      sizes = {std::min(sizes.first, choice.group), std::max(sizes.second, choice.group)};
+  return sizes;
+}
+
+std::optional<std::size_t> Decision::fewest_wins() const {
+  for (std::size_t wins = 1; wins <= families; ++wins)
+    if (std::exp2(1 - Real(wins)) <= kSignificant) return wins;
+  return std::nullopt;
 }
 
 std::optional<Decision> decide(const Evidence& evidence) { return Decider(evidence).decision(); }

@@ -16,6 +16,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/real.h"
@@ -34,7 +35,7 @@ struct Repetition {
   std::vector<std::optional<Real>> costs;  // [method]; nothing where no such run exists
 };
 
-enum class Varied { profile_end, tolerance, measure, prices, family, seed };
+enum class Varied { profile_end, tolerance, measure, prices, family, linear, seed };
 
 // Other costs of the same methods on the same settings: to another tolerance, in time, or at other
 // prices.
@@ -47,6 +48,7 @@ struct OtherCosts {
 struct Evidence {
   Costs costs;  // [setting][method]: medians; infinite where unsolved, nothing where never run
   std::vector<std::string> families;                 // [setting]
+  std::vector<bool> linear = {};                     // [setting], or none at all
   std::vector<std::vector<Repetition>> repetitions;  // [setting], or none at all
   std::vector<OtherCosts> others;
 };
@@ -79,7 +81,9 @@ struct FlipLevels {
 // tests hold by simulation; a quantile for each method alone would drop one of 40 in four of five
 // data sets. A first method whose p against each other one is at most 0.05 leads
 // (intersection-union), and is then the whole group.
-FlipLevels flip_levels(const std::vector<std::vector<Real>>& sums);
+FlipLevels flip_levels(const std::vector<std::vector<Real>>& sums,
+                       std::size_t exact_families = kExactFlips,
+                       std::size_t drawn_flips = kDrawnFlips);
 
 // 95 % of a mean score over families, of which each has the sum of its scores and its number of
 // settings; of fewer than 6 families their range.
@@ -108,6 +112,7 @@ struct Choice {
   std::string value;
   std::vector<std::size_t> first;  // methods; several where they tie, none where nothing is solved
   bool is_kept = false;            // the decision's first place is among them
+  std::size_t group = 0;           // methods not significantly worse than the best
 };
 
 struct Decision {
@@ -125,6 +130,11 @@ struct Decision {
 
   const Place* place_of(std::size_t method) const;  // none if not ranked
   std::vector<std::size_t> group() const;           // methods not significantly worse than the best
+  // The least and the greatest size of that group over the decision and all choices that find one.
+  std::pair<std::size_t, std::size_t> group_sizes() const;
+  // A pair's p is at most 5 % only where one is better on so many families at least: if k families
+  // go against it, 2^(k+1) of the 2^n flips are as far out. Nothing where n families never can.
+  std::optional<std::size_t> fewest_wins() const;
 };
 
 // Nothing where no ranked method solves a setting.

@@ -173,6 +173,17 @@ std::vector<OtherCosts> costs_at_other_prices(const Comparison& c) {
   return all;
 }
 
+// Whether wall times can rank: each run was timed alone and took long enough for a clock, and for
+// the first call of a library not to matter.
+bool are_times_told(const Comparison& c) {
+  constexpr Real kShortest = 0.05;  // seconds
+  return std::ranges::all_of(c.runs, [&](const Run& run) {
+    return !c.order.has(run.optimizer) || !c.order.has_setting(run.problem) ||
+           run.record->status == Status::inapplicable ||
+           (run.is_timed_alone && run.spent_by(Measure::time) >= kShortest);
+  });
+}
+
 std::vector<OtherCosts> costs_by_other_choices(const Comparison& c) {
   const Measure own = c.yardstick.by;
   std::vector<OtherCosts> all;
@@ -180,7 +191,7 @@ std::vector<OtherCosts> costs_by_other_choices(const Comparison& c) {
     all.push_back(
         {Varied::tolerance, std::string(c.yardstick.tolerances[t].name), common_costs(c, t)});
   for (const Measure by : {Measure::work, Measure::cost, Measure::time})
-    if (by != own)
+    if (by != own && (by != Measure::time || are_times_told(c)))
       all.push_back({Varied::measure, std::string(name_of(by)), common_costs(c, kTightest, by)});
   std::ranges::move(costs_at_other_prices(c), std::back_inserter(all));
   return all;
@@ -194,7 +205,8 @@ std::optional<Decision> decision_of(const Comparison& c, const std::vector<Other
   Evidence evidence{.costs = decision_costs(c, common_costs(c, kTightest), is_open)};
   for (std::size_t i = 0; i < c.order.settings.size(); ++i) {
     const std::size_t p = c.order.settings[i];
-    evidence.families.push_back(c.problems[p].name);
+    evidence.families.push_back(c.problems[p].family());
+    evidence.linear.push_back(c.problems[p].is_linear());
     if (c.runs.size() <= kMostResampled)
       evidence.repetitions.push_back(repetitions_of(c, p, evidence.costs[i]));
   }
@@ -257,7 +269,9 @@ Comparison compare_optimizers(const Study& study, const Yardstick& yardstick) {
   c.open_decision = std::ranges::any_of(c.order.methods, is_privileged)
                         ? decision_of(c, others, true)
                         : c.decision;
-  c.names = problems_by_name(c).size();
+  std::set<std::string> names;
+  for (const ProblemAxis& problem : c.problems) names.insert(problem.name);
+  c.names = names.size();
   return c;
 }
 
@@ -314,9 +328,22 @@ std::size_t names_of(const Comparison& c, const Order& order) {
   return names.size();
 }
 
+std::size_t families_of(const Comparison& c, const Order& order) {
+  std::set<std::string> families;
+  for (const std::size_t p : order.settings) families.insert(c.problems[p].family());
+  return families.size();
+}
+
 bool has_order(const Comparison& c) {
-  constexpr std::size_t kFewProblems = 4;
-  return c.order.methods.size() > 1 && names_of(c, c.order) >= kFewProblems;
+  constexpr std::size_t kFewFamilies = 4;
+  return c.order.methods.size() > 1 && families_of(c, c.order) >= kFewFamilies;
+}
+
+Order part_of_order(const Comparison& c, bool is_linear) {
+  Order part{.settings = {}, .methods = c.order.methods};
+  for (const std::size_t p : c.order.settings)
+    if (c.problems[p].is_linear() == is_linear) part.settings.push_back(p);
+  return part;
 }
 
 bool are_tied(Real score, Real other) {

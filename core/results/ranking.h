@@ -63,7 +63,10 @@ Costs common_costs(const Comparison& comparison, std::size_t tolerance,
 Costs ratios_of(const Costs& costs);  // over the least of each problem
 
 std::size_t names_of(const Comparison& comparison, const Order& order);  // of its settings
-// Whether there are problems enough to speak of an order over them.
+std::size_t families_of(const Comparison& comparison, const Order& order);
+// Its linear settings, or its nonlinear ones.
+Order part_of_order(const Comparison& comparison, bool is_linear);
+// Whether there are families enough to speak of an order over them.
 bool has_order(const Comparison& comparison);
 
 // But for rounding; of equal scores the one that solves more settings is ahead.

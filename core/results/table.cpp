@@ -588,11 +588,11 @@ void add_missing(std::vector<std::string>& all, const std::vector<std::string>& 
     if (std::ranges::find(all, one) == all.end()) all.push_back(one);
 }
 
-std::map<std::string, std::vector<std::size_t>> problems_by_name(const Table& table) {
-  std::map<std::string, std::vector<std::size_t>> names;
+std::map<std::string, std::vector<std::size_t>> problems_by_family(const Table& table) {
+  std::map<std::string, std::vector<std::size_t>> families;
   for (std::size_t p = 0; p < table.problems.size(); ++p)
-    names[table.problems[p].name].push_back(p);
-  return names;
+    families[table.problems[p].family()].push_back(p);
+  return families;
 }
 
 }  // namespace isoline::results

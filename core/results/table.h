@@ -75,6 +75,11 @@ struct ProblemAxis {
   }
   // Whether any loss counts as solved, and which, is then unknown.
   bool lacks_least_loss() const { return !is_minimum_known && aim == Aim::loss && !is_learned; }
+  // Problems that share an operator; older metadata say nothing of it.
+  const std::string& family() const {
+    return sheet == nullptr || sheet->family.empty() ? name : sheet->family;
+  }
+  bool is_linear() const { return sheet != nullptr && sheet->linear && !is_learned; }
   bool has_own_sheet() const { return sheet != nullptr && sheet->spec == spec; }
   // "toy", "physics", "classical", "learned"; "other" where its sheet says nothing.
   std::string group() const {
@@ -223,7 +228,7 @@ Pivot pivot(const Table& table, const Yardstick& yardstick);
 // Adds those that are not there yet.
 void add_missing(std::vector<std::string>& all, const std::vector<std::string>& some);
 
-// Indices of the problems of each name: settings of one problem are no two witnesses.
-std::map<std::string, std::vector<std::size_t>> problems_by_name(const Table& table);
+// Indices of the problems of each family: settings of one are no two witnesses.
+std::map<std::string, std::vector<std::size_t>> problems_by_family(const Table& table);
 
 }  // namespace isoline::results

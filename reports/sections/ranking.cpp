@@ -45,6 +45,8 @@ std::string settings_text(const Comparison& c) {
     parts.push_back(words("ranking.all-physics"));
   else if (physics > 0)
     parts.push_back(words("ranking.physics", physics));
+  if (const std::size_t families = families_of(c, c.order); families < names)
+    parts.push_back(words("ranking.families", families));
   if (unknowns > 0) parts.push_back(words("ranking.unknowns", unknowns));
   std::string about = joined(parts);
   const std::vector<std::uint64_t> seeds = ranked_seeds(c);
@@ -65,40 +67,89 @@ std::string decision_sentence(const Comparison& c, const Decision& decision) {
   };
   const results::Place& first = decision.places[0];
   const std::string on = settings_text(c), measure(counted_name(c)), tau = tau_name(c);
-  std::string text;
-  if (decision.places.size() == 1) {
-    text = words("ranking.alone", on, name(first), first.score, first.solved);
-  } else if (decision.tied > 1) {
+  if (decision.places.size() == 1)
+    return words("ranking.alone", on, name(first), first.score, first.solved);
+  if (decision.tied > 1) {
     std::vector<std::size_t> tied;
     for (std::size_t i = 0; i < decision.tied; ++i) tied.push_back(decision.places[i].method);
-    text = words("ranking.tied", on, names_text(c, tied, 3), measure, tau, first.score);
-  } else {
-    // The best of those whose difference from the first is not significant by itself.
-    const auto open =
-        std::find_if(decision.places.begin() + 1, decision.places.end(),
-                     [](const results::Place& place) { return place.p > kSignificant; });
-    const auto rival = open == decision.places.end() ? decision.places.begin() + 1 : open;
-    const auto rank = static_cast<std::size_t>(rival - decision.places.begin()) + 1;
-    const auto digits = [](Real score) { return fmt::format("{:.2f}", score); };
-    const bool is_close = rank == 2 && digits(rival->score) == digits(first.score);
-    text = words(decision.is_lead ? "ranking.lead" : "ranking.open", on, measure, tau, name(first),
-                 first.score, first.solved,
-                 words(is_close ? "ranking.close" : "ranking.rival", name(*rival),
-                       rank == 2 ? words("ranking.second") : words("ranking.later", ordinal(rank)),
-                       rival->score, rival->solved),
-                 rival->p);
+    return words("ranking.tied", on, names_text(c, tied, 3), measure, tau, first.score);
   }
-  for (const Choice& choice : decision.choices)
-    if (choice.varied == Varied::measure && choice.value == name_of(Measure::time) &&
-        !choice.is_kept && !choice.first.empty())
-      text += " " + words(c.is_any_timed_together ? "ranking.by-shared-time" : "ranking.by-time",
-                          names_text(c, choice.first, 2), choice.first.size());
+  if (!decision.is_lead) {
+    const std::optional<std::size_t> fewest = decision.fewest_wins();
+    return words("ranking.open", on, measure, tau, name(first), first.score, first.solved,
+                 fewest ? words("ranking.wins-needed", decision.families, *fewest)
+                        : words("ranking.no-wins", decision.families));
+  }
+  return words("ranking.lead", on, measure, tau, name(first), first.score, first.solved,
+               words("ranking.rival", name(decision.places[1]), decision.places[1].score,
+                     decision.places[1].solved),
+               decision.places[1].p);
+}
+
+// "22 to 36", or one number.
+std::string range_text(std::size_t low, std::size_t high) {
+  return low == high ? std::to_string(low) : fmt::format("{} to {}", low, high);
+}
+
+std::string variation_text(const Decision& decision) {
+  const auto [least, most] = decision.group_sizes();
+  return words("ranking.variation", range_text(least, most), most, decision.places.size(),
+               decision.choices.size());
+}
+
+// The methods that the data do not exclude as the best: those that solve about as many settings by
+// name, the others as a number.
+std::string group_text(const Comparison& c, const Decision& decision) {
+  constexpr std::size_t kAbout = 3;  // settings
+  std::vector<std::size_t> close;
+  std::size_t others = 0;
+  for (const results::Place& place : decision.places)
+    if (place.is_in_group && place.solved + kAbout >= decision.places[0].solved)
+      close.push_back(place.method);
+    else
+      others += place.is_in_group;
+  return words("ranking.group", names_text(c, close, 6), close.size() + others,
+               decision.places.size(), others == 0 ? "" : words("ranking.too-few", others)) +
+         " " + variation_text(decision);
+}
+
+// The settings that methods of each kind solve: their order within a kind is mostly chance.
+std::string kinds_text(const Comparison& c, const Decision& decision) {
+  std::map<std::string, std::vector<std::size_t>> kinds;
+  for (const results::Place& place : decision.places)
+    if (const std::string kind = c.optimizers[place.method].mathematics(); kind != "other")
+      kinds[kind].push_back(place.solved);
+  std::vector<std::string> parts;
+  for (auto& [kind, solved] : kinds) {
+    std::ranges::sort(solved);
+    parts.push_back(words("ranking.kind", kind, range_text(solved.front(), solved.back())));
+  }
+  const std::size_t most =
+      decision.places.empty()
+          ? 0
+          : std::ranges::max_element(decision.places, {}, &results::Place::solved)->solved;
+  const auto count =
+      static_cast<std::size_t>(std::ranges::count(decision.places, most, &results::Place::solved));
+  std::string text = words("ranking.most-solved", count, most, decision.settings,
+                           count > 1 ? " " + words("ranking.within-noise") : "");
+  if (parts.size() > 1)
+    text += " " + words("ranking.kinds", decision.settings, joined(parts, "; "));
   return text;
 }
 
-std::string group_text(const Comparison& c, const Decision& decision) {
-  const std::vector<std::size_t> group = decision.group();
-  return words("ranking.group", names_text(c, group, 6), group.size(), decision.places.size());
+// Linear settings, which a Gauss-Newton step solves, apart from the others.
+std::string linear_text(const Comparison& c, const Decision& decision) {
+  const std::size_t linear = part_of_order(c, true).settings.size();
+  const auto apart = std::ranges::find(decision.choices, Varied::linear, &Choice::varied);
+  if (linear == 0 || apart == decision.choices.end()) return "";
+  return words("ranking.linear", linear, decision.settings, decision.settings - linear,
+               apart->first.empty() ? words("ranking.nobody") : names_text(c, apart->first, 3),
+               apart->group, decision.places.size());
+}
+
+std::string solved_runs_text(const Comparison& c, std::size_t method) {
+  const Standing& standing = c.optimizers[method].tightest();
+  return fmt::format("{} of {}", standing.reached, standing.runs);
 }
 
 std::string robustness_text(const Comparison& c, const Decision& decision) {
@@ -127,7 +178,8 @@ std::string robustness_text(const Comparison& c, const Decision& decision) {
       !has_other ? words("ranking.share", name(first), share)
                  : words(other->share_first > first.share_first ? "ranking.share-more"
                                                                 : "ranking.share-less",
-                         name(first), share, name(*other), percent(other->share_first));
+                         name(first), share, name(*other), percent(other->share_first),
+                         solved_runs_text(c, first.method), solved_runs_text(c, other->method));
   return words("ranking.robustness", samples, name(first), kept, decision.choices.size(),
                lost.empty() ? "" : words("ranking.otherwise", listed(firsts)));
 }
@@ -147,6 +199,8 @@ std::string not_run(const Comparison& c) {
                missing == 0 ? "" : words("ranking.missing", missing));
 }
 
+std::string counted_families(std::size_t families) { return words("ranking.families", families); }
+
 std::string common_settings(const Comparison& c) {
   return counted(c.order.settings.size(), common_noun(c));
 }
@@ -157,7 +211,7 @@ std::vector<MethodPair> all_pairs(const Comparison& c) {
   Costs costs = median_costs(c, kTightest);
   std::vector<std::string> families;
   for (std::size_t p = 0; p < costs.size(); ++p) {
-    families.push_back(c.problems[p].name);
+    families.push_back(c.problems[p].family());
     for (std::size_t s = 0; s < costs[p].size(); ++s)
       if (!is_ordered(c, p) || !c.cell(p, s).inapplicable.empty()) costs[p][s].reset();
   }
@@ -169,11 +223,12 @@ std::vector<MethodPair> all_pairs(const Comparison& c) {
 }
 
 std::string choice_text(const Choice& choice) {
-  constexpr std::array<const char*, 6> kKeys = {"choice.end",     "choice.tolerance",
-                                                "choice.measure", "choice.prices",
-                                                "choice.family",  "choice.seed"};
+  constexpr std::array<const char*, 7> kKeys = {
+      "choice.end",    "choice.tolerance", "choice.measure", "choice.prices",
+      "choice.family", "choice.linear",    "choice.seed"};
   static_assert(static_cast<std::size_t>(Varied::seed) + 1 == kKeys.size());
   const bool is_measure = choice.varied == Varied::measure;
+  if (choice.varied == Varied::linear) return words("choice.linear");
   return words(kKeys[static_cast<std::size_t>(choice.varied)],
                is_measure ? counted_name(measure_of(choice.value).value_or(Measure::work))
                           : std::string_view(choice.value));
@@ -197,12 +252,13 @@ std::vector<std::string> verdict(const Comparison& c) {
     if (!left_out.empty()) all.push_back(std::move(left_out));
     return all;
   }
-  all = {decision_sentence(c, *c.decision), words("ranking.best-group", group_text(c, *c.decision)),
-         robustness_text(c, *c.decision)};
+  all = {decision_sentence(c, *c.decision), group_text(c, *c.decision), kinds_text(c, *c.decision),
+         linear_text(c, *c.decision), robustness_text(c, *c.decision)};
   if (c.open_decision && c.open_decision->places[0].method != c.decision->places[0].method)
     all.push_back(words("ranking.without-extra", decision_sentence(c, *c.open_decision)));
   if (c.yardstick.by == Measure::time && c.is_any_timed_together)
     all.push_back(words("ranking.shared-time"));
+  all.push_back(words("limits.problems"));
   all.push_back(unranked_sentence(c));
   all.push_back(std::move(left_out));
   for (std::string& sentence : learned_sentences(c)) all.push_back(std::move(sentence));
@@ -332,6 +388,32 @@ Table sanity_table(const Comparison& c) {
   return table;
 }
 
+// Linear and nonlinear settings apart; none where all are of one kind.
+Table linear_table(const Comparison& c) {
+  Table table = worded_table("linear", setting_noun(c), tau_name(c));
+  const Order linear = part_of_order(c, true), others = part_of_order(c, false);
+  if (linear.settings.empty() || others.settings.empty()) return table;
+  std::map<std::size_t, Standing> on_linear;
+  for (const auto& [s, standing] :
+       standings_over(c, linear, c.yardstick.by, c.yardstick.tightest().rung))
+    on_linear[s] = standing;
+  const auto solved = [](const char* name, const Standing& standing) -> TableCell {
+    return {fmt::format("{}/{}", standing.solved, standing.settings),
+            {{name, Real(standing.solved)}}};
+  };
+  const auto score = [](const char* name, const Standing& standing) -> TableCell {
+    return {fmt::format("{:.3f}", standing.score), {{name, standing.score}}};
+  };
+  for (const auto& [s, standing] :
+       standings_over(c, others, c.yardstick.by, c.yardstick.tightest().rung))
+    add_row(table, c, s,
+            {solved("nonlinear_solved", standing), score("nonlinear_score", standing),
+             solved("linear_solved", on_linear[s]), score("linear_score", on_linear[s])});
+  table.is_folded = true;
+  table.reading = linear_text(c, *c.decision);
+  return table;
+}
+
 // A row per method and a column per setting. show(cell, p, s) adds text and numbers to a cell of
 // the table; of the last number the least is bold, and the reading lists it.
 Table settings_table(const Comparison& c, const char* key, const std::vector<std::size_t>& settings,
@@ -418,7 +500,7 @@ Section standings_section(const Comparison& c) {
   for (std::string& sentence : verdict(c)) section.readings.push_back({"", std::move(sentence)});
   if (!c.order.settings.empty()) section.tables.push_back(ranking_table(c));
   if (!c.sanity.settings.empty()) section.tables.push_back(sanity_table(c));
-  for (Table table : {losses_table(c), ill_posed_table(c)})
+  for (Table table : {c.decision ? linear_table(c) : Table{}, losses_table(c), ill_posed_table(c)})
     if (!table.rows.empty()) section.tables.push_back(std::move(table));
   return section;
 }
@@ -466,19 +548,19 @@ std::vector<std::string> limits_of_evidence(const Comparison& c) {
   std::vector<std::string> all;
   if (c.decision && c.decision->places.size() > 1) {
     const Decision& decision = *c.decision;
-    const std::string problems = counted(decision.families, "problem");
+    const std::string families = counted_families(decision.families);
     all.push_back(words(
         decision.friedman <= kSignificant ? "limits.friedman-differs" : "limits.friedman-equal",
-        counted(decision.places.size(), "method"), problems, decision.friedman));
-    all.push_back(words("limits.least-p", problems, decision.least_p));
-    if (decision.detectable < kNever)
-      all.push_back(words("limits.detectable", decision.detectable));
+        counted(decision.places.size(), "method"), families, decision.friedman));
+    all.push_back(words("limits.least-p", families, decision.least_p));
+    all.push_back(decision.detectable < kNever && decision.detectable > 0
+                      ? words("limits.detectable", decision.detectable)
+                      : words("limits.undetectable", families));
   }
   const std::vector<std::uint64_t> seeds = ranked_seeds(c);
   const auto independent = std::max(distinct(seeds, instance_of), distinct(seeds, start_of));
   if (independent < kFewestForInterval)
     all.push_back(words("limits.seeds", counted(independent, "independent seed")));
-  all.push_back(words("limits.problems"));
   return all;
 }
 

@@ -236,7 +236,7 @@ std::string highest_at(const Plot& plot, Real x) {
 PlotSeries share_series(const Comparison& c, std::size_t s, const Costs& measures,
                         const std::vector<Real>& grid) {
   std::vector<GroupSum> groups;
-  for (const auto& [name, problems] : problems_by_name(c)) {
+  for (const auto& [family, problems] : problems_by_family(c)) {
     GroupSum group;
     group.sums.resize(grid.size(), 0);
     for (const std::size_t p : problems) {

@@ -133,7 +133,8 @@ TEST(Comparison, ThePrivilegedLeadOnlyAmongAll) {
   EXPECT_EQ(c.optimizers[c.decision->places[0].method].label, "seer");
   EXPECT_EQ(c.optimizers[c.open_decision->places[0].method].label, "fair");
   EXPECT_EQ(c.open_decision->places[0].share_first, 1);  // on every problem, so in every draw
-  EXPECT_EQ(verdict(c).size(), 4U);  // the decision, its group, its robustness, that of the others
+  // the decision, its group, what is solved, its robustness, that of the others, the limit
+  EXPECT_EQ(verdict(c).size(), 6U);
 }
 
 // Two methods over three seeds on two problems; b misses seed 2 of q, which was planned.

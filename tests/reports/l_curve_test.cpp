@@ -1,5 +1,6 @@
 // The corner of the L-curve, against the closed form of a linear problem in the coordinates of its
 // singular value decomposition.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>

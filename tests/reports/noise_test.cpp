@@ -1,5 +1,6 @@
 // Tables and the plot of settings with noise and other features, beside the same settings without;
 // the chooser's answers for noise and bounds.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -59,6 +59,32 @@ TEST(RankedSettings, AreThoseOfPhysicsAloneWhereThereAreAny) {
   EXPECT_EQ(left_out_text(others), "");
 }
 
+// Seven problems, of which two share an operator and two are linear.
+TEST(RankedSettings, OfOneFamilyAreOneWitnessAndLinearOnesStandApart) {
+  Study study;
+  for (const char* name : {"o", "p", "q", "r", "s", "t", "u"}) {
+    Sheet sheet = problem_sheet(name, "physics");
+    sheet.family = *name < 'q' ? "laplacian" : name;
+    sheet.linear = *name < 'q';
+    study.sheets.push_back(sheet);
+    for (const auto& [optimizer, work] : {std::pair{"a", 1}, {"b", *name < 'q' ? 3 : 9}, {"c", 9}})
+      study.runs.push_back(
+          record_of({.problem = name, .optimizer = optimizer, .work_per_hit = work}));
+  }
+  const Compared c(std::move(study));
+  EXPECT_EQ(c.decision->families, 6U);
+  EXPECT_EQ(c.decision->least_p, 1.0 / 32);
+  EXPECT_EQ(c.decision->fewest_wins(), 6U);
+  EXPECT_EQ(c.decision->group_sizes().first, 1U);
+  EXPECT_EQ(c.decision->group_sizes().second, 3U) << "without a family, five decide nothing";
+  const auto nonlinear = std::ranges::find(c.decision->choices, Varied::linear, &Choice::varied);
+  ASSERT_NE(nonlinear, c.decision->choices.end());
+  EXPECT_EQ(nonlinear->group, 3U);
+  const Section section = standings_section(c);
+  EXPECT_EQ(at(table_of(section, "linear"), "b", "linear: solved"), "2/2");
+  EXPECT_EQ(at(table_of(section, "linear"), "b", "nonlinear: solved"), "5/5");
+}
+
 // Errors in x from 1 down to 1e-5, with floors by seed. The goal is 1.1 times the median floor.
 Study with_floors(const std::vector<Real>& floors) {
   Study study = physics_and_others();

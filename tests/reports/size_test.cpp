@@ -1,4 +1,5 @@
 // How work grows with the number of unknowns, over settings that differ in their size.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
