@@ -161,7 +161,7 @@ std::string unknown_name(std::string_view what, std::string_view wrong,
     return fmt::format("unknown {} '{}'; did you mean '{}'?", what, wrong, nearest);
   constexpr std::size_t kMostListed = 30;
   if (known.size() > kMostListed)
-    return fmt::format("unknown {} '{}'; `isoline list` prints the {} known names", what, wrong,
+    return fmt::format("unknown {} '{}'; `isoline describe` prints the {} known names", what, wrong,
                        known.size());
   return fmt::format("unknown {} '{}'; known: {}", what, wrong, fmt::join(known, ", "));
 }

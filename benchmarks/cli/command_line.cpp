@@ -45,7 +45,7 @@ struct VerbGroup {
 };
 constexpr VerbGroup kGroups[] = {{29, "Run cells"},
                                  {129, "Read results"},
-                                 {189, "Problems and optimizers"},
+                                 {199, "Problems and optimizers"},
                                  {229, "Tune and train"},
                                  {299, "The program itself"}};
 
@@ -153,11 +153,12 @@ CLI::Option* number(CLI::App& verb, const char* name, const char* type, Value& v
 }
 
 template <class Value>
-void whole_number(CLI::App& verb, const char* name, Value& value, const char* about,
-                  WholeRange range) {
+CLI::Option* whole_number(CLI::App& verb, const char* name, Value& value, const char* about,
+                          WholeRange range) {
   CLI::Option* made = number(verb, name, "INT", value, about,
                              [range](auto& of, auto& text) { return read_whole(of, text, range); });
   if (value >= range.low) made->default_str(std::to_string(value));
+  return made;
 }
 
 std::vector<std::string> option_names(const CLI::App& verb) {
@@ -225,7 +226,7 @@ class CommandLine {
  public:
   // `runs`: or only reads.
   CommandLine(const std::string& program, Session& session, bool runs);
-  int read(int count, char** arguments);  // and runs; the exit code
+  int read(std::vector<std::string> words);  // and runs; the exit code
 
  private:
   void declare(const Verb& verb);
@@ -273,7 +274,7 @@ void CommandLine::declare(const Verb& verb) {
   if (verb.declare) verb.declare(arguments);
   const char* between = verb.notes.empty() ? "" : "\n\n";
   declared.footer(fmt::format("Examples:\n{}{}{}", verb.examples, between, verb.notes))
-      ->group(group_of(verb));
+      ->group(verb.is_hidden ? "" : group_of(verb));
   declared.callback([this, &verb] {
     if (!helped_.empty()) require_verb(helped_);
     if (runs_) exit_code_ = verb.run(session_);
@@ -312,14 +313,15 @@ std::string CommandLine::complaint(const CLI::ParseError& error) const {
   return fmt::format("{} (see {}{} --help)", text, program_, name);
 }
 
-int CommandLine::read(int count, char** arguments) {
-  if (count == 1) {
+int CommandLine::read(std::vector<std::string> words) {
+  if (words.empty()) {
     if (runs_) say(stdout, help_text());
     return kGood;
   }
-  if (count > 1 && arguments[1][0] != '-') require_verb(arguments[1]);
+  if (!words.front().starts_with('-')) require_verb(words.front());
+  std::ranges::reverse(words);  // as CLI11 takes them
   try {
-    app_.parse(count, arguments);
+    app_.parse(std::move(words));
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return runs_ ? app_.exit(error) : kGood;  // --help, --version
     throw UsageError(complaint(error));
@@ -330,12 +332,13 @@ int CommandLine::read(int count, char** arguments) {
 }  // namespace
 
 int parse_and_run(const std::string& program, int count, char** arguments, Session& session) {
-  return CommandLine(program, session, true).read(count, arguments);
+  std::vector<std::string> words(arguments + 1, arguments + count);
+  return CommandLine(program, session, true).read(present_words(std::move(words), program));
 }
 
 void parse_only(const std::string& program, int count, char** arguments) {
   Session none("", {});
-  CommandLine(program, none, false).read(count, arguments);
+  CommandLine(program, none, false).read({arguments + 1, arguments + count});
 }
 
 std::vector<Verb> all_verbs() {
@@ -450,13 +453,13 @@ Argument VerbArguments::flag(const char* name, bool& value, const char* about) {
   return argument(*verb_.add_flag(name, value, about));
 }
 
-void VerbArguments::whole(const char* name, int& value, const char* about, WholeRange range) {
-  whole_number(verb_, name, value, about, range);
+Argument VerbArguments::whole(const char* name, int& value, const char* about, WholeRange range) {
+  return argument(*whole_number(verb_, name, value, about, range));
 }
 
-void VerbArguments::whole(const char* name, std::int64_t& value, const char* about,
-                          WholeRange range) {
-  whole_number(verb_, name, value, about, range);
+Argument VerbArguments::whole(const char* name, std::int64_t& value, const char* about,
+                              WholeRange range) {
+  return argument(*whole_number(verb_, name, value, about, range));
 }
 
 void VerbArguments::whole_or_never(const char* name, std::int64_t& value, const char* about) {

@@ -5,14 +5,13 @@
 
 #include <algorithm>
 
+#include "benchmarks/cli/views.h"
 #include "benchmarks/plan/rates.h"
 #include "benchmarks/plan/suite.h"
-#include "benchmarks/run/progress.h"
 #include "benchmarks/run/run_plan.h"
 #include "benchmarks/shard/split.h"
 #include "core/spec.h"
 #include "core/text.h"
-#include "reports/sections/words.h"
 
 namespace isoline::benchmarks {
 namespace {
@@ -49,14 +48,27 @@ void override_blocks(const RunArguments& given, Suite& suite) {
   }
 }
 
-}  // namespace
+// The suite with other optimizers, and other problems where these are given.
+void put_instead(const RunArguments& given, Suite& suite) {
+  if (!given.problem.empty()) suite.blocks.resize(1);
+  for (MatrixBlock& block : suite.blocks) {
+    block.optimizers = {given.instead};
+    if (!given.problem.empty()) block.problems = {given.problem};
+  }
+}
 
 void declare_cells(VerbArguments& verb, RunArguments& given) {
   verb.text(
       "SUITE", given.suite,
       "Name or path of a suite (default: quick); --problem and --optimizer select cells of it");
   verb.text("--problem", given.problem, "Problems: 'sine[xi=1|32,phi=45],square'").joined();
-  verb.text("--optimizer", given.optimizer, "Optimizers: 'adam[rate=1e-3],ceres-lm'").joined();
+  const Argument optimizers =
+      verb.text("--optimizer", given.optimizer, "Optimizers: 'adam[rate=1e-3],ceres-lm'").joined();
+  verb.text("--instead", given.instead,
+            "Optimizers to run instead of those of SUITE, on its problems with its seeds and "
+            "budgets; --problem then names problems to use instead of those of SUITE")
+      .joined()
+      .excludes(optimizers);
   const Argument seeds =
       verb.text("--seeds", given.seeds,
                 "Seeds: 5 (seeds 0 to 4), 0..9, =5 (seed 5), or 2:1 (instance 2, start 1)");
@@ -90,7 +102,7 @@ void declare_cells(VerbArguments& verb, RunArguments& given) {
   verb.text("--rates", given.rates, "Table of tuned rates: builtin, none or a file").shown();
   verb.text(
       "--best", given.best,
-      "Table written by `isoline best`: the lowest known losses of problems that do not declare "
+      "Table written by `isoline baseline --best`: the lowest known losses of problems that do not declare "
       "their least attainable loss f_L");
   verb.flag("--allow-large", given.allow_large, "Allow more than a million cells");
   verb.plugins();
@@ -110,6 +122,30 @@ void declare_what_is_done(VerbArguments& verb, RunArguments& given) {
       .between_commas();
 }
 
+void declare_dry_run(VerbArguments& verb, RunArguments& given) {
+  const Argument dry = verb.flag(
+      "--dry-run", given.is_dry,
+      "Run nothing: print the cells, their states and the predicted time, or, for the result folder "
+      "of a run in place of SUITE, its progress");
+  verb.whole("--shards", given.shards,
+             "With --dry-run: divide the plan into this many shards of about equal time, and write "
+             "the predictions to predicted.json in the result folder, unless that file exists",
+             kShards)
+      .needs(dry);
+  verb.texts("--from", given.earlier,
+             "With --dry-run: earlier result folders, from which times are predicted")
+      .between_commas()
+      .needs(dry);
+  verb.flag("--all", given.lists_all, "With --dry-run: list every cell or shard, not the first 20")
+      .needs(dry);
+  verb.flag("--json", given.as_json, "With --dry-run: print JSON").needs(dry);
+  verb.flag("--in-process", given.in_process,
+            "Run the cells in this process, for a debugger: no isolation, no limits, no records")
+      .excludes(dry);
+}
+
+}  // namespace
+
 void declare_run(VerbArguments& verb, RunArguments& given) {
   declare_cells(verb, given);
   verb.whole("--jobs", given.jobs, "Number of cells at a time (default: one per core)", kJobs);
@@ -119,6 +155,7 @@ void declare_run(VerbArguments& verb, RunArguments& given) {
               "Memory limit of a cell, 256MB or more (default: 4GB)", 256);
   declare_what_is_done(verb, given);
   verb.flag("--no-report", given.no_report, "Do not write a report");
+  declare_view(verb, given.view);
   verb.flag("--uncertified", given.uncertified,
             "Run problems from other programs without checking them first; each table marks these "
             "problems");
@@ -140,24 +177,24 @@ void declare_run(VerbArguments& verb, RunArguments& given) {
       "--shard", given.shard,
       "Run only one shard, such as 3/16; its records are written to shards/3-of-16 in the result "
       "folder. auto: take the shard from ISOLINE_SHARD or from the task of a scheduler's array");
-  const Argument dry =
-      verb.flag("--dry-run", given.is_dry,
-                "Only print the plan: its cells, their states and the predicted time");
-  verb.flag("--all", given.lists_all, "With --dry-run: list every cell, not the first 20")
-      .needs(dry);
-  verb.flag("--in-process", given.in_process,
-            "Run the cells in this process, for a debugger: no isolation, no limits, no records")
-      .excludes(dry);
+  declare_dry_run(verb, given);
   verb.flag("--quiet", given.quiet, "Print only failures");
 }
 
 PlannedRun planned_run(const RunArguments& given, const Catalog& catalog) {
   if (!given.best.empty()) read_as("--best", [&] { BestLosses::add_known(given.best); });
   const bool is_limited = !given.problem.empty() || !given.optimizer.empty();
-  const bool is_suite = !given.suite.empty() || !is_limited;
+  const bool is_suite = !given.suite.empty() || !given.instead.empty() || !is_limited;
   Suite suite;
   if (is_suite) {
+    require(builtin_suites().contains(given.suite) || !fs::is_directory(given.suite), [&] {
+      return fmt::format(
+          "{0} is a folder, not a suite; `isoline run {0} --dry-run` prints the progress of its run, "
+          "and the command of the run continues it",
+          given.suite);
+    });
     suite = read_suite(given.suite.empty() ? "quick" : given.suite);
+    if (!given.instead.empty()) put_instead(given, suite);
   } else {
     suite.name = "custom";
     suite.blocks = {{.problems = {given.problem.empty() ? "*" : given.problem},
@@ -173,12 +210,21 @@ PlannedRun planned_run(const RunArguments& given, const Catalog& catalog) {
     return too_large(size, most) + (given.allow_large ? "" : "; --allow-large lifts the limit");
   });
   PlannedRun all{suite.label(), expand(catalog, suite, rates, most), given.out, std::move(rates)};
-  if (is_suite && is_limited)
+  if (is_suite && is_limited && given.instead.empty())
     all.requests = filtered(catalog, std::move(all.requests), given.problem, given.optimizer);
   if (!all.folder.empty()) return all;
   const std::string title = is_suite ? suite.name : "";
-  all.folder = fs::path("results") / (is_limited ? folder_name_of(all.requests, title) : title);
+  const bool is_whole = !is_limited && given.instead.empty();
+  all.folder = fs::path("results") / (!is_whole ? folder_name_of(all.requests, title) : title);
   return all;
+}
+
+void keep_shard(const std::string& text, PlannedRun& all) {
+  const Shard shard = shard_of(text);
+  const std::vector<double> weights = weights_of(all.requests, all.folder);
+  const std::vector<std::size_t> shards = split(all.requests, weights, shard.count);
+  all.requests = part_of(std::move(all.requests), shards, shard);
+  all.folder = shard.folder(all.folder);
 }
 
 std::set<Status> statuses_of(const std::vector<std::string>& names) {
@@ -192,40 +238,6 @@ std::set<Status> statuses_of(const std::vector<std::string>& names) {
     statuses.insert(*status_of(name));
   }
   return statuses;
-}
-
-std::string preview_text(const PreviewCounts& counts, int jobs) {
-  const std::optional<double> seconds = counts.seconds();
-  return fmt::format(
-      "{}: {} cached, {} inapplicable, {} to run{}", reports::counted(counts.cells, "cell"),
-      counts.cached, counts.inapplicable, counts.missing,
-      seconds ? fmt::format(", about {} with {} at a time", duration_text(*seconds / jobs), jobs)
-              : "; no time estimate (no earlier runs)");
-}
-
-void print_counts(const Preview& shown, int jobs) {
-  say(stdout, preview_text(counts_of(shown.cells), jobs) + "\n");
-  if (shown.likened > 0)
-    say(stdout,
-        fmt::format(
-            "{} of problems not probed: assumed to be like the other settings of the problem\n",
-            reports::counted(shown.likened, "setting")));
-}
-
-Preview preview_of(const PlannedRun& all, const RunArguments& given,
-                   const std::vector<std::string>& earlier, const std::vector<fs::path>& folders,
-                   Session& session) {
-  require_sound(session.catalog(), all.requests);
-  std::vector<fs::path> timed = result_folders(all.folder);
-  for (const std::string& folder : earlier) {
-    const std::vector<fs::path> there = result_folders(folder);
-    require(!there.empty(), [&] {
-      return folder + " is not a result folder; `isoline run --out FOLDER` creates one";
-    });
-    timed.insert(timed.end(), there.begin(), there.end());
-  }
-  return preview(session.catalog(), all.requests, folders, EarlierTimes(record_outlines(timed)),
-                 {.force = given.force, .reuse = given.reuse, .retry = statuses_of(given.retry)});
 }
 
 }  // namespace isoline::benchmarks

@@ -1,5 +1,6 @@
 // A verb of the command line: each file of benchmarks/verbs defines register_NAME(VerbRegistry&),
-// and CMake lists them. Its arguments are declared without the library that parses them.
+// and CMake lists them; verbs that are read together share a file. Its arguments are declared
+// without the library that parses them.
 #pragma once
 
 #include <cstdint>
@@ -73,8 +74,8 @@ class VerbArguments {
   Argument texts(const char* name, std::vector<std::string>& values, const char* about);
   Argument flag(const char* name, bool& value, const char* about);
   // The help shows a default that lies within the range.
-  void whole(const char* name, int& value, const char* about, WholeRange range = {});
-  void whole(const char* name, std::int64_t& value, const char* about, WholeRange range = {});
+  Argument whole(const char* name, int& value, const char* about, WholeRange range = {});
+  Argument whole(const char* name, std::int64_t& value, const char* about, WholeRange range = {});
   // "never" is 0.
   void whole_or_never(const char* name, std::int64_t& value, const char* about);
   Argument real(const char* name, double& value, const Range& range, const char* about);
@@ -94,7 +95,8 @@ class VerbArguments {
 
 struct Verb {
   std::string name;
-  int help_position = 0;  // the help lists verbs in ascending order, in groups (command_line.cpp)
+  int help_position = 0;   // the help lists verbs in ascending order, in groups (command_line.cpp)
+  bool is_hidden = false;  // in the help
   std::string summary;
   std::string examples;  // lines that begin with "  isoline "
   std::string notes = {};
@@ -117,6 +119,10 @@ void register_verbs(VerbRegistry& registry);  // generated: one call per file
 
 // All verbs, in the order of the help; `help` and `version` are the last.
 std::vector<Verb> all_verbs();
+
+// The words of a command line. An earlier name of a command, and its options, become the present
+// ones, with a line about it on standard error. One release keeps these names.
+std::vector<std::string> present_words(std::vector<std::string> words, const std::string& program);
 
 // An argument as its declaration describes it, for completions and the manual.
 struct ArgumentText {

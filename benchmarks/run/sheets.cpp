@@ -174,7 +174,7 @@ MeasuredPrice price_of(std::string_view name, std::int64_t declared, double forw
   return price;
 }
 
-// The network alone, as `isoline infer` applies it, to the samples of a batch at once: what one of
+// The network alone, as `isoline solution` applies it, to the samples of a batch at once: what one of
 // them takes.
 MeasuredPrice inference_price(const Problem& problem, double forward, Real unit) {
   const problems::Network& network = problem.network();

@@ -50,7 +50,7 @@ int run(const AuditArguments& given, Session& session) {
 }  // namespace
 
 void register_audit(VerbRegistry& registry) {
-  registry.add(verb_of(
+  registry.add(verb_of<AuditArguments>(
       {.name = "audit",
        .help_position = 170,
        .summary =

@@ -119,7 +119,7 @@ int run(const CheckArguments& given, Session& session) {
 }  // namespace
 
 void register_check(VerbRegistry& registry) {
-  registry.add(verb_of(
+  registry.add(verb_of<CheckArguments>(
       {.name = "check",
        .help_position = 160,
        .summary = "Check that a problem's derivatives, adjoint and inverse agree with each other",

@@ -144,7 +144,7 @@ int run(const ClaimArguments& given, Session& session) {
 }  // namespace
 
 void register_claims(VerbRegistry& registry) {
-  registry.add(verb_of(
+  registry.add(verb_of<ClaimArguments>(
       {.name = "claims",
        .help_position = 110,
        .summary = "Judge the claims of papers by runs, after running the missing cells",

@@ -63,7 +63,7 @@ int run(const CompareArguments& given, Session&) {
 }  // namespace
 
 void register_compare(VerbRegistry& registry) {
-  registry.add(verb_of(
+  registry.add(verb_of<CompareArguments>(
       {.name = "compare",
        .help_position = 40,
        .summary = "Compare two result folders and list regressions",

@@ -1,10 +1,13 @@
-// isoline describe NAME: describes a component in words.
+// isoline describe NAME: describes a component in words; without a name, lists the components.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "benchmarks/cli/verb.h"
+#include "benchmarks/plan/catalog.h"
+#include "benchmarks/plan/suite.h"
 #include "benchmarks/run/sheets.h"
 #include "core/json.h"
 #include "core/options.h"
@@ -19,14 +22,64 @@ using networks::NetworkEntry;
 namespace {
 
 struct DescribeArguments {
-  std::string name;
-  bool as_json = false;
+  std::string name = "all";
+  bool as_json = false, names_only = false;
 };
 
+const std::vector<std::string> kKinds = {"problems", "networks", "optimizers", "suites", "all"};
+
 void declare(VerbArguments& verb, DescribeArguments& given) {
-  verb.text("NAME", given.name, "A name of `isoline list`, or a spec").required();
+  verb.text(
+          "NAME", given.name,
+          "A component, by name or specification; or problems, networks, optimizers, suites or all, "
+          "which are listed")
+      .shown();
   verb.flag("--json", given.as_json, "Print JSON");
+  verb.flag("--names", given.names_only, "Of a list, print names only, one per line");
   verb.plugins();
+}
+
+template <class Entry>
+const std::string& name_to_give(const Entry& entry) {
+  return entry.needs_argument.empty() ? entry.name : entry.needs_argument;
+}
+
+Json listing(Session& session, const std::string& kind) {
+  Json all = Json::object();
+  if (kind == "all" || kind == "problems")
+    for (const auto& [name, entry] : session.catalog().problems)
+      all["problems"].push_back(
+          {{"name", name_to_give(entry)}, {"title", entry.title}, {"source", entry.source}});
+  if (kind == "all" || kind == "networks")
+    for (const auto& [name, entry] : network_registry())
+      all["networks"].push_back({{"name", name}, {"title", entry.title}, {"source", entry.source}});
+  if (kind == "all" || kind == "optimizers")
+    for (const auto& [name, entry] : session.catalog().optimizers)
+      all["optimizers"].push_back({{"name", name_to_give(entry)},
+                                   {"title", entry.title},
+                                   {"family", name_of(entry.family)},
+                                   {"source", entry.source}});
+  if (kind == "all" || kind == "suites")
+    for (const auto& [name, text] : builtin_suites())
+      all["suites"].push_back({{"name", name},
+                               {"title", read_suite(name).title},
+                               {"version", read_suite(name).version}});
+  return all;
+}
+
+void print_list(const Json& all, bool names_only) {
+  for (const auto& [kind, entries] : all.items()) {
+    if (!names_only) say(stdout, fmt::format("{} {}\n", entries.size(), kind));
+    for (const Json& entry : entries) {
+      const auto name = entry.at("name").get<std::string>();
+      if (names_only)
+        say(stdout, fmt::format("{}\n", name));
+      else
+        say(stdout, fmt::format("  {:24} {}\n", name, entry.at("title").get<std::string>()));
+    }
+    if (!names_only) say(stdout, "\n");
+  }
+  if (!names_only) say(stdout, "`isoline describe NAME` shows the details.\n");
 }
 
 // The requested component in the catalog.
@@ -72,7 +125,7 @@ Described described(const Catalog& catalog, const Spec& spec) {
     known.insert(known.end(), names.begin(), names.end());
   const std::string nearest = nearest_name(spec.name, known);
   throw UsageError(fmt::format("no problem, optimizer or network '{}'; {}", spec.name,
-                               nearest.empty() ? "`isoline list` prints all names"
+                               nearest.empty() ? "`isoline describe` prints all names"
                                                : fmt::format("did you mean '{}'?", nearest)));
 }
 
@@ -139,7 +192,17 @@ void print(const Sheet& sheet) {
                                 : fmt::format("{}", fmt::join(sheet.privileges, "; "))));
 }
 
+int list(const DescribeArguments& given, Session& session) {
+  const Json all = listing(session, given.name);
+  if (given.as_json)
+    say(stdout, fmt::format("{}\n", json_text(all, 2)));
+  else
+    print_list(all, given.names_only);
+  return kGood;
+}
+
 int run(const DescribeArguments& given, Session& session) {
+  if (std::ranges::find(kKinds, given.name) != kKinds.end()) return list(given, session);
   const Spec spec = parse_spec(given.name);
   if (network_registry().contains(spec.name)) {
     const NetworkEntry& network = network_registry().at(spec.name);
@@ -159,12 +222,14 @@ int run(const DescribeArguments& given, Session& session) {
 }  // namespace
 
 void register_describe(VerbRegistry& registry) {
-  registry.add(verb_of(
+  registry.add(verb_of<DescribeArguments>(
       {.name = "describe",
-       .help_position = 150,
+       .help_position = 140,
        .summary =
-           "Show the formula, options, required derivatives and source of a problem or method",
-       .examples = "  isoline describe sip\n  isoline describe 'sine[xi=32]' --json"},
+           "Show the formula, options, required derivatives and source of a problem or method; list "
+           "all of them",
+       .examples = "  isoline describe\n  isoline describe optimizers --names\n"
+                   "  isoline describe sip\n  isoline describe 'sine[xi=32]' --json"},
       declare, run));
 }
 

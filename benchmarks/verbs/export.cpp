@@ -67,7 +67,7 @@ int run(const ExportArguments& given, Session&) {
 }  // namespace
 
 void register_export(VerbRegistry& registry) {
-  registry.add(verb_of(
+  registry.add(verb_of<ExportArguments>(
       {.name = "export",
        .help_position = 120,
        .summary = "Write curves as CSV or as COCO data",

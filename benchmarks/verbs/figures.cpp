@@ -81,7 +81,7 @@ int run(const FiguresArguments& given, Session& session) {
 }  // namespace
 
 void register_figures(VerbRegistry& registry) {
-  registry.add(verb_of(
+  registry.add(verb_of<FiguresArguments>(
       {.name = "figures",
        .help_position = 35,
        .summary = "Write the plots of a report as SVG, PDF, PGF and CSV",

@@ -48,7 +48,7 @@ int run(const MergeArguments& given, Session&) {
 }  // namespace
 
 void register_merge(VerbRegistry& registry) {
-  registry.add(verb_of(
+  registry.add(verb_of<MergeArguments>(
       {.name = "merge",
        .help_position = 26,
        .summary = "Merge result folders into a new one",

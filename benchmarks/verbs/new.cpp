@@ -167,7 +167,7 @@ int run(const NewArguments& given, Session& session) {
 }  // namespace
 
 void register_new(VerbRegistry& registry) {
-  registry.add(verb_of(
+  registry.add(verb_of<NewArguments>(
       {.name = "new",
        .help_position = 180,
        .summary = "Write a template of your own problem or optimizer",

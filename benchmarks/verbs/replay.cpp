@@ -144,7 +144,7 @@ int run(const ReplayArguments& given, Session& session) {
 }  // namespace
 
 void register_replay(VerbRegistry& registry) {
-  registry.add(verb_of(
+  registry.add(verb_of<ReplayArguments>(
       {.name = "replay",
        .help_position = 28,
        .summary = "Run the cells of records again, and compare the results bit for bit",

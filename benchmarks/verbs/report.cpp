@@ -13,6 +13,7 @@
 
 #include "benchmarks/cli/terminal.h"
 #include "benchmarks/cli/verb.h"
+#include "benchmarks/cli/views.h"
 #include "benchmarks/plan/claim_cells.h"
 #include "core/errors.h"
 #include "core/results/study.h"
@@ -30,6 +31,7 @@ struct ReportArguments {
   std::string out, problem, by = "work";
   double tolerance = 1e-6;
   bool opens = false;
+  View view;
 };
 
 void declare(VerbArguments& verb, ReportArguments& given) {
@@ -44,6 +46,7 @@ void declare(VerbArguments& verb, ReportArguments& given) {
             "Relative loss or error in x at which a problem counts as solved")
       .shown("1e-6");
   verb.flag("--open", given.opens, "Open the page in the desktop browser");
+  declare_choice(verb, declare_view(verb, given.view.name), given.view);
 }
 
 // The requested tolerance, or the next stricter one of the 51.
@@ -94,7 +97,19 @@ std::string format_names() {
   return reports::joined(names);
 }
 
+int show(const ReportArguments& given) {
+  View view = given.view;
+  view.tolerance = given.tolerance;
+  reports::Study study =
+      reports::read_study(given.folders, progress_on_terminal("reading records"));
+  require(!study.runs.empty(), "no records; `isoline run --out FOLDER` creates some");
+  if (!given.problem.empty()) keep_problems(study, given.problem);
+  print_view(study, view);
+  return kGood;
+}
+
 int run(const ReportArguments& given, Session& session) {
+  if (!given.view.name.empty()) return show(given);
   reports::Study study = study_of_report(given.folders, session);
   if (!given.problem.empty()) keep_problems(study, given.problem);
   const reports::Yardstick yardstick = yardstick_of(given);
@@ -108,20 +123,24 @@ int run(const ReportArguments& given, Session& session) {
 }  // namespace
 
 void register_report(VerbRegistry& registry) {
-  registry.add(verb_of(
+  registry.add(verb_of<ReportArguments>(
       {.name = "report",
        .help_position = 30,
        .summary = "Write " + format_names(),
        .examples = "  isoline report results/quick\n"
                    "  isoline report results/quick --problem heat --out heat\n"
-                   "  isoline report results/a results/b --out report --by cost --tolerance 1e-3",
+                   "  isoline report results/a results/b --out report --by cost --tolerance 1e-3\n"
+                   "  isoline report results/quick --view choice --have forward --unknowns 50",
        .notes =
            "Results contain 51 tolerances, five per decade from 1 to 1e-10; another tolerance is "
            "replaced by the next stricter one. Work counts oracle calls at nominal cost, which is "
            "equal "
            "on every machine; cost counts the same calls at measured cost. Times are comparable "
            "only in "
-           "runs with --exclusive; others are marked ≈."},
+           "runs with --exclusive; others are marked ≈.\n"
+           "--view writes no files. In the view choice, methods marked * are not significantly "
+           "worse than the first one; its first sentence is also in the tab 'Choose a method' of "
+           "the page."},
       declare, run));
 }
 

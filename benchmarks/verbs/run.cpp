@@ -9,6 +9,7 @@
 #include "benchmarks/cli/planned_run.h"
 #include "benchmarks/cli/terminal.h"
 #include "benchmarks/cli/verb.h"
+#include "benchmarks/cli/views.h"
 #include "benchmarks/run/run_plan.h"
 #include "benchmarks/run/runner.h"
 #include "benchmarks/shard/split.h"
@@ -20,37 +21,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string fate_of(const PreviewedCell& cell) {
-  if (cell.is_cached) return "cached";
-  return cell.why_inapplicable.empty() ? "run" : "inapplicable: " + cell.why_inapplicable;
-}
-
-void print_plan(const PlannedRun& all, int jobs, const RunArguments& given, Session& session) {
-  constexpr std::size_t kMost = 20;
-  const Preview shown = preview_of(all, given, {}, {all.folder}, session);
-  const std::vector<PreviewedCell>& cells = shown.cells;
-  print_counts(shown, jobs);
-  say(stdout, fmt::format("result folder: {}\n", all.folder.string()));
-  const std::size_t listed = given.lists_all ? cells.size() : std::min(kMost, cells.size());
-  for (std::size_t i = 0; i < listed; ++i) {
-    const Request& request = *cells[i].request;
-    say(stdout, fmt::format("{:28} {:44} seed {:<4} {}\n", request.problem.spec,
-                            request.optimizer.spec, seed_text(request.seed), fate_of(cells[i])));
-  }
-  if (listed < cells.size())
-    say(stdout, fmt::format("… and {} more cell{}; --all lists them\n", cells.size() - listed,
-                            cells.size() - listed == 1 ? "" : "s"));
-}
-
-// One shard of the run alone, in a folder of its own. The plan that is stored there stays
-// whole: a part never passes for it.
-void keep_shard(const Shard& shard, PlannedRun& all) {
-  const std::vector<double> weights = weights_of(all.requests, all.folder);
-  const std::vector<std::size_t> shards = split(all.requests, weights, shard.count);
-  all.requests = part_of(std::move(all.requests), shards, shard);
-  all.folder = shard.folder(all.folder);
-}
-
 // The properties at default options of all optimizers that ever ran in this folder.
 std::vector<AuditedOptimizer> audit_of(const Catalog& catalog, const reports::Study& study) {
   std::set<std::string> names;
@@ -61,13 +31,16 @@ std::vector<AuditedOptimizer> audit_of(const Catalog& catalog, const reports::St
   return audit_all(catalog, {names.begin(), names.end()});
 }
 
-void report_on(const fs::path& out, bool quiet, Session& session) {
+// The report of the folder, or only a view of it.
+void report_on(const fs::path& out, const RunArguments& given, Session& session) {
   reports::Study study = reports::read_study({out});
   if (study.runs.empty()) return;  // interrupted before the first record
+  if (given.no_report) return print_view(study, {.name = given.view});
   study.audits = audit_of(session.catalog(), study);
   write_audit(study.audits, out / "audit.json");
-  if (!quiet) say(stdout, "\n");
-  write_and_print(study, out / "report", session, {.is_quiet = quiet});
+  if (!given.quiet) say(stdout, "\n");
+  write_and_print(study, out / "report", session, {.is_quiet = given.quiet || !given.view.empty()});
+  if (!given.view.empty()) print_view(study, {.name = given.view});
 }
 
 // Without isolation and without records: what a debugger looks at.
@@ -88,11 +61,12 @@ int run_here(const Catalog& catalog, const std::vector<Request>& requests) {
 }
 
 int run(const RunArguments& given, Session& session) {
+  if (given.is_dry) return dry_run(given, session);
   const Catalog& catalog = session.catalog();
   PlannedRun all = planned_run(given, catalog);
   const std::vector<PlannedCell> planned = planned_cells(all.requests);
   const fs::path whole = all.folder;
-  if (!given.shard.empty()) keep_shard(shard_of(given.shard), all);
+  if (!given.shard.empty()) keep_shard(given.shard, all);
   RunOptions options{.jobs = given.jobs > 0 ? given.jobs : one_a_core(),
                      .force = given.force,
                      .uncertified = given.uncertified,
@@ -109,23 +83,20 @@ int run(const RunArguments& given, Session& session) {
   if (given.keeps_states) options.least_kept_seconds = 0;
   if (given.memory_bytes > 0) options.limits.memory_bytes = given.memory_bytes;
   if (!given.quiet) options.progress = Progress::style_of(STDERR_FILENO);
-  if (given.is_dry) {
-    print_plan(all, options.jobs, given, session);
-    return kGood;
-  }
   if (given.in_process) return run_here(catalog, all.requests);
   if (!given.shard.empty() && !given.force) adopt_records(all.requests, whole, all.folder);
   const Outcome outcome =
       run_plan(catalog, {all.name, planned, all.rates}, all.requests, all.folder, options);
   print_outcome(outcome, all.folder, given.quiet);
-  if (!given.no_report && given.shard.empty()) report_on(all.folder, given.quiet, session);
+  const bool is_shown = !given.view.empty() && !outcome.is_interrupted;
+  if ((!given.no_report || is_shown) && given.shard.empty()) report_on(all.folder, given, session);
   return exit_code_of(outcome);
 }
 
 }  // namespace
 
 void register_run(VerbRegistry& registry) {
-  registry.add(verb_of(
+  registry.add(verb_of<RunArguments>(
       {.name = "run",
        .help_position = 10,
        .summary = "Run a suite or your own study; finished cells do not run again",
@@ -134,13 +105,20 @@ void register_run(VerbRegistry& registry) {
   isoline run notebook --seeds 5 --jobs 4    another suite, on five seeds
   isoline run --problem 'sine[xi=1|32],heat' --optimizer 'adam[rate=1e-3]'
   isoline run quick --optimizer adam --dry-run     only print its cells
+  isoline run results/quick --dry-run        the progress of a run
+  isoline run quick --dry-run --shards 16    shards of about equal time
   isoline run quick --retry failed,crashed   failed cells again
   isoline run quick --shard 3/16             one shard, for `isoline merge`
+  isoline run nist --instead 'process[command="./mine"],gd' --view digits
   isoline run --problem square --optimizer gd --seeds =3 --in-process   to debug)",
        .notes =
            "A cell is one problem, one optimizer and one seed, with a budget. Each cell runs in "
            "its own process, so a crash ends only its own cell (not with --in-process).\nRepeat "
            "the command to continue a run that was stopped.\n"
+           "The predicted time of a cell is its time in records of the result folder and of --from "
+           "or, without such a record, the time of the same cell with other seeds. Other cells "
+           "have no prediction. --shard divides the plan by predicted.json alone, so all tasks use "
+           "the same shards, whenever they start.\n"
            "Exit codes: 0 success, 2 cells failed or records disappeared, 130 interrupted."},
       declare_run, run));
 }

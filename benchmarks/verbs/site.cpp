@@ -109,7 +109,7 @@ int run(const SiteArguments& given, Session& session) {
 }  // namespace
 
 void register_site(VerbRegistry& registry) {
-  registry.add(verb_of(
+  registry.add(verb_of<SiteArguments>(
       {.name = "site",
        .help_position = 37,
        .summary = "Write a static site of several results",

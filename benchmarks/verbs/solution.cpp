@@ -1,4 +1,5 @@
-// isoline solution DIR...: the x that runs found, with what is known of its accuracy.
+// isoline solution DIR...: the x that runs found, with what is known of its accuracy; isoline
+// solution NETWORK --input FILE: the x that a trained network infers from observations.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -11,6 +12,8 @@
 
 #include "benchmarks/cli/terminal.h"
 #include "benchmarks/cli/verb.h"
+#include "benchmarks/run/isolate.h"
+#include "benchmarks/run/trained.h"
 #include "core/errors.h"
 #include "core/json.h"
 #include "core/output.h"
@@ -30,10 +33,16 @@ namespace fs = std::filesystem;
 struct SolutionArguments {
   std::vector<std::string> folders;
   std::string problem, optimizer = "best", format = "table", out;
+  std::string input, training_data;  // of a trained network, whose file then is the only folder
+  std::int64_t memory_bytes = 0;     // 0: as a cell's
+  double seconds = 600;
 };
 
 void declare(VerbArguments& verb, SolutionArguments& given) {
-  verb.texts("DIR", given.folders, kFolders).required();
+  verb.texts(
+          "DIR", given.folders,
+          "Result folders of `isoline run`; or one file of a network, as `isoline train` wrote it")
+      .required();
   verb.text("--problem", given.problem, "Problem, by its name or its specification (default: all)");
   verb.text("--optimizer", given.optimizer,
             "Optimizer, by its name or its specification; best: the run of least loss")
@@ -41,7 +50,17 @@ void declare(VerbArguments& verb, SolutionArguments& given) {
   verb.text("--format", given.format, "Format of the output")
       .one_of({"table", "csv", "json", "npy"})
       .shown();
-  verb.text("--out", given.out, "Output file, which npy requires (default: standard output)");
+  verb.text("--out,--output", given.out,
+            "Output file, which npy and networks require (default: standard output)");
+  verb.text(
+      "--input", given.input,
+      "Observations for a network, one per row: .npy of shape (samples, length of y) or (samples, "
+      "N, N), or .csv");
+  verb.text("--training-data", given.training_data,
+            "Instead of --input: apply the network to the N samples of the option data=N that it "
+            "was trained on, and write their y* to this file");
+  verb.time("--time", given.seconds, "Time limit of a network: 10s, 2m (default: 10m)");
+  verb.memory("--memory", given.memory_bytes, "Memory limit of a network (default: 4GB)");
 }
 
 // A run with its answer, whose numbers are read.
@@ -217,7 +236,70 @@ std::string text_of(const std::vector<Solution>& solutions, const std::string& f
   return text;
 }
 
-int run(const SolutionArguments& given, Session&) {
+// --- the x of a trained network
+
+// Reads, infers and writes; the sentence about it.
+std::string inferred(const SolutionArguments& given, const Catalog& catalog) {
+  const TrainedNetwork network = read_network(given.folders.front());
+  const Component component =
+      complete_problem(catalog, network.problem.name, network.problem.options);
+  require(component.is_learned, [&] {
+    return given.folders.front() + " is not a trained network: its problem has no network";
+  });
+  const Problem problem = make_problem(catalog, component, network.seed);
+  require(given.training_data.empty() || !problem.has_fresh_batches(),
+          "--training-data requires a network that was trained with data=N");
+  try {
+    require_fitting(network, problem);
+  } catch (const UsageError& error) {
+    throw UsageError(fmt::format("{}: {}", given.folders.front(), error.what()));
+  }
+  const NumberArray input = given.training_data.empty()
+                                ? read_numbers(given.input)
+                                : samples_array(problem, problem.batch().input);
+  const NumberArray output = infer(problem, network, input, given.input);
+  if (!given.training_data.empty())
+    write_numbers(given.training_data, samples_array(problem, problem.target()));
+  write_numbers(given.out, output);
+  return fmt::format("{}: {} inferred by {} trained on {} for {}", given.out,
+                     reports::counted(std::size_t(output.shape[0]), "sample"),
+                     network.optimizer.spec, network.problem.spec,
+                     reports::counted(std::size_t(network.iterations), "iteration"));
+}
+
+// How the child process reports to its parent whether the user made a mistake.
+constexpr char kSaid = '+', kMistaken = '-';
+
+// In a process of its own, under limits: whatever a file holds costs that process alone.
+int infer_isolated(const SolutionArguments& given, Session& session) {
+  require(given.folders.size() == 1, "one trained network at a time");
+  require(given.input.empty() != given.training_data.empty(),
+          "x of a trained network requires either --input or --training-data");
+  require(!given.out.empty(), "name the output file with --out x.npy or --out x.csv");
+  const Catalog& catalog = session.catalog();
+  const auto work = [&] {
+    try {
+      return kSaid + inferred(given, catalog);
+    } catch (const UsageError& mistake) {
+      return std::string(1, kMistaken) + mistake.what();
+    }
+  };
+  const std::int64_t memory = given.memory_bytes > 0 ? given.memory_bytes : Limits{}.memory_bytes;
+  const auto [text, failure] = isolated_text(work, given.seconds, memory);
+  if (!text || text->empty()) {
+    say(stderr, fmt::format("isoline: {} was not written: {}\n", given.out,
+                            text ? "the process did not answer" : failure));
+    return kWorse;
+  }
+  require(text->front() != kMistaken, [&] { return text->substr(1); });
+  say(stdout, text->substr(1) + "\n");
+  return kGood;
+}
+
+int run(const SolutionArguments& given, Session& session) {
+  const bool is_network = !given.input.empty() || !given.training_data.empty();
+  if (std::error_code unknown; is_network || fs::is_regular_file(given.folders.front(), unknown))
+    return infer_isolated(given, session);
   require(given.format != "npy" || !given.out.empty(),
           "--format npy writes a binary file: name it with --out x.npy");
   const results::Study study =
@@ -251,14 +333,17 @@ int run(const SolutionArguments& given, Session&) {
 }  // namespace
 
 void register_solution(VerbRegistry& registry) {
-  registry.add(verb_of(
+  registry.add(verb_of<SolutionArguments>(
       {.name = "solution",
        .help_position = 47,
-       .summary = "Print the unknowns x that runs found, and the command that repeats each run",
+       .summary =
+           "Print the unknowns x that runs found, with the command that repeats each run, or "
+           "those that a trained network infers",
        .examples =
            R"(  isoline solution results/quick     for each problem, the run of least loss
   isoline solution results/quick --problem rosenbrock --optimizer ceres-bfgs
-  isoline solution results/quick --problem rosenbrock --format npy --out x.npy)",
+  isoline solution results/quick --problem rosenbrock --format npy --out x.npy
+  isoline solution net.json --input observed.csv --out x.csv)",
        .notes =
            "`returned` is the point that the run returned, and `best` the evaluated point of least "
            "loss, if it is a different point. Standard deviations belong to the returned point of "

@@ -172,7 +172,7 @@ int run(const TrainArguments& given, Session& session) {
 }  // namespace
 
 void register_train(VerbRegistry& registry) {
-  registry.add(verb_of(
+  registry.add(verb_of<TrainArguments>(
       {.name = "train",
        .help_position = 210,
        .summary = "Train a network to invert a problem, and write it to a file",

@@ -285,7 +285,7 @@ int run(const TuneArguments& given, Session& session) {
 }  // namespace
 
 void register_tune(VerbRegistry& registry) {
-  registry.add(verb_of(
+  registry.add(verb_of<TuneArguments>(
       {.name = "tune",
        .help_position = 200,
        .summary = "Tune one option of each method for each problem, with equal budgets",

@@ -215,7 +215,7 @@ int run(const ValidateArguments& given, Session&) {
 }  // namespace
 
 void register_validate(VerbRegistry& registry) {
-  registry.add(verb_of(
+  registry.add(verb_of<ValidateArguments>(
       {.name = "validate",
        .help_position = 235,
        .summary = "Check records, suites and Isoline's other JSON files against their schemas",

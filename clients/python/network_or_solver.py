@@ -63,7 +63,7 @@ class Contest:
         spec = with_options(self.given.problem, f"mode=learn,data={count},batch={count}{inputs}")
         self.isoline("train", spec, "--optimizer", optimizer, "--iterations", steps, "--seed",
                      self.given.seed, "--out", network, "--quiet")
-        self.isoline("infer", network, "--training-data", y, "--output", x)
+        self.isoline("solution", network, "--training-data", y, "--out", x)
         return y.read_text().split(), x.read_text().split()
 
     def losses(self, name, y, x, work):

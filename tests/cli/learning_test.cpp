@@ -22,7 +22,7 @@ TEST(Train, WritesANetworkThatInfersWhatItLearned) {
   const Shell shell;
   shell.expect("./isoline train 'sine[xi=2]' --optimizer sip --iterations 1500 --out net.json");
   shell.expect("printf 'y1,y2\\n0.3,-0.5\\n-0.2,0.1\\n' > y.csv");
-  shell.expect("./isoline infer net.json --input y.csv --output x.npy");
+  shell.expect("./isoline solution net.json --input y.csv --out x.npy");
   const NumberArray x = read_npy(shell.folder() / "x.npy");
   EXPECT_EQ(x.shape, (std::vector<Index>{2, 2}));
   // P of the inferred x, with ξ = 2, φ = 45° and γ = 10, is near what was observed.
@@ -38,9 +38,9 @@ TEST(Infer, WritesTheSamplesOfTheTraining) {
   const Shell shell;
   shell.expect(
       "./isoline train 'sine[xi=2,data=5]' --optimizer adam --iterations 9 --out net.json");
-  shell.expect("./isoline infer net.json --training-data y.csv --output x.csv");
+  shell.expect("./isoline solution net.json --training-data y.csv --out x.csv");
   EXPECT_EQ(count_lines(read_text(shell.folder() / "y.csv")), 5U);
-  shell.expect("./isoline infer net.json --input y.csv --output again.csv");
+  shell.expect("./isoline solution net.json --input y.csv --out again.csv");
   EXPECT_EQ(read_text(shell.folder() / "x.csv"), read_text(shell.folder() / "again.csv"));
 }
 
@@ -97,13 +97,13 @@ TEST(Train, KeepsTheRunningStatisticsOfBatchNormForPictures) {
   for (std::size_t i = 0; i < pictures.values.size(); ++i)
     pictures.values[i] = std::sin(0.1 * static_cast<Real>(i));
   write_npy(shell.folder() / "y.npy", pictures);
-  shell.expect("./isoline infer n.bin --input y.npy --output x.npy");
+  shell.expect("./isoline solution n.bin --input y.npy --out x.npy");
   const NumberArray all = read_npy(shell.folder() / "x.npy");
   EXPECT_EQ(all.shape, pictures.shape);
   // Running statistics, so a sample alone gives what it gives among others.
   NumberArray second{{1, 16, 16}, {pictures.values.begin() + 256, pictures.values.begin() + 512}};
   write_npy(shell.folder() / "y.npy", second);
-  shell.expect("./isoline infer n.bin --input y.npy --output x.npy");
+  shell.expect("./isoline solution n.bin --input y.npy --out x.npy");
   const NumberArray alone = read_npy(shell.folder() / "x.npy");
   for (std::size_t i = 0; i < 256; ++i) EXPECT_EQ(alone.values[i], all.values[256 + i]) << i;
 }
@@ -123,13 +123,13 @@ TEST(Train, MistakesAreOneSentenceAndLeaveNothing) {
             "rate must be"},
            {"train 'sine[mode=direct]' --out x", "no network to train"},
            {"train sine --optimizer ceres-lbfgs --out x", "data=N"},
-           {"infer net.json --input wide.csv --output x", "takes 2"},
-           {"infer net.json --input holes.csv --output x.npy", "'nan' is not "},
-           {"infer net.json --input good.csv --output x.txt", ".npy or .csv"},
-           {"infer good.csv --input good.csv --output x.npy", "not a trained network"},
-           {"infer net.json --output x.npy", "either --input or --training-data"},
-           {"infer net.json --training-data y.csv --output x.npy", "data=N"},
-           {"infer net.json --input missing.npy --output x.npy", "missing.npy"}}) {
+           {"solution net.json --input wide.csv --out x", "takes 2"},
+           {"solution net.json --input holes.csv --out x.npy", "'nan' is not "},
+           {"solution net.json --input good.csv --out x.txt", ".npy or .csv"},
+           {"solution good.csv --input good.csv --out x.npy", "not a trained network"},
+           {"solution net.json --out x.npy", "either --input or --training-data"},
+           {"solution net.json --training-data y.csv --out x.npy", "data=N"},
+           {"solution net.json --input missing.npy --out x.npy", "missing.npy"}}) {
     const Finished result =
         shell.expect("./isoline " + command, {.exit_code = 1, .err = {sentence}});
     EXPECT_EQ(count_lines(result.err), 1U) << command << "\n" << result.err;
@@ -154,9 +154,9 @@ TEST(Network, IsReadHoweverItsJsonIsLaidOut) {
   rewrite(
       shell, "pretty.json", [](Json&) {}, 2);
   write_text(shell.folder() / "blank-lines.json", read_text(shell.folder() / "net.json") + "\n\n");
-  shell.expect("./isoline infer net.json --input y.csv --output x.csv");
+  shell.expect("./isoline solution net.json --input y.csv --out x.csv");
   for (const std::string name : {"one-line.json", "pretty.json", "blank-lines.json"}) {
-    shell.expect("./isoline infer " + name + " --input y.csv --output z.csv");
+    shell.expect("./isoline solution " + name + " --input y.csv --out z.csv");
     EXPECT_EQ(read_text(shell.folder() / "x.csv"), read_text(shell.folder() / "z.csv")) << name;
   }
   shell.expect("./isoline validate net.json pretty.json");
@@ -170,7 +170,7 @@ TEST(Network, OfSizesThatCannotBeIsRefusedBeforeThereIsRoomForThem) {
                            "1000000000000000000000000000000", "\"many\""})
     for (const char* name : {"parameters", "statistics"}) {
       rewrite(shell, "x.json", [&](Json& json) { json[name] = parse_json(size, "size"); });
-      const Finished refused = shell.expect("./isoline infer x.json --input y.csv --output x.npy",
+      const Finished refused = shell.expect("./isoline solution x.json --input y.csv --out x.npy",
                                             {.exit_code = 1, .err = {"x.json is not", name}});
       EXPECT_EQ(count_lines(refused.err), 1U) << refused.err;
       for (const char* foreign : {"stoll", "bad_alloc", "max_size", "json.exception"})
@@ -188,7 +188,7 @@ TEST(Network, WithStatisticsOfAnotherNetworkIsRefused) {
     json["statistics"] = 1;
     json["mean_statistics"] = {0.5};
   });
-  shell.expect("./isoline infer x.json --input y.npy --output x.npy",
+  shell.expect("./isoline solution x.json --input y.npy --out x.npy",
                {.exit_code = 1, .err = {"1 statistics, but"}});
 }
 
@@ -196,7 +196,7 @@ TEST(Infer, IsEndedAtItsLimitsAndSaysSo) {
   const Shell shell;
   shell.expect("./isoline train sine --iterations 5 --out net.json");
   write_npy(shell.folder() / "y.npy", {{2'000'000, 2}, std::vector<Real>(4'000'000, 0.1)});
-  const std::string infer = "./isoline infer net.json --input y.npy --output x.npy ";
+  const std::string infer = "./isoline solution net.json --input y.npy --out x.npy ";
   shell.expect(infer + "--time 1ms",
                {.exit_code = 2, .err = {"x.npy was not written", "took more than"}});
 #ifndef ISOLINE_SANITIZE  // which the address space is not limited under

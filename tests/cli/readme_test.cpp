@@ -121,12 +121,15 @@ TEST(Guide, ADataSetOfOnesOwnHasTheDigitsOfTheSameOneOfNist) {
   for (const std::string& command : commands(page))
     if (contains(command, "misra1a")) own = shell.expect(command).out;
   const std::string nist =
-      shell.expect("./isoline score --problem nist --optimizer ceres-lm --peers minpack-lmder").out;
+      shell
+          .expect(
+              "./isoline run nist --problem nist --instead ceres-lm,minpack-lmder --view digits")
+          .out;
   for (const char* name : {"ceres-lm", "minpack-lmder"}) {
     expect_scored(own, name, 6);
     expect_scored(nist, name, 8);
   }
-  shell.expect("./isoline score --problem more-wild --peers ceres-lm",
+  shell.expect("./isoline run --problem more-wild --optimizer ceres-lm --view digits",
                {.exit_code = 1, .err = {"argument truth"}});
 }
 

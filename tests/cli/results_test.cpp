@@ -29,14 +29,15 @@ TEST(Choose, NamesAMethodThatNeedsNoMoreThanTheUserHas) {
       "./isoline run --problem rosenbrock,beale,square,scaling --optimizer "
       "nlopt-bobyqa,gd,newton,gauss-newton --iterations 300 --out out --no-report --quiet");
   const auto chosen = [&](const std::string& have) {
-    return shell.expect("./isoline choose out --have " + have).out;
+    return shell.expect("./isoline report out --view choice --have " + have).out;
   };
   EXPECT_TRUE(contains(chosen("forward"), "nlopt-bobyqa")) << chosen("forward");
   EXPECT_FALSE(contains(chosen("forward"), "newton"));
   EXPECT_FALSE(contains(chosen("gradient"), "gauss-newton"));
   EXPECT_TRUE(contains(chosen("forward,jacobian"), "gauss-newton"));
-  shell.expect("./isoline choose out --noise 0.01", {.exit_code = 1, .err = {"1 % noise"}});
-  shell.expect("./isoline choose out --have wings", {.exit_code = 1});
+  shell.expect("./isoline report out --view choice --noise 0.01",
+               {.exit_code = 1, .err = {"1 % noise"}});
+  shell.expect("./isoline report out --view choice --have wings", {.exit_code = 1});
 }
 
 TEST(Output, InAFolderThatCannotBeIsRefusedWithTheReason) {
@@ -62,10 +63,11 @@ TEST(Output, InAFolderThatCannotBeIsRefusedWithTheReason) {
   for (const std::string verb : {"report out", "site out", "figures out"})
     shell.expect("./isoline " + verb + " --out README.md",
                  {.exit_code = 1, .err = {"README.md: it is a file", "--out"}});
-  for (const std::string verb :
-       {"export out", "baseline out", "best out", "solution out --format npy"})
+  for (const std::string verb : {"export out", "baseline out", "solution out --format npy"})
     shell.expect("./isoline " + verb + " --out README.md/x",
                  {.exit_code = 1, .err = {"README.md: it is a file", "--out"}});
+  shell.expect("./isoline baseline out --best README.md/x",
+               {.exit_code = 1, .err = {"README.md: it is a file", "--out"}});
   EXPECT_EQ(read_text(shell.folder() / "README.md"), "mine");
 }
 
@@ -92,8 +94,8 @@ TEST(Features, AreOptionsOfEveryProblemAndFactorsOfASuite) {
 class Shards : public testing::Test {
  protected:
   Json plan(const std::string& arguments) const {
-    return parse_json(shell.expect("./isoline plan " + kTwelveCells + arguments + " --json").out,
-                      "it");
+    return parse_json(
+        shell.expect("./isoline run --dry-run " + kTwelveCells + arguments + " --json").out, "it");
   }
   Finished run(const std::string& arguments, const Expected& expected = {}) const {
     return shell.expect("./isoline run " + kTwelveCells + arguments, expected);
@@ -103,7 +105,7 @@ class Shards : public testing::Test {
 
 TEST_F(Shards, APlanSaysWhatADryRunSays) {
   const std::string dry = run("--out out --dry-run").out;
-  const std::string planned = shell("./isoline plan " + kTwelveCells + "--out out").out;
+  const std::string planned = shell("./isoline run --dry-run " + kTwelveCells + "--out out").out;
   EXPECT_TRUE(contains(planned, ", 24 to run")) << planned;
   EXPECT_EQ(dry.substr(0, dry.find(" to run")), planned.substr(0, planned.find(" to run")));
   EXPECT_FALSE(fs::exists(shell.folder() / "out")) << "it only looks";
@@ -120,15 +122,15 @@ TEST_F(Shards, AreToldByAPlanAsAMatrixForAWorkflow) {
   EXPECT_EQ(cells, 24);
   EXPECT_EQ(told.at("shards")[1].at("shard"), "2/3");
   shell.expect("./isoline validate out");
-  shell.expect("./isoline plan " + kTwelveCells + "--shards 3 --out out",
+  shell.expect("./isoline run --dry-run " + kTwelveCells + "--shards 3 --out out",
                {.out = {"shard       2/3", "out/predicted.json, written earlier"}});
 }
 
 TEST_F(Shards, ArePredictedByWhatEarlierRunsTook) {
   run("--out before --no-report --quiet");
-  shell.expect("./isoline plan " + kTwelveCells + "--shards 2 --out out --from before",
+  shell.expect("./isoline run --dry-run " + kTwelveCells + "--shards 2 --out out --from before",
                {.out = {"24 from earlier runs", " 0 from nominal costs"}});
-  shell.expect("./isoline plan " + kTwelveCells + "--from nowhere",
+  shell.expect("./isoline run --dry-run " + kTwelveCells + "--from nowhere",
                {.exit_code = 1, .err = {"nowhere is not"}});
 }
 
@@ -170,8 +172,8 @@ TEST(Versions, OfOneSuiteAreNeitherRankedTogetherNorMergedNorKeptInOneFolder) {
   write(2);
   shell.expect("./isoline run mine.json --out two --quiet");
   EXPECT_EQ(read_json(shell.folder() / "two/plan.json").at("suites"), Json({"mine@2"}));
-  for (const char* command : {"report one two", "merge one two --out both", "choose one two",
-                              "run mine.json --out one --force"})
+  for (const char* command : {"report one two", "merge one two --out both",
+                              "report one two --view choice", "run mine.json --out one --force"})
     shell.expect(std::string("./isoline ") + command,
                  {.exit_code = 1, .err = {"mine@1 and mine@2"}});
 }
@@ -209,10 +211,10 @@ class Status : public Shards {};
 
 TEST_F(Status, CountsPlannedDoneFailedAndLeft) {
   plan("--shards 3 --out out");
-  shell.expect("./isoline status out", {.out = {"24 cells: 0 done", "cannot be predicted"}});
+  shell.expect("./isoline run out --dry-run", {.out = {"24 cells: 0 done", "cannot be predicted"}});
   run("--out out --shard 2/3 --quiet");
   const std::size_t done = count_records(shell.folder() / "out/shards/2-of-3");
-  const Json json = parse_json(shell("./isoline status out --json").out, "the status");
+  const Json json = parse_json(shell("./isoline run out --dry-run --json").out, "the status");
   EXPECT_EQ(json.at("done"), done);
   EXPECT_EQ(json.at("left"), 24 - done);
   EXPECT_EQ(json.at("planned"), 24);
@@ -225,14 +227,15 @@ TEST_F(Status, CountsPlannedDoneFailedAndLeft) {
     write_text(entry.path(), record.dump() + "\n");
     break;
   }
-  shell.expect("./isoline status out", {.exit_code = 2, .out = {"1 of them failed"}});
+  shell.expect("./isoline run out --dry-run", {.exit_code = 2, .out = {"1 of them failed"}});
 }
 
 TEST_F(Status, OfARunWithoutShardsGoesByItsPlan) {
   run("--out out --no-report --quiet");
-  const Finished text = shell.expect("./isoline status out", {.out = {"24 done", " 0 left\n"}});
+  const Finished text =
+      shell.expect("./isoline run out --dry-run", {.out = {"24 done", " 0 left\n"}});
   EXPECT_EQ(count_lines(text.out), 1U) << text.out;
-  shell.expect("mkdir empty; ./isoline status empty", {.exit_code = 1});
+  shell.expect("mkdir empty; ./isoline run empty --dry-run", {.exit_code = 1});
 }
 
 // Two cells that would take minutes, looked at while they run, then stopped.
@@ -242,10 +245,10 @@ TEST_F(Status, SeesWhatIsRunning) {
   shell.expect("./isoline run " + matrix +
                    "--out out --jobs 2 --quiet --no-report & run=$!; told=; tries=0\n"
                    "while [ $tries -lt 600 ]; do tries=$((tries + 1)); sleep 0.1\n"
-                   "  told=$(./isoline status out 2>/dev/null)\n"
+                   "  told=$(./isoline run out --dry-run 2>/dev/null)\n"
                    "  case $told in *' 2 running'*) break ;; esac\n"
                    "done\n"
-                   "kill -TERM $run; wait $run; echo \"$? $told\"; ./isoline status out",
+                   "kill -TERM $run; wait $run; echo \"$? $told\"; ./isoline run out --dry-run",
                {.out = {"130 2 cells: 0 done", " 2 running, 0 left", " 0 running, 2 left"}});
 }
 
@@ -450,7 +453,7 @@ TEST(BestVerb, KeepsTheLeastLossOfRunsThatDeclareNoneAndNoOther) {
   shell.expect(
       "./isoline run --problem 'brown-dennis[m=10],rosenbrock' --optimizer gd,levenberg-marquardt "
       "--rates none --work 500 --seeds 2 --quiet --no-report --out out");
-  shell.expect("./isoline best out --out best.json", {.out = {"improved: 2\n"}});
+  shell.expect("./isoline baseline out --best best.json", {.out = {"improved: 2\n"}});
   const Json table = read_json(shell.folder() / "best.json");
   ASSERT_EQ(table.at("rows").size(), 1U);
   const Json& row = table["rows"][0];
@@ -459,7 +462,7 @@ TEST(BestVerb, KeepsTheLeastLossOfRunsThatDeclareNoneAndNoOther) {
   ASSERT_EQ(row.at("losses").size(), 2U);
   EXPECT_EQ(row["losses"][0].at("optimizer"), "levenberg-marquardt");
   shell.expect("./isoline validate best.json");
-  shell.expect("./isoline best out --out best.json", {.out = {"improved: 0\n"}});
+  shell.expect("./isoline baseline out --best best.json", {.out = {"improved: 0\n"}});
   EXPECT_EQ(read_json(shell.folder() / "best.json"), table);
   // Runs that read the table have an f_L; those that do not are compared by their losses.
   const auto solved_with = [&](const std::string& given, const std::string& out) {
@@ -489,7 +492,7 @@ TEST(Records, StartNoCommandUntilTheyAreTrusted) {
       "./isoline run --problem 'process[command=\"python3 mine.py\"]' --optimizer gd --out out "
       "--iterations 5 --quiet --no-report");
   ASSERT_TRUE(fs::remove(started));
-  shell.expect("./isoline best out --out best.json && ./isoline report out");
+  shell.expect("./isoline baseline out --best best.json && ./isoline report out");
   const std::string named = "python3 mine.py";
   shell.expect("./isoline replay out/runs/*.json", {.exit_code = 1, .err = {named}});
   shell.expect("./isoline baseline out --out base.json", {.exit_code = 1, .err = {named}});

@@ -16,8 +16,8 @@ namespace isoline::benchmarks {
 namespace {
 
 const std::string kVerbs =
-    "run score plan status merge replay report figures site compare choose solution baseline best claims "
-    "export list describe check audit new tune train infer validate completion man help version ";
+    "run merge replay report figures site compare solution baseline claims export describe check audit "
+    "new tune train validate help version ";
 
 TEST(Help, OfTheProgramAndOfEveryVerbIsWrittenOutAndGood) {
   const Shell shell;
@@ -39,6 +39,35 @@ TEST(Help, OfTheProgramAndOfEveryVerbIsWrittenOutAndGood) {
             kVerbs + "--help --version ");
   EXPECT_EQ(shell.expect("./isoline help").out, program.out);
   EXPECT_EQ(shell.expect("./isoline").out, program.out);
+}
+
+// The commands that a release keeps under their earlier names: each runs the present one, with its
+// exit code, and one line of standard error.
+TEST(OldNames, RunThePresentCommandsWithOneLineOfAdvice) {
+  const Shell shell;
+  shell.expect(
+      "./isoline run --problem square --optimizer gd,newton --out out --no-report --quiet");
+  for (const auto& [old, present] : std::vector<std::pair<std::string, std::string>>{
+           {"plan --problem square --optimizer gd --json",
+            "run --dry-run --problem square --optimizer gd --json"},
+           {"status out", "run out --dry-run"},
+           {"status absent", "run ./absent --dry-run"},
+           {"list networks", "describe networks"},
+           {"choose out --have gradient", "report out --view choice --have gradient"},
+           {"best out --out a.json", "baseline out --best a.json"},
+           {"score --optimizer gd --peers=newton --problem rosenbrock --out digits --jobs 1",
+            "run nist --instead gd,newton --problem rosenbrock --out digits --no-report --jobs 1 "
+            "--view digits"},
+           {"infer absent.json --input x.csv --output y.csv",
+            "solution absent.json --input x.csv --out y.csv"},
+           {"help plan", "help run"}}) {
+    shell("./isoline " + old);  // the second time, nothing is left to run
+    const Finished before = shell("./isoline " + old), now = shell("./isoline " + present);
+    EXPECT_EQ(before.exit_code, now.exit_code) << old << before.err << now.err;
+    const auto untimed = [](const std::string& text) { return text.substr(0, text.find("Time")); };
+    EXPECT_EQ(untimed(before.out), untimed(now.out)) << old;
+    EXPECT_EQ(count_lines(before.err), count_lines(now.err) + 1) << old << ": " << before.err;
+  }
 }
 
 TEST(Help, OfTuneAsksForTheProblemsOnce) {
@@ -65,10 +94,10 @@ const std::vector<std::pair<std::string, std::string>> kMistakes = {
     {"run --seeds 3 --seeds 4", "--seeds occurs more than once"},
     {"describe adan", "did you mean 'adam'"},
     {"run --problem 'python3 mine.py' --optimizer gd", "process[command="},
-    {"describe zzzz", "`isoline list` "},
+    {"describe zzzz", "`isoline describe` "},
     {"audit zzzz", "unknown optimizer 'zzzz'; "},
     {"report . --by tim", "did you mean 'time'"},
-    {"infer absent.json --input x.csv --output y.csv", "absent.json: no such file"},
+    {"solution absent.json --input x.csv --out y.csv", "absent.json: no such file"},
     {"train rosenbrock --out net.json",
      "burgers, coupled-oscillators, exponential, heat, hig-toy, linear-chain, navier-stokes"},
     {"run --problem 'rosenbrock[mode=learn]'", "rosenbrock cannot train a network"},
@@ -77,8 +106,12 @@ const std::vector<std::pair<std::string, std::string>> kMistakes = {
     {"run quick --in-process --dry-run", "--dry-run"},
     {"run quick --shard 5/4", "1 ≤ I ≤ N"},
     {"run quick --shard auto", "ISOLINE_SHARD, SLURM_ARRAY_TASK_ID"},
-    {"plan quick --shards 0", "--shards"},
-    {"status absent", "absent: no such result folder"},
+    {"run quick --dry-run --shards 0", "--shards"},
+    {"run .", "--dry-run"},
+    {"run . --dry-run", ".: no such result folder"},
+    {"run quick --shards 3", "--dry-run"},
+    {"run quick --optimizer gd --instead adam", "--instead"},
+    {"report . --bounds", "--view"},
     {"run quik", "did you mean 'quick'"},
     {"run --problem square --optimizer 'adam[beta3=1]'", "did you mean 'beta"},
     {"run --problem 'sine[xi=-3]' --optimizer gd", "sine: xi must"},
@@ -87,7 +120,7 @@ const std::vector<std::pair<std::string, std::string>> kMistakes = {
     {"run --problem square --optimizer gd --memory lots", "2GB, got 'lots'"},
     {"run --problem square --optimizer gd --memory 100MB", "between 256MB and 1024TB"},
     {"run --problem square --optimizer gd --memory=-1", "got '-1'"},
-    {"infer net.json --input y.csv --output x.csv --memory 1MB", "between 16MB and 1024TB"},
+    {"solution net.json --input y.csv --out x.csv --memory 1MB", "between 16MB and 1024TB"},
     {"run --problem square --optimizer gd --memory 999999999999TB", "got '999999999999TB'"},
     {"run --problem square --optimizer gd --time ''", "such as 10s, 2m or 1h, got ''"},
     {"run --problem square --optimizer gd --time -3", "--time: a time"},
@@ -144,7 +177,7 @@ const std::vector<std::pair<std::string, std::string>> kMistakes = {
     {"export . --format tsv --out x", "tsv"},
     {"export . --out x.csv", "no records in .; "},
     {"export nowhere.tar.gz --out x.csv", "nowhere.tar.gz"},
-    {"list problms", "problms"}};
+    {"describe problms", "problms"}};
 
 TEST(Usage, MistakesAreOneSentenceWithASuggestionAndExitOne) {
   const Shell shell;
@@ -194,7 +227,7 @@ TEST(Describe, TellsEveryPrivilegeThatAMethodCanHave) {
 
 TEST(List, NamesEverythingInWordsAndInJson) {
   const Shell shell;
-  const Finished words = shell("./isoline list"), json = shell("./isoline list --json");
+  const Finished words = shell("./isoline describe"), json = shell("./isoline describe --json");
   const Json all = parse_json(json.out, "list");
   EXPECT_GE(all.at("problems").size(), 16U);
   EXPECT_GE(all.at("optimizers").size(), 33U);
@@ -248,7 +281,7 @@ TEST(Completion, CompletesNamesInEveryShell) {
            {"repl", "replay"},
            {"help valid", "validate"},
            {"claims sip-better-in", "sip-better-in-x-worse-in-loss"},
-           {"list netw", "networks"},
+           {"report results --view di", "digits"},
            {"describe fn", "fno"},
            {"run --retry f", "failed"},
            {"completion z", "zsh"},
@@ -293,7 +326,7 @@ TEST(ForeignText, NoControlSequenceOfAFileOrAnArgumentReachesTheTerminal) {
   for (const char* command :
        {"./isoline validate schema.json", "./isoline describe \"$(printf '\\033[31mred')\"",
         "./isoline run --dry-run --problem \"$(printf 'sine[\\033[2J=1]')\" --optimizer gd",
-        "./isoline infer --model none.json --input numbers.csv --output out.csv",
+        "./isoline solution none.json --input numbers.csv --out out.csv",
         "./isoline report \"$(printf 'no\\033[1mfolder')\""}) {
     const Finished run = shell(command);
     EXPECT_NE(run.exit_code, 0) << command;
@@ -331,8 +364,9 @@ TEST(Terminal, ClosedAndFullStreamsAreNoticed) {
 
 // A limit of the size of a file, which is a signal to a program that does not expect it.
 TEST(Terminal, AFileThatMayNotGrowIsAMessage) {
-  Shell().expect("./isoline list --json >/dev/null && (ulimit -f 2; ./isoline list --json >big)",
-                 {.exit_code = 2, .err = {"File too large"}});
+  Shell().expect(
+      "./isoline describe --json >/dev/null && (ulimit -f 2; ./isoline describe --json >big)",
+      {.exit_code = 2, .err = {"File too large"}});
 }
 
 TEST(Terminal, ARunSaysHowLongItTook) {
@@ -472,8 +506,8 @@ class OwnProgram : public testing::Test {
 };
 
 TEST_F(OwnProgram, ListsDescribesAndChecksWhatOnlyItHas) {
-  shell.expect(kOwn + " list problems --names", {.out = {"twist\n"}});
-  EXPECT_FALSE(contains(shell("./isoline list problems --names").out, "twist\n"));
+  shell.expect(kOwn + " describe problems --names", {.out = {"twist\n"}});
+  EXPECT_FALSE(contains(shell("./isoline describe problems --names").out, "twist\n"));
   shell.expect(kOwn + " describe twist", {.out = {"Twist"}});
   shell.expect(kOwn + " check twist");
 }

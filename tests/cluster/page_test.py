@@ -54,7 +54,7 @@ class Page(unittest.TestCase):
             self.environment |= cluster.environment | {"PATH": self.environment["PATH"]}
             for command in commands:
                 self.assertNotEqual(self.run_line(command), "", command)
-        status = json.loads(self.run_line("isoline status results/notebook --json"))
+        status = json.loads(self.run_line("isoline run results/notebook --dry-run --json"))
         self.assertEqual((status["done"], status["left"]), (status["planned"], 0))
         self.assert_is_the_whole("results/notebook/merged")
 
@@ -88,7 +88,7 @@ class Page(unittest.TestCase):
         }
         self.assertEqual(len(scripts), 5)
         for script, variables in scripts.items():
-            self.run_line("rm -rf results merged; isoline plan notebook --shards 4")
+            self.run_line("rm -rf results merged; isoline run notebook --dry-run --shards 4")
             pathlib.Path(self.folder, "results/notebook/isoline").symlink_to(sys.argv[1])
             for task in range(4):
                 self.run_line(script, **{variable: text.format(task, task + 1)

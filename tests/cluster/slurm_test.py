@@ -37,7 +37,7 @@ class OnSlurm(unittest.TestCase):
 
     def submit(self, out, tasks, matrix):
         """The number of the array; the merge is submitted too."""
-        self.tell("plan", *matrix, "--shards", str(tasks), "--out", out)
+        self.tell("run", "--dry-run", *matrix, "--shards", str(tasks), "--out", out)
         os.mkdir(f"{self.folder}/{out}/logs")
         shutil.copy(sys.argv[1], f"{self.folder}/{out}/isoline")
         job = self.sbatch(out, f"--array=1-{tasks}", "--time=10", "shard.sh", out, *matrix)
@@ -52,7 +52,7 @@ class OnSlurm(unittest.TestCase):
         return run.stdout.strip()
 
     def status(self, out):
-        return json.loads(self.tell("status", out, "--json"))
+        return json.loads(self.tell("run", out, "--dry-run", "--json"))
 
     def logs_of(self, out):
         return "".join(pathlib.Path(log).read_text(encoding="utf-8")

@@ -107,8 +107,8 @@ class WithTree(unittest.TestCase):
 class Questions(WithTree):
     """What the program answers by itself neither installs nor builds."""
 
-    QUESTIONS = [('--help',), ('-h',), ('--version',), ('help', 'run'), ('version',), ('list',),
-                 ('list', 'problems'),
+    QUESTIONS = [('--help',), ('-h',), ('--version',), ('help', 'run'), ('version',), ('describe',),
+                 ('describe', 'problems'),
                  ('completion', 'bash'), ('man',), ('run', '--help'), ()]
 
     def test_an_existing_program_answers_them_alone(self):
@@ -145,7 +145,7 @@ class Questions(WithTree):
         newer.touch()
         program = tree.path / 'build' / 'release' / 'isoline'
         os.utime(newer, (program.stat().st_mtime + 5,) * 2)
-        result = tree.run('list')
+        result = tree.run('describe')
         self.assertEqual(result.stdout, 'program list\n')
         self.assertIn('problems/mine.cpp is newer', result.stderr)
         self.assertEqual(tree.run('completion', 'bash').stderr, '')

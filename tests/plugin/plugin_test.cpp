@@ -285,9 +285,9 @@ class PluginProgram : public testing::Test {
 
 TEST_F(PluginProgram, ListsDescribesChecksAuditsAndPlansWhatALibraryBrings) {
   const std::string both = " --plugin ./rosenbrock.so --plugin gradient_descent.so";
-  EXPECT_TRUE(contains(shell("./isoline list problems --names" + both).out, "rosenbrock-c\n"));
-  EXPECT_TRUE(contains(shell("./isoline list optimizers --names" + both).out, "gd-c\n"));
-  EXPECT_FALSE(contains(shell("./isoline list problems --names").out, "rosenbrock-c\n"));
+  EXPECT_TRUE(contains(shell("./isoline describe problems --names" + both).out, "rosenbrock-c\n"));
+  EXPECT_TRUE(contains(shell("./isoline describe optimizers --names" + both).out, "gd-c\n"));
+  EXPECT_FALSE(contains(shell("./isoline describe problems --names").out, "rosenbrock-c\n"));
   EXPECT_TRUE(contains(shell("./isoline describe rosenbrock-c" + both).out, "in C"));
   const Finished checked = shell("./isoline check rosenbrock-c" + both);
   EXPECT_EQ(checked.exit_code, 0) << checked.out << checked.err;
@@ -296,7 +296,7 @@ TEST_F(PluginProgram, ListsDescribesChecksAuditsAndPlansWhatALibraryBrings) {
   EXPECT_EQ(audited.exit_code, 0) << audited.err;
   EXPECT_TRUE(contains(audited.out, "gd-c")) << audited.out;
   const Finished planned =
-      shell("./isoline plan --problem rosenbrock-c --optimizer gd-c,gd" + both);
+      shell("./isoline run --dry-run --problem rosenbrock-c --optimizer gd-c,gd" + both);
   EXPECT_TRUE(contains(planned.out, "2 cells")) << planned.out << planned.err;
   const Finished tuned =
       shell("./isoline tune rosenbrock-c --optimizer gd-c --work 200 --json" + both);
@@ -344,7 +344,7 @@ TEST_F(PluginProgram, WhatCannotBeLoadedIsOneSentence) {
       {"head -c 3000 rosenbrock.so > cut.so;", "./cut.so", "./cut.so cannot be loaded"},
       {"", "./rosenbrock.so --plugin ./rosenbrock.so", "'rosenbrock-c' is registered twice"}};
   for (const auto& [before, plugin, sentence] : all) {
-    const Finished result = shell(before + " ./isoline list --plugin " + plugin);
+    const Finished result = shell(before + " ./isoline describe --plugin " + plugin);
     EXPECT_EQ(result.exit_code, 1) << plugin << ": " << result.err;
     EXPECT_EQ(count_lines(result.err), 1U) << result.err;
     EXPECT_TRUE(contains(result.err, sentence)) << result.err;
@@ -423,7 +423,7 @@ TEST(Library, ThatAbortsWhenItIsUnloadedCostsNothingThatIsDone) {
                  "#include <stdlib.h>\n"
                  "__attribute__((destructor)) static void leave(void) { abort(); }\n");
   EXPECT_EQ(built(shell, "last"), "");
-  EXPECT_EQ(shell("./isoline list --plugin ./liblast.so").exit_code, 0);
+  EXPECT_EQ(shell("./isoline describe --plugin ./liblast.so").exit_code, 0);
   EXPECT_EQ(shell("./isoline describe absent --plugin ./liblast.so").exit_code, 1);
 }
 

@@ -1,14 +1,17 @@
-// isoline completion SHELL: prints a script for a shell. The script calls `isoline completion
-// words`, which completes the last of the given words by the declarations of the verbs.
+// Files of packages, made from the declarations of the verbs. isoline man: the manual page, in
+// the macros of man(7). isoline completion SHELL: a script for a shell, which calls `isoline
+// completion words` to complete the last of the given words.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <sstream>
 
 #include "benchmarks/cli/verb.h"
 #include "benchmarks/plan/catalog.h"
 #include "benchmarks/plan/claim_cells.h"
+#include "core/records/provenance.h"
 #include "core/status.h"
 #include "core/text.h"
 #include "networks/network_entry.h"
@@ -77,7 +80,8 @@ void add_names(Candidates& all, const Registry& registry) {
 
 Candidates verbs() {
   Candidates all;
-  for (const Verb& verb : all_verbs()) all.emplace_back(verb.name, verb.summary);
+  for (const Verb& verb : all_verbs())
+    if (!verb.is_hidden) all.emplace_back(verb.name, verb.summary);
   return all;
 }
 
@@ -90,7 +94,7 @@ Candidates values_of(const Verb& verb, const ArgumentText& argument, Session& se
   for (const std::string& choice : argument.choices) all.emplace_back(choice, "");
   const bool has_any = verb.name == "describe" && is({"NAME"});
   if (has_any || is({"--problem", "PROBLEM", "SPEC"})) add_names(all, session.catalog().problems);
-  if (has_any || is({"--optimizer", "OPTIMIZER", "--peers"}))
+  if (has_any || is({"--optimizer", "OPTIMIZER", "--instead"}))
     add_names(all, session.catalog().optimizers);
   if (has_any) add_names(all, networks::network_registry());
   if (is({"SUITE", "--suite"}))
@@ -150,15 +154,73 @@ int run(const CompletionArguments& given, Session& session) {
   return kGood;
 }
 
+// --- the manual page
+
+// Text that roff prints as it is.
+std::string escaped(const std::string& text) {
+  std::string line;
+  for (const char letter : text)
+    line += letter == '\\' ? "\\e" : letter == '-' ? "\\-" : std::string(1, letter);
+  return line.starts_with('.') || line.starts_with('\'') ? "\\&" + line : line;
+}
+
+std::string bold(const std::string& text) { return "\\fB" + escaped(text) + "\\fR"; }
+
+// Lines that stay as they are.
+std::string verbatim(const std::string& text) {
+  std::string lines;
+  std::istringstream in(text);
+  for (std::string line; std::getline(in, line);) lines += escaped(line) + "\n";
+  return ".PP\n.nf\n" + lines + ".fi\n";
+}
+
+std::string verb_text(const Verb& verb) {
+  std::string names, text;
+  for (const ArgumentText& argument : arguments_of(verb)) {
+    const bool is_option = argument.name.starts_with("--");
+    if (!is_option) names += " [" + argument.name + "]";
+    std::string head = bold(argument.name), choices;
+    if (is_option && !argument.value.empty()) head += " " + escaped(argument.value);
+    for (const std::string& choice : argument.choices)
+      choices += (choices.empty() ? "" : ", ") + choice;
+    text += ".TP\n" + head + "\n" + escaped(argument.about) + "\n";
+    if (!choices.empty()) text += escaped("Values: " + choices + ".") + "\n";
+  }
+  const std::string notes = verb.notes.empty() ? "" : ".PP\n" + escaped(verb.notes) + "\n";
+  return fmt::format(".SS isoline {}{} [OPTIONS]\n{}.\n{}{}{}", escaped(verb.name), escaped(names),
+                     escaped(verb.summary), text, verbatim(verb.examples), notes);
+}
+
+struct ManArguments {};
+void declare(VerbArguments&, ManArguments&) {}
+
+int run(const ManArguments&, Session&) {
+  std::string text = fmt::format(
+      ".TH ISOLINE 1 \"\" \"isoline {}\"\n.SH NAME\nisoline \\- compare optimizers on physical "
+      "inverse problems\n.SH SYNOPSIS\n{} COMMAND [ARGUMENTS]\n.SH DESCRIPTION\n{}\n.SH COMMANDS\n",
+      version(), bold("isoline"), escaped(program_summary()));
+  for (const Verb& verb : all_verbs()) text += verb_text(verb);
+  say(stdout, text + ".SH EXAMPLES\n" + verbatim(program_examples()));
+  return kGood;
+}
+
 }  // namespace
 
-void register_completion(VerbRegistry& registry) {
-  registry.add(verb_of({.name = "completion",
-                        .help_position = 240,
-                        .summary = "Print the completion script for bash, zsh or fish",
-                        .examples = "  isoline completion bash > ~/.isoline-completion\n"
-                                    "  isoline completion words -- run --optimizer newt"},
-                       declare, run));
+void register_manual(VerbRegistry& registry) {
+  registry.add(verb_of<CompletionArguments>(
+      {.name = "completion",
+       .help_position = 240,
+       .is_hidden = true,
+       .summary = "Print the completion script for bash, zsh or fish",
+       .examples = "  isoline completion bash > ~/.isoline-completion\n"
+                   "  isoline completion words -- run --optimizer newt"},
+      declare, run));
+  registry.add(verb_of<ManArguments>({.name = "man",
+                                      .help_position = 250,
+                                      .is_hidden = true,
+                                      .summary = "Print the manual page",
+                                      .examples = "  isoline man > isoline.1 && man ./isoline.1"},
+                                     declare, run));
 }
 
 }  // namespace isoline::benchmarks
