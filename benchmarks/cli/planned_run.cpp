@@ -150,6 +150,11 @@ void declare_run(VerbArguments& verb, RunArguments& given) {
   declare_cells(verb, given);
   verb.whole("--jobs", given.jobs, "Number of cells at a time (default: one per core)", kJobs);
   verb.flag("--exclusive", given.exclusive, "Run one cell at a time, for reliable times");
+  verb.text("--isolate", given.isolate,
+            "cell: run each cell in a process of its own (default: cells of one problem run one "
+            "after the other in a process, which a crash, a limit or a broken record replaces, and "
+            "then they run again one by one)")
+      .one_of({"cell"});
   verb.whole("--repeat", given.repeat, "Number of times that each cell is timed", {1, 1000});
   verb.memory("--memory", given.memory_bytes,
               "Memory limit of a cell, 256MB or more (default: 4GB)", 256);

@@ -19,6 +19,7 @@ struct RunArguments {
   std::int64_t stall = -1;                                  // −1: as the suite has it; 0: never
   std::string stop;                                         // empty: as the suite has it
   std::string shard;                                        // "3/16", "auto"; empty: the whole
+  std::string isolate;                                      // "cell"; empty: by problem
   std::int64_t iterations = 0, work = 0, memory_bytes = 0;  // 0: as the suite or the runner has it
   double seconds = 0, target = -1;                          // 0, −1: as the suite has it
   std::vector<std::string> retry;                           // statuses

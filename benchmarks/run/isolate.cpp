@@ -4,8 +4,12 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <malloc.h>
 #include <poll.h>
 #include <sys/mman.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -55,6 +59,42 @@ void* mapped(std::size_t bytes) {
   if (address == MAP_FAILED) throw std::bad_alloc();
   all_shared_memory().push_back(address);
   return address;
+}
+
+// Messages between a run and a child that is kept ready.
+struct Task {
+  const Request* request;  // in memory that both have since the fork
+  std::int64_t memory_bytes;
+};
+
+struct Done {
+  double processor_seconds;  // of the child so far
+  std::int64_t peak_memory_bytes;
+  bool leaves_processes;
+};
+
+double used_processor_seconds() {
+  timespec used{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &used);
+  return static_cast<double>(used.tv_sec) + 1e-9 * static_cast<double>(used.tv_nsec);
+}
+
+// From now on getrusage() reports the largest memory since this call.
+void forget_peak_memory() {
+  static const int file = ::open("/proc/self/clear_refs", O_WRONLY | O_CLOEXEC);
+  [[maybe_unused]] const ssize_t written = pwrite(file, "5", 1, 0);  // proc(5)
+}
+
+std::int64_t peak_memory_bytes() {
+  rusage used{};
+  getrusage(RUSAGE_SELF, &used);
+  return std::int64_t{used.ru_maxrss} * 1024;
+}
+
+// Also children of children that have ended: they are this process's, which is their subreaper.
+bool has_children() {
+  siginfo_t any{};
+  return waitid(P_ALL, 0, &any, WEXITED | WNOHANG | WNOWAIT) == 0;
 }
 
 // A file of memory, which is read once the child said that it is whole.
@@ -122,7 +162,8 @@ std::optional<LimitWatch::Breach> LimitWatch::check(const ProcessGroup::Usage& u
   constexpr double kIdleShare = 0.01;  // of a core
   awake_ += std::min(kLongestLook, seconds_between(last_nanoseconds_, now_nanoseconds));
   last_nanoseconds_ = now_nanoseconds;
-  const Mark now{awake_, usage.processor_seconds / threads_, usage.waiting_seconds};
+  const Mark now{awake_, std::max(0.0, usage.processor_seconds - before_) / threads_,
+                 usage.waiting_seconds};
   if (usage.resident_bytes > limits_.memory_bytes)
     return Breach{Status::memory,
                   fmt::format("killed: it used more than {} MiB; --memory sets another limit",
@@ -152,11 +193,15 @@ std::optional<LimitWatch::Breach> LimitWatch::check(const ProcessGroup::Usage& u
       fmt::format("killed: it used less than 1 % of a core for {} s", limits_.idle_seconds), true};
 }
 
-void CapturedOutput::open() {
-  close();
+void CapturedOutput::begin() {
   kept_.clear();
   tail_.clear();
   left_out_ = 0;
+}
+
+void CapturedOutput::open() {
+  close();
+  begin();
   is_widened_ = false;
   int ends[2];
   if (pipe2(ends, O_CLOEXEC) != 0) return;  // then the output is lost, and the work is not
@@ -212,6 +257,7 @@ Worker::Worker() : shared_(new (mapped(sizeof(Shared))) Shared) {}
 
 Worker::~Worker() {
   if (is_running()) interrupt();
+  retire();
   std::erase(all_shared_memory(), shared_);
   munmap(shared_, sizeof(Shared));
 }
@@ -228,26 +274,79 @@ Index Worker::returned_size() const {
   return size > 0 && size <= Returned::kMost ? size : 0;
 }
 
-void Worker::start(const std::function<void(Trace&)>& work, const Limits& limits, int threads) {
+void Worker::reset(const Limits& limits, int threads, double processor_seconds_before) {
   constexpr Index kLarge = 1 << 17;  // numbers: a MiB, which is given back
   if (returned_size() > kLarge) madvise(&shared_->returned, sizeof(Returned), MADV_REMOVE);
   new (&shared_->returned) Returned;
   new (&shared_->trace) Trace;
   breach_.reset();
   asked_to_stop_ = 0;
-  watch_ = LimitWatch(limits, threads, monotonic_nanoseconds());
+  is_fault_ = false;
+  watch_ = LimitWatch(limits, threads, monotonic_nanoseconds(), processor_seconds_before);
+}
+
+void Worker::start(const std::function<void(Trace&)>& work, const Limits& limits, int threads) {
+  retire();
+  reset(limits, threads, 0);
   output_.open();
-  group_.start([&] { do_in_child(work, threads); });
+  group_.start([&] {
+    settle_in(threads);
+    limit_memory(limits.memory_bytes);
+    run(work);
+    _exit(0);
+  });
+  output_.close_child_end();
+  is_running_ = true;
+}
+
+void Worker::keep_ready(const std::function<void(const Request&, Trace&)>& work, int threads) {
+  retire();
+  int ends[2];
+  if (socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends) != 0)
+    throw std::runtime_error(
+        fmt::format("cannot create a socket to a process: {}", std::strerror(errno)));
+  channel_ = ends[0];
+  threads_ = threads;
+  used_seconds_ = 0;
+  output_.open();
+  try {
+    group_.start([&] {
+      ::close(ends[0]);
+      settle_in(threads);
+      serve(work, ends[1]);
+    });
+  } catch (...) {
+    ::close(ends[1]);
+    retire();
+    throw;
+  }
+  ::close(ends[1]);
   output_.close_child_end();
 }
 
-void Worker::do_in_child(const std::function<void(Trace&)>& work, int threads) {
+void Worker::hand_over(const Request& request, const Limits& limits) {
+  reset(limits, threads_, used_seconds_);
+  output_.begin();
+  const Task task{&request, limits.memory_bytes};
+  ::send(channel_, &task, sizeof task, MSG_NOSIGNAL);  // that of a dead one is met when collected
+  is_running_ = true;
+}
+
+void Worker::retire() {
+  close_one(channel_);
+  if (group_.is_running()) group_.end();
+  output_.close();
+}
+
+void Worker::settle_in(int threads) const {
   output_.redirect();
   join_child_programs();
   for (void* const other : all_shared_memory())  // no cell can write into another's
     if (other != shared_) munmap(other, sizeof(Shared));
-  limit_memory(watch_.limits().memory_bytes);
   set_library_threads(threads);
+}
+
+void Worker::run(const std::function<void(Trace&)>& work) {
   try {
     work(shared_->trace);
   } catch (const std::bad_alloc&) {
@@ -259,6 +358,22 @@ void Worker::do_in_child(const std::function<void(Trace&)>& work, int threads) {
   }
   shared_->trace.is_finished = true;
   std::fflush(stdout);
+}
+
+// What a record says of a process counts from the beginning of each work.
+void Worker::serve(const std::function<void(const Request&, Trace&)>& work, int channel) {
+  constexpr std::int64_t kLarge = 16 << 20;  // bytes of memory that are given back
+  prctl(PR_SET_CHILD_SUBREAPER, 1);
+  Task task{};
+  while (recv(channel, &task, sizeof task, 0) == sizeof task) {
+    limit_memory(task.memory_bytes);
+    forget_peak_memory();
+    const std::int64_t before = peak_memory_bytes();
+    run([&](Trace& trace) { work(*task.request, trace); });
+    const Done done{used_processor_seconds(), peak_memory_bytes(), has_children()};
+    if (done.peak_memory_bytes > before + kLarge) malloc_trim(0);
+    if (send(channel, &done, sizeof done, MSG_NOSIGNAL) != sizeof done) break;
+  }
   _exit(0);
 }
 
@@ -270,8 +385,11 @@ void Worker::conclude(Status status, const std::string& message) {
 bool Worker::poll() {
   if (!is_running()) return true;
   output_.drain();
+  if (channel_ >= 0 && has_answered()) return true;
   if (const auto end = group_.collect()) {
-    finish(*end);
+    output_.drain();
+    retire();
+    finish(end->wait_status, end->peak_memory_bytes);
     return true;
   }
   const std::int64_t now = monotonic_nanoseconds();
@@ -280,6 +398,17 @@ bool Worker::poll() {
   breach_ = watch_.check(usage, trace().first_oracle_nanoseconds != 0, now);
   if (breach_) group_.kill();
   return false;
+}
+
+// Of a child that is kept ready. It ends where its next work could be affected by this one.
+bool Worker::has_answered() {
+  Done done{};
+  if (recv(channel_, &done, sizeof done, MSG_DONTWAIT) != sizeof done) return false;
+  output_.drain();  // all was written before the answer
+  used_seconds_ = done.processor_seconds;
+  finish(0, done.peak_memory_bytes);
+  if (is_fault_ || done.leaves_processes || trace().status == Status::interrupted) retire();
+  return true;
 }
 
 void Worker::wait(int milliseconds) const {
@@ -303,15 +432,15 @@ void Worker::interrupt() {
     }
 }
 
-// Everything that had the trace is dead by now.
-void Worker::finish(const ProcessGroup::End& end) {
-  output_.drain();
-  output_.close();
+// Everything that had the trace is dead by now, or waits for more work.
+void Worker::finish(int wait_status, std::int64_t peak_memory_bytes) {
+  is_running_ = false;
   Trace& trace = shared_->trace;
   const std::string defect = defect_of(trace);
   if (!defect.empty()) new (&trace) Trace;
-  trace.peak_memory_bytes = end.peak_memory_bytes;
-  const int signal = WIFSIGNALED(end.wait_status) ? WTERMSIG(end.wait_status) : 0;
+  trace.peak_memory_bytes = peak_memory_bytes;
+  const int signal = WIFSIGNALED(wait_status) ? WTERMSIG(wait_status) : 0;
+  is_fault_ = true;
   if (breach_) {
     conclude(breach_->status, breach_->message);
   } else if (!defect.empty()) {
@@ -320,15 +449,19 @@ void Worker::finish(const ProcessGroup::End& end) {
     const bool has_verdict =
         trace.is_finished && trace.status != Status::running && trace.status != Status::interrupted;
     if (!has_verdict) conclude(Status::interrupted, "the run was interrupted");
+    is_fault_ = false;
   } else if (is_from_outside(signal)) {
     conclude(Status::interrupted,
              fmt::format("killed by {}, sent by another program", signal_name(signal)));
+    is_fault_ = false;
   } else if (signal != 0 || !trace.is_finished) {
-    conclude(Status::crashed, end_of_process(end.wait_status));
+    conclude(Status::crashed, end_of_process(wait_status));
   } else if (trace.status == Status::memory) {
     conclude(Status::memory,
              fmt::format("the cell exceeded its memory limit of {} MiB; --memory sets another one",
                          watch_.limits().memory_bytes >> 20));
+  } else {
+    is_fault_ = false;
   }
 }
 

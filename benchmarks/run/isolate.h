@@ -1,5 +1,5 @@
-// One run in its own process, which cannot harm this one. Limits of processor time, wall time, idle
-// time and memory end it.
+// Runs in other processes, which cannot harm this one: each in its own, or one after the other in a
+// process that stays. Limits of processor time, wall time, idle time and memory end them.
 #pragma once
 
 #include <algorithm>
@@ -66,8 +66,13 @@ class LimitWatch {
   };
 
   LimitWatch() = default;
-  LimitWatch(const Limits& limits, int threads, std::int64_t now_nanoseconds)
-      : limits_(limits), threads_(threads), last_nanoseconds_(now_nanoseconds) {}
+  // The processor time before this work was spent on earlier work.
+  LimitWatch(const Limits& limits, int threads, std::int64_t now_nanoseconds,
+             double processor_seconds_before = 0)
+      : limits_(limits),
+        threads_(threads),
+        last_nanoseconds_(now_nanoseconds),
+        before_(processor_seconds_before) {}
 
   const Limits& limits() const { return limits_; }
   // Whether it is time to look again: each look reads files of the system.
@@ -85,6 +90,7 @@ class LimitWatch {
   Limits limits_;
   int threads_ = 1;
   std::int64_t last_nanoseconds_ = 0;
+  double before_ = 0;       // seconds of processor time
   double awake_ = 0;        // seconds during which this process ran
   bool has_begun_ = false;  // with its first oracle call
   Mark begun_, active_;     // at the first oracle call; when it last did something
@@ -109,6 +115,7 @@ class CapturedOutput {
   CapturedOutput& operator=(const CapturedOutput&) = delete;
 
   void open();             // before the child is forked
+  void begin();            // forgets what has come
   void redirect() const;   // in the child
   void close_child_end();  // in the parent, once the child is forked
   void drain();            // takes what has come; what stays in the pipe holds the writer up
@@ -134,9 +141,18 @@ class Worker {
   Worker& operator=(const Worker&) = delete;
 
   void start(const std::function<void(Trace&)>& work, const Limits& limits, int threads);
-  bool is_running() const { return group_.is_running(); }
+  // Keeps a child ready, which runs the requests that it is handed, one after the other. It ends
+  // with the first that ends badly, and with the one that leaves processes behind.
+  void keep_ready(const std::function<void(const Request&, Trace&)>& work, int threads);
+  bool is_ready() const { return channel_ >= 0 && !is_running_; }
+  void hand_over(const Request& request, const Limits& limits);  // made before keep_ready()
+  void retire();
+  bool is_running() const { return is_running_; }
   bool was_idle() const { return breach_ && breach_->is_idleness; }  // and was ended for it
-  // Ends the child where it is over a limit, collects it where it has ended. True once it has.
+  // Whether the last work ended in a way that leaves in doubt what its process did before.
+  bool was_fault() const { return is_fault_; }
+  // Ends the child where it is over a limit, collects it where it has ended. True once the work
+  // has ended.
   bool poll();
   void wait(int milliseconds) const;  // for its end, so long at most
   // Tells the child to save its state and end. Several children can be told before the first wait.
@@ -151,19 +167,28 @@ class Worker {
   // memory if it starts after this worker was made.
   void keep_returned(std::span<const double> theta);  // by the child
   const double* returned() const { return shared_->returned.theta; }
-  Index returned_size() const;                            // 0: nothing
-  int descriptor() const { return group_.descriptor(); }  // readable when the child has ended
+  Index returned_size() const;  // 0: nothing
+  // Readable when the work has ended.
+  int descriptor() const { return channel_ >= 0 ? channel_ : group_.descriptor(); }
 
  private:
   struct Shared {
     Trace trace;
     alignas(4096) Returned returned;  // pages of its own, which take no memory until written
   };
-  [[noreturn]] void do_in_child(const std::function<void(Trace&)>& work, int threads);
-  void finish(const ProcessGroup::End& end);
+  void reset(const Limits& limits, int threads, double processor_seconds_before);
+  void settle_in(int threads) const;                  // in the child, as what follows
+  void run(const std::function<void(Trace&)>& work);  // and notes how it ended
+  [[noreturn]] void serve(const std::function<void(const Request&, Trace&)>& work, int channel);
+  bool has_answered();
+  void finish(int wait_status, std::int64_t peak_memory_bytes);
 
   Shared* const shared_;
   ProcessGroup group_;
+  int channel_ = -1;  // to a child that is kept ready
+  int threads_ = 1;
+  double used_seconds_ = 0;  // of processor time by that child, at the end of its last work
+  bool is_running_ = false, is_fault_ = false;
   CapturedOutput output_;
   LimitWatch watch_;
   std::optional<LimitWatch::Breach> breach_;  // why we killed it

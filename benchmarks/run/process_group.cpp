@@ -151,14 +151,14 @@ std::optional<ProcessFigures> figures_of(pid_t process) {
   const std::size_t name_end = text.rfind(')');  // a name may hold anything
   if (name_end == std::string::npos) return std::nullopt;
   int parent = 0;
-  unsigned long user = 0, system = 0, address_space = 0;
+  unsigned long user = 0, system = 0;
   long children_user = 0, children_system = 0, resident_pages = 0;
   // The kernel's numbers fit. NOLINTNEXTLINE(bugprone-unchecked-string-to-number-conversion)
   const int read = std::sscanf(
       text.c_str() + name_end + 1,
-      " %*c %d %*d %*d %*d %*d %*u %*u %*u %*u %*u %lu %lu %ld %ld %*d %*d %*d %*d %*u %lu %ld",
-      &parent, &user, &system, &children_user, &children_system, &address_space, &resident_pages);
-  if (read != 7) return std::nullopt;
+      " %*c %d %*d %*d %*d %*d %*u %*u %*u %*u %*u %lu %lu %ld %ld %*d %*d %*d %*d %*u %*u %ld",
+      &parent, &user, &system, &children_user, &children_system, &resident_pages);
+  if (read != 6) return std::nullopt;
   static const auto ticks_a_second = static_cast<double>(sysconf(_SC_CLK_TCK));
   static const std::int64_t page = sysconf(_SC_PAGESIZE);
   const double ticks = static_cast<double>(user) + static_cast<double>(system) +
@@ -170,8 +170,7 @@ std::optional<ProcessFigures> figures_of(pid_t process) {
   return ProcessFigures{.parent = parent,
                         .processor_seconds = ticks / ticks_a_second,
                         .waiting_seconds = waiting,
-                        .resident_bytes = resident_pages * page,
-                        .address_space_bytes = static_cast<std::int64_t>(address_space)};
+                        .resident_bytes = resident_pages * page};
 }
 
 std::vector<pid_t> children_of(pid_t process) {
@@ -198,8 +197,8 @@ std::vector<pid_t> children_of(pid_t process) {
 
 void limit_memory([[maybe_unused]] std::int64_t bytes) {
 #ifndef ISOLINE_SANITIZE  // the sanitizers' shadow memory does not fit under an address-space limit
-  const auto figures = figures_of(getpid());
-  const auto most = static_cast<rlim_t>(bytes + (figures ? figures->address_space_bytes : 0));
+  const std::int64_t pages = std::strtoll(process_text("/proc/self/statm").c_str(), nullptr, 10);
+  const auto most = static_cast<rlim_t>(bytes + pages * sysconf(_SC_PAGESIZE));
   rlimit limit{};
   getrlimit(RLIMIT_AS, &limit);
   limit.rlim_cur = std::min(most, limit.rlim_max);  // the other one stays: a child may lift this

@@ -22,7 +22,7 @@ struct ProcessFigures {
   pid_t parent = 0;
   double processor_seconds = 0;  // its own and that of children that it has waited for
   double waiting_seconds = 0;    // of its first thread, runnable without a processor
-  std::int64_t resident_bytes = 0, address_space_bytes = 0;
+  std::int64_t resident_bytes = 0;
 };
 std::optional<ProcessFigures> figures_of(pid_t process);  // nothing where it is gone
 

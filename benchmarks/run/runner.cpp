@@ -8,7 +8,9 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
+#include <limits>
 #include <memory>
+#include <ranges>
 #include <thread>
 
 #include "benchmarks/plan/catalog.h"
@@ -34,6 +36,13 @@ void Outcome::count(const Record& record) {
   if (record.status == Status::crashed && !crash)
     crash = Crash{record.request, "runs/" + record.file_name()};
   if (record.status == Status::interrupted) ++interrupted;
+}
+
+void Outcome::uncount(const Record& record) {
+  if (--statuses[record.status] == 0) statuses.erase(record.status);
+  std::erase_if(failures, [title = title_of(record.request) + ": "](const std::string& failure) {
+    return failure.starts_with(title);
+  });
 }
 
 void require_trust(bool is_given, const Record& record) {
@@ -83,26 +92,33 @@ class Pending {
       const std::size_t wanted = runs_wanted(request);
       for (std::size_t i = 0; i < wanted; ++i) rounds.emplace_back(i, &request);
     }
+    std::map<std::string_view, std::size_t> problems;  // in order
+    for (const Request& request : requests)
+      problems.try_emplace(request.problem.spec, problems.size());
     // Repetitions alternate between all cells, so that a drift of the machine affects the
-    // repetitions of each cell.
-    std::ranges::stable_sort(rounds, {}, [](const auto& entry) { return entry.first; });
+    // repetitions of each cell. Cells of one problem follow one another: they share processes.
+    std::ranges::stable_sort(rounds, {}, [&](const auto& entry) {
+      return std::pair(entry.first, problems.at(entry.second->problem.spec));
+    });
     for (const auto& [round, request] : rounds) queue_.push_back(request);
   }
 
   // The next run, locked against other processes until it is released. Nothing if all runs are
-  // given out, or if other processes run the remaining ones, which may come back.
-  const Request* next() {
+  // given out, if other processes run the remaining ones, which may come back, or if the next one
+  // is not wanted.
+  const Request* next(const std::function<bool(const Request&)>& is_wanted) {
     constexpr std::int64_t kPatience =
         200'000'000;  // nanoseconds between checks of other processes' cells
     if (monotonic_nanoseconds() < look_again_) return nullptr;
     for (std::size_t left = queue_.size(); left > 0; --left) {
       const Request& request = *queue_.front();
+      if (!is_wanted(request)) return nullptr;
       queue_.pop_front();
       if (!holds_.take(Store::name_of(request))) {
         queue_.push_back(&request);
         continue;
       }
-      if (options_.force || runs_wanted(request) > 0) return &request;
+      if (options_.force || again_.erase(&request) > 0 || runs_wanted(request) > 0) return &request;
       release(request);  // another process has done it in the meantime
     }
     if (!queue_.empty()) look_again_ = monotonic_nanoseconds() + kPatience;
@@ -110,6 +126,11 @@ class Pending {
   }
   void release(const Request& request) { holds_.release(Store::name_of(request)); }
   const std::deque<const Request*>& queued() const { return queue_; }
+  // Next, whether or not it is done. It is not locked.
+  void run_again(const Request& request) {
+    queue_.push_front(&request);
+    again_.insert(&request);
+  }
 
  private:
   // The number of remaining repetitions of a cell. A cell that is done is counted.
@@ -140,6 +161,7 @@ class Pending {
   Outcome& outcome_;
   Holds holds_;
   std::deque<const Request*> queue_;  // a cell is queued once for each of its timings
+  std::set<const Request*> again_;    // of these, those that run even if they are done
   std::int64_t look_again_ = 0;       // monotonic nanoseconds
 };
 
@@ -153,6 +175,7 @@ class Runner {
         jobs_(options.exclusive ? 1 : options.jobs),
         workers_(static_cast<std::size_t>(options.exclusive ? 1 : jobs_ + 1)),
         tasks_(workers_.size()),
+        kept_(workers_.size()),
         judges_(catalog, workers_),
         declared_(catalog, store.folder()),
         pending_(requests, store, options, outcome_),
@@ -168,6 +191,10 @@ class Runner {
       earlier_ = EarlierTimes(record_outlines({store_.folder()}));
     for (const Request* request : pending_.queued()) progress_.expect(earlier_.of(*request));
     malloc_trim(0);  // return the memory that planning used: a fork copies the tables of all pages
+    // From now on memory that is freed stays: each cell would be given new pages otherwise.
+    constexpr int kStays = 32 << 20;
+    mallopt(M_TRIM_THRESHOLD, kStays);
+    mallopt(M_MMAP_THRESHOLD, kStays);
     while (asked_to_end() != Asked::stop) {
       if (asked_to_end() == Asked::nothing) start_some();
       keep_judged();
@@ -176,10 +203,13 @@ class Runner {
       if (asked_to_end() == Asked::finish) say_once_that_it_finishes();
       wait();
       collect();
+      if (monotonic_nanoseconds() >= flush_at_) flush();
       progress_.show();
     }
     keep_judged();
     if (running() > 0) stop();
+    flush();
+    for (const auto& [request, first] : doubtful_) store_.remove(*request);
     outcome_.is_interrupted |= !pending_.queued().empty();
     progress_.show(outcome_.run > 0);
     return outcome_;
@@ -189,45 +219,104 @@ class Runner {
   struct Task {
     const Request* request = nullptr;  // nothing is done here
     RunProvenance run = {};
+    std::int64_t begun = 0;        // monotonic nanoseconds
+    bool is_shared = false;        // its process has run others, or may
     bool is_being_judged = false;  // the cell itself has ended
+  };
+  // What the process of a worker is kept ready for.
+  struct Kept {
+    std::string problem;
+    int threads = 1;
+    std::vector<const Request*> finished = {};
   };
 
   std::ptrdiff_t running() const {
     return std::ranges::count_if(tasks_, [](const Task& task) { return task.request; });
   }
 
+  // A cell has a process of its own where its time counts, where it runs code of others or holds
+  // the state of a network, and where its result is in doubt.
+  bool shares_process(const Request& request) const {
+    return !options_.isolates_cells && !options_.exclusive && options_.repeat == 1 &&
+           !request.problem.foreign && !request.optimizer.foreign && !request.problem.is_learned &&
+           !doubtful_.contains(&request);
+  }
+
   // There is one more worker than the number of running cells, so that the result of one is judged
-  // and stored while the others run.
+  // and stored while the others run; it keeps no process ready.
   void start_some() {
-    constexpr double kCheckpointSeconds = 120;  // interval between checkpoints of a long run
     auto running = std::ranges::count_if(workers_, &Worker::is_running);
     for (std::size_t i = 0; i < workers_.size() && running < jobs_; ++i) {
       if (tasks_[i].request) continue;
-      const Request* request = pending_.next();
+      const bool keeps_process = i < static_cast<std::size_t>(jobs_);
+      const Request* request = pending_.next(
+          [&](const Request& next) { return keeps_process || !shares_process(next); });
       if (!request) return;
       ++running;
       tasks_[i] = {request,
                    {.started = instant_text(seconds_now()),
                     .concurrent_jobs = jobs_,
                     .is_exclusive = options_.exclusive,
-                    .command = options_.command}};
+                    .command = options_.command},
+                   monotonic_nanoseconds()};
       progress_.started(title_of(*request));
       if (options_.force) store_.remove_checkpoint(*request);
-      const EndStates ends = end_states(*request);
-      outcome_.continued += !ends.from.empty();
-      workers_[i].start(
-          [&, i, request](Trace& trace) {
-            trace.spectra.are_wanted = options_.keeps_spectra;
-            const auto path = store_.checkpoint_path(*request);
-            Checkpoint checkpoint(path, path.stem().string(), kCheckpointSeconds);
-            checkpoint.continue_from(ends);
-            if (logs_calls_of(*request)) checkpoint.log_calls(options_.logs_calls);
-            Vector returned;
-            execute(catalog_, *request, trace, std::move(checkpoint), &returned,
-                    options_.perturbation);
-            workers_[i].keep_returned({returned.data(), static_cast<std::size_t>(returned.size())});
-          },
-          limits(*request), request->threads);
+      const std::filesystem::path from = end_to_continue(*request);
+      outcome_.continued += !from.empty();
+      tasks_[i].is_shared = from.empty() && shares_process(*request);
+      if (tasks_[i].is_shared)
+        hand_over(i, *request);
+      else
+        workers_[i].start([=, this](Trace& trace) { compute(i, *request, from, trace); },
+                          limits(*request), request->threads);
+    }
+  }
+
+  void hand_over(std::size_t i, const Request& request) {
+    constexpr std::size_t kMost = 512;  // cells of one process: after a fault they run again
+    Kept& kept = kept_[i];
+    if (!workers_[i].is_ready() || kept.problem != request.problem.spec ||
+        kept.threads != request.threads || kept.finished.size() >= kMost) {
+      kept = {request.problem.spec, request.threads};
+      workers_[i].keep_ready(
+          [=, this](const Request& cell, Trace& trace) { compute(i, cell, {}, trace); },
+          request.threads);
+    }
+    workers_[i].hand_over(request, limits(request));
+  }
+
+  // In the process of a worker.
+  void compute(std::size_t i, const Request& request, const std::filesystem::path& from,
+               Trace& trace) {
+    constexpr double kCheckpointSeconds = 120;  // interval between checkpoints of a long run
+    trace.spectra.are_wanted = options_.keeps_spectra;
+    const auto path = store_.checkpoint_path(request);
+    Checkpoint checkpoint(path, path.stem().string(), kCheckpointSeconds);
+    if (keeps_ends())
+      checkpoint.continue_from({store_.end_stem(request), from, options_.least_kept_seconds});
+    if (logs_calls_of(request)) checkpoint.log_calls(options_.logs_calls);
+    Vector returned;
+    execute(catalog_, request, trace, std::move(checkpoint), &returned, options_.perturbation);
+    workers_[i].keep_returned({returned.data(), static_cast<std::size_t>(returned.size())});
+  }
+
+  // The cell of a worker and all that its process has finished run again, each in a fresh process.
+  void doubt(std::size_t i, Status fault) {
+    flush();
+    const std::vector<const Request*> finished = std::exchange(kept_[i].finished, {});
+    const Request& request = *std::exchange(tasks_[i], {}).request;
+    store_.remark(fmt::format(
+        "{}: {} in a process that had finished {} other cell{}; all of them "
+        "ran again, each in a fresh process",
+        title_of(request), name_of(fault), finished.size(), finished.size() == 1 ? "" : "s"));
+    workers_[i].retire();
+    store_.remove_checkpoint(request);
+    pending_.release(request);
+    doubtful_[&request] = fault;
+    pending_.run_again(request);
+    for (const Request* before : std::views::reverse(finished)) {
+      doubtful_[before] = {};
+      pending_.run_again(*before);
     }
   }
 
@@ -242,13 +331,11 @@ class Runner {
   }
 
   // A repetition for its time begins at the start, as does a run that records more than others.
-  EndStates end_states(const Request& request) const {
-    if (options_.keeps_spectra || options_.perturbation != 0) return {};
-    EndStates ends{
-        .stem = store_.end_stem(request), .from = {}, .least_seconds = options_.least_kept_seconds};
-    if (!options_.force && !options_.exclusive && options_.repeat == 1 && !store_.has(request))
-      ends.from = store_.end_within_budget(request);
-    return ends;
+  bool keeps_ends() const { return !options_.keeps_spectra && options_.perturbation == 0; }
+  std::filesystem::path end_to_continue(const Request& request) const {
+    if (!keeps_ends() || options_.force || options_.exclusive || options_.repeat > 1) return {};
+    const std::filesystem::path end = store_.end_within_budget(request);
+    return end.empty() || store_.has(request) ? std::filesystem::path() : end;
   }
 
   Limits limits(const Request& request) {
@@ -276,6 +363,10 @@ class Runner {
       Task& task = tasks_[i];
       if (!task.request || task.is_being_judged || !workers_[i].poll()) continue;
       const Status status = workers_[i].trace().status;
+      if (workers_[i].was_fault() && is_after_others(i)) {
+        doubt(i, status);
+        continue;
+      }
       task.is_being_judged =
           !is_failure(status) && status != Status::inapplicable && status != Status::interrupted;
       if (task.is_being_judged)
@@ -285,6 +376,10 @@ class Runner {
     }
   }
 
+  bool is_after_others(std::size_t i) const {
+    return tasks_[i].is_shared && !kept_[i].finished.empty();
+  }
+
   void keep_judged() {
     for (const Verdict& verdict : judges_.collect()) {
       Worker& worker = workers_[verdict.slot];
@@ -292,8 +387,13 @@ class Runner {
         worker.conclude(verdict.is_interrupted ? Status::interrupted : Status::failed,
                         "the returned point could not be verified: " + verdict.failure);
       else if (const auto found = contradiction(told_by(worker.trace()), *verdict.judged);
-               !found.empty() && !ends_at_a_failure(worker.trace()))
+               !found.empty() && !ends_at_a_failure(worker.trace())) {
+        if (is_after_others(verdict.slot)) {  // it may have met what they left behind
+          doubt(verdict.slot, Status::failed);
+          continue;
+        }
         worker.conclude(Status::failed, found);
+      }
       keep(verdict.slot);
     }
   }
@@ -328,19 +428,44 @@ class Runner {
     std::optional<Record> earlier = store_.find(request);
     const bool is_repeated = !seen_.insert(record.cell).second;  // within this very call
     if (options_.redoes(earlier) && !is_repeated) earlier.reset();
-    if (earlier && !record.is_nondeterministic && !earlier->is_nondeterministic &&
-        !same_result(*earlier, record))
+    const auto doubt = doubtful_.find(&request);
+    const bool was_done = doubt != doubtful_.end() && !doubt->second && earlier;
+    const bool is_exact = earlier && !record.is_nondeterministic && !earlier->is_nondeterministic;
+    if ((is_exact && !same_result(*earlier, record)) ||
+        (doubt != doubtful_.end() && record.status != Status::interrupted &&
+         doubt->second.value_or(record.status) != record.status))
       outcome_.conflicts.push_back(title_of(request));
+    if (was_done) outcome_.uncount(*std::exchange(earlier, {}));
+    if (doubt != doubtful_.end()) doubtful_.erase(doubt);
     if (earlier && !record.fields) record.fields = earlier->fields;  // its file is there
     if (earlier && !record.spectrum) record.spectrum = earlier->spectrum;
-    store_.write(record, earlier);
-    if (record.status != Status::interrupted) store_.remove_checkpoint(request);
-    ++outcome_.run;
+    outcome_.run += was_done ? 0 : 1;
     if (!earlier) outcome_.count(record);
-    pending_.release(request);
+    const std::int64_t now = monotonic_nanoseconds();
+    const bool can_wait = tasks_[slot].is_shared && now - tasks_[slot].begun < kShort;
+    if (tasks_[slot].is_shared) kept_[slot].finished.push_back(&request);
+    unwritten_.emplace_back(&request, record.status == Status::interrupted);
+    store_.keep(std::move(record), earlier);
     tasks_[slot] = {};
-    progress_.finished(earlier_.of(request));
+    if (!was_done) progress_.finished(earlier_.of(request));
+    if (!can_wait)
+      flush();
+    else if (unwritten_.size() == 1)
+      flush_at_ = now + kLongestWait;
   }
+
+  void flush() {
+    flush_at_ = kNever;
+    store_.flush();
+    for (const auto& [request, goes_on] : std::exchange(unwritten_, {})) {
+      if (!goes_on) store_.remove_checkpoint(*request);
+      pending_.release(*request);
+    }
+  }
+
+  // Records of short cells, which are soon computed again, wait for others. In nanoseconds.
+  static constexpr std::int64_t kShort = 50'000'000, kLongestWait = 100'000'000;
+  static constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::max();
 
   const Catalog& catalog_;
   Store& store_;
@@ -349,13 +474,18 @@ class Runner {
   int jobs_;
   std::vector<Worker> workers_;
   std::vector<Task> tasks_;
+  std::vector<Kept> kept_;
   Judges judges_;
   DeclaredTimes declared_;  // for their limits
   Pending pending_;
   Progress progress_;
   EarlierTimes earlier_;
   std::set<std::string> seen_;
-  bool has_said_ = false;  // that it is finishing
+  // Cells that run again after a fault of a process, and how the cell of the fault itself ended.
+  std::map<const Request*, std::optional<Status>> doubtful_;
+  std::vector<std::pair<const Request*, bool>> unwritten_;  // and whether its checkpoint stays
+  std::int64_t flush_at_ = kNever;                          // monotonic nanoseconds
+  bool has_said_ = false;                                   // that it is finishing
 };
 
 }  // namespace

@@ -1,4 +1,5 @@
-// Runs requests in worker processes, several at once, and stores a record of each as it ends.
+// Runs requests in worker processes, several at once, and stores their records as they end. Cells
+// of one problem run one after the other in a process that stays; some have one of their own.
 #pragma once
 
 #include <cstdint>
@@ -38,6 +39,7 @@ struct Outcome {
   double seconds = 0;            // that the run took
 
   void count(const Record& record);
+  void uncount(const Record& record);
 };
 
 // Records may come from others. UsageError, with the command, before one that a record names
@@ -54,6 +56,7 @@ struct RunOptions {
   bool reuse = false;           // a cell that another build has done counts as done
   std::set<Status> retry = {};  // cells that ended so are repeated
   bool exclusive = false;       // one at a time, for tables of wall time
+  bool isolates_cells = false;  // each in a fresh process
   int repeat = 1;               // timings wanted of each cell
   Limits limits;
   int perturbation = 0;  // of the starts, in the last bit; of 0 alone the records are results

@@ -59,6 +59,20 @@ std::optional<Record> stored_record(const fs::path& path, const Request& request
   return record;
 }
 
+// One flush for them all, which takes as long as that of one file: none gets its name before all
+// are whole.
+void write_together(const std::vector<std::pair<fs::path, std::string>>& files) {
+  if (files.size() == 1) return write_text(files[0].first, files[0].second);
+  try {
+    for (const auto& [path, text] : files) write_unflushed(temporary_of(path), text);
+    flush_all(files[0].first.parent_path());
+    for (const auto& [path, text] : files) fs::rename(temporary_of(path), path);
+  } catch (...) {
+    for (const auto& [path, text] : files) ::unlink(temporary_of(path).c_str());
+    throw;
+  }
+}
+
 // --- locks
 
 bool lock(int descriptor, short kind, const std::string& cell) {
@@ -216,6 +230,7 @@ void Store::plan(const std::string& suite, const std::vector<PlannedCell>& cells
 
 std::optional<Record> Store::find(const Request& request) {
   const fs::path path = run_path(folder_, name_of(request));
+  if (std::ranges::any_of(waiting_, [&](const auto& file) { return file.first == path; })) flush();
   try {
     return stored_record(path, request);
   } catch (const AccessError&) {  // it may be sound
@@ -257,28 +272,40 @@ std::optional<Record> RecordsOfAnyBuild::find(const Request& request) const {
   return newest;
 }
 
-void Store::write(Record record, const std::optional<Record>& earlier) {
+void Store::keep(Record record, const std::optional<Record>& earlier) {
   if (earlier) {
     auto& times = record.repeat_wall_seconds;
     times.insert(times.end(), earlier->repeat_wall_seconds.begin(),
                  earlier->repeat_wall_seconds.end());
     std::ranges::sort(times);
   }
-  const fs::path path = run_path(folder_, record.file_name()), fields = field_path(path);
+  const fs::path path = run_path(folder_, record.file_name());
+  if (record.fields && !record.fields->numbers.empty())
+    waiting_.emplace_back(field_path(path), field_file(*record.fields));
+  if (record.answer && record.answer->is_in_file() && !record.answer->x.empty())
+    waiting_.emplace_back(answer_path(path), answer_file(*record.answer));
+  waiting_.emplace_back(path, file_text(record));  // after what it names
+  if (!record.fields) obsolete_.push_back(field_path(path));
+}
+
+void Store::flush() {
+  if (waiting_.empty()) return;
   try_to_write([&] {
-    if (record.fields && !record.fields->numbers.empty()) {
-      clear_way(fields);
-      write_text(fields, field_file(*record.fields));
-    }
-    if (record.answer && record.answer->is_in_file() && !record.answer->x.empty()) {
-      clear_way(answer_path(path));
-      write_text(answer_path(path), answer_file(*record.answer));
-    }
-    clear_way(path);
-    write_text(path, file_text(record));
-    std::error_code unknown;
-    if (!record.fields) fs::remove(fields, unknown);  // of an earlier run that kept them
+    for (const auto& [path, text] : waiting_) clear_way(path);
+    write_together(waiting_);
   });
+  for (const fs::path& path : obsolete_) ::unlink(path.c_str());  // if it is there
+  waiting_.clear();
+  obsolete_.clear();
+}
+
+void Store::write(Record record, const std::optional<Record>& earlier) {
+  keep(std::move(record), earlier);
+  flush();
+}
+
+void Store::remove(const Request& request) const {
+  ::unlink(run_path(folder_, name_of(request)).c_str());
 }
 
 void Store::try_to_write(const std::function<void()>& write) {
@@ -333,13 +360,15 @@ fs::path Store::end_path(const fs::path& stem, const Budget& needed) {
 }
 
 fs::path Store::end_within_budget(const Request& request) const {
-  const fs::path stem = end_stem(request);
   Budget latest{.iterations = 0};
   std::vector<std::string> names;
   try {
     names = names_in(folder_ / "checkpoints");
   } catch (const UsageError&) {  // the cell starts at its beginning
   }
+  std::erase_if(names, [](const std::string& name) { return !name.ends_with(".end"); });
+  if (names.empty()) return {};
+  const fs::path stem = end_stem(request);
   for (const std::string& name : names) {
     Budget needed;
     const std::string pattern = stem.filename().string() + "-%" SCNd64 "-%" SCNd64;

@@ -46,8 +46,12 @@ class Store {
   void remark(std::string sentence) { remarks_.push_back(std::move(sentence)); }
   const std::vector<std::string>& remarks() const { return remarks_; }
 
-  // Writes the record whole; times of an earlier record of the same cell and build join its own.
-  void write(Record record, const std::optional<Record>& earlier);
+  // Keeps the record for flush(), which writes all that wait, each whole; times of an earlier
+  // record of the same cell and build join its own.
+  void keep(Record record, const std::optional<Record>& earlier);
+  void flush();
+  void write(Record record, const std::optional<Record>& earlier);  // both
+  void remove(const Request& request) const;                        // its record
   void write(const Sheet& sheet);
 
   // Where a run of this request by this build is kept while it goes.
@@ -71,6 +75,8 @@ class Store {
 
   std::filesystem::path folder_;
   std::vector<std::string> remarks_;
+  std::vector<std::pair<std::filesystem::path, std::string>> waiting_;  // texts for flush()
+  std::vector<std::filesystem::path> obsolete_;  // removed by it: what earlier runs have kept
 };
 
 // The record of a request in a folder, of any build.

@@ -73,6 +73,7 @@ int run(const RunArguments& given, Session& session) {
                      .reuse = given.reuse,
                      .retry = statuses_of(given.retry),
                      .exclusive = given.exclusive,
+                     .isolates_cells = given.isolate == "cell",
                      .repeat = given.repeat,
                      .keeps_output = given.keeps_output,
                      .logs_calls = given.logs_evaluations,
@@ -112,8 +113,8 @@ void register_run(VerbRegistry& registry) {
   isoline run nist --instead 'process[command="./mine"],gd' --view digits
   isoline run --problem square --optimizer gd --seeds =3 --in-process   to debug)",
        .notes =
-           "A cell is one problem, one optimizer and one seed, with a budget. Each cell runs in "
-           "its own process, so a crash ends only its own cell (not with --in-process).\nRepeat "
+           "A cell is one problem, one optimizer and one seed, with a budget. Cells run in other "
+           "processes, so a crash ends only its own cell (not with --in-process).\nRepeat "
            "the command to continue a run that was stopped.\n"
            "The predicted time of a cell is its time in records of the result folder and of --from "
            "or, without such a record, the time of the same cell with other seeds. Other cells "

@@ -17,6 +17,7 @@
 #include "benchmarks/plan/catalog.h"
 #include "benchmarks/run/process_group.h"
 #include "benchmarks/run/runner.h"
+#include "core/clock.h"
 #include "optimizers/optimizer.h"
 #include "problems/problem.h"
 #include "tests/deadline.h"
@@ -80,6 +81,18 @@ inline void crowd(int children, int mebibytes) {
   while (true) pause();
 }
 
+// How many cells of this process have been here.
+inline int& remembered() {
+  static int cells = 0;
+  return cells;
+}
+
+// Of processor time.
+inline void burn(double seconds) {
+  for (const double begin = processor_seconds(); processor_seconds() - begin < seconds;) {
+  }
+}
+
 // Descends twice, then does `misdeed`.
 struct Hostile {
   std::string misdeed = "throw";
@@ -108,6 +121,9 @@ struct Hostile {
     if (misdeed == "terminate") std::raise(SIGTERM);
     if (misdeed == "resize") theta = Vector::Constant(theta.size() + 1000, theta[0]);
     if (misdeed == "daemon") leave_a_daemon_behind();
+    if (misdeed == "remember") theta[0] += 1e-3 * remembered()++;
+    if (misdeed == "swell") told() = std::vector<char>(std::size_t{64} << 20, 1).back();
+    if (misdeed == "toil") burn(0.3);
     if (misdeed == "stop-parent") kill(getppid(), SIGSTOP);
     if (misdeed == "end-parent") kill(getppid(), SIGTERM);
     if (misdeed == "chatter")
@@ -151,10 +167,11 @@ struct Hostile {
 
 inline void fields(Hostile& o, auto& field) {
   field("misdeed", o.misdeed,
-        Choices{"throw",      "throw-int", "segfault", "abort",  "complain", "exit",
-                "kill",       "nan",       "overask",  "crowd",  "sleep",    "spin",
-                "hoard",      "terminate", "resize",   "daemon", "chatter",  "stop-parent",
-                "end-parent", "linger",    "count",    "none"},
+        Choices{"throw",  "throw-int", "segfault",    "abort",      "complain",
+                "exit",   "kill",      "nan",         "overask",    "crowd",
+                "sleep",  "spin",      "hoard",       "terminate",  "resize",
+                "daemon", "chatter",   "stop-parent", "end-parent", "linger",
+                "count",  "remember",  "swell",       "toil",       "none"},
         "what it does after two good steps");
 }
 
@@ -213,8 +230,10 @@ class HostileCells : public testing::Test {
  protected:
   HostileCells() { told() = 0; }
 
-  Request hostile(const std::string& misdeed) const {
-    return request_for(catalog, "square", {}, "hostile", {{"misdeed", misdeed}});
+  Request hostile(const std::string& misdeed, std::uint64_t seed = 0) const {
+    Request request = request_for(catalog, "square", {}, "hostile", {{"misdeed", misdeed}});
+    request.seed = seed;
+    return named(std::move(request));
   }
   Record record_after(const std::string& misdeed) {
     const Request request = hostile(misdeed);

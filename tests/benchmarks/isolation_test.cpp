@@ -1,7 +1,10 @@
 // A cell that fails affects that cell only, and its record describes the failure. Shared memory
 // that it overwrote is checked before it is read.
+#include <algorithm>
 #include <cstring>
+#include <random>
 
+#include "benchmarks/plan/suite.h"
 #include "benchmarks/run/execute.h"
 #include "benchmarks/run/run_plan.h"
 #include "tests/benchmarks/builtin.h"
@@ -79,6 +82,118 @@ TEST_F(Isolation, OtherCellsAreUntouchedByTheirNeighbours) {
   options.force = true;
   EXPECT_EQ(run_all(catalog, all, store, options).run, 5);
   EXPECT_EQ(without_timings(to_json(record_of(sound))), alone);
+}
+
+// --- Cells of one problem share a process, as if each had one of its own.
+
+class SharedProcess : public HostileCells {
+ protected:
+  SharedProcess() { options.limits.hard_seconds = 30; }
+  // Without timings, in order.
+  std::vector<Json> results_of(const std::vector<Request>& requests) {
+    ran = run_all(catalog, requests, store, options);
+    std::vector<Json> results;
+    for (const Request& request : requests)
+      results.push_back(without_timings(to_json(record_of(request))));
+    return results;
+  }
+  // Of fresh processes.
+  std::vector<Json> isolated(const std::vector<Request>& requests) {
+    TemporaryFolder other;
+    Store apart(other.path());
+    RunOptions alone = options;
+    alone.isolates_cells = true;
+    run_all(catalog, requests, apart, alone);
+    std::vector<Json> results;
+    for (const Request& request : requests)
+      results.push_back(without_timings(to_json(apart.find(request).value())));
+    return results;
+  }
+  std::vector<Request> remembering() const {
+    return {hostile("remember", 0), hostile("remember", 1), hostile("remember", 2)};
+  }
+};
+
+TEST_F(SharedProcess, RunsTheCellsOfAProblemUnlessTheyAreIsolated) {
+  const std::vector<Request> requests = remembering();
+  const std::vector<Json> fresh = isolated(requests), shared = results_of(requests);
+  EXPECT_EQ(shared[0], fresh[0]);
+  EXPECT_NE(shared[1], fresh[1]) << "its process remembers the first";
+  EXPECT_TRUE(ran.conflicts.empty());
+}
+
+TEST_F(SharedProcess, AfterAFaultAllThatItFinishedRunsAgainInFreshOnes) {
+  for (const char* fault : {"segfault", "exit", "spin", "hoard"}) {
+    options.limits.hard_seconds = fault == std::string("hoard") ? 30 : 0.5;
+    options.force = true;
+    std::vector<Request> requests = remembering();
+    requests.push_back(hostile(fault));
+    requests.push_back(hostile("none"));
+    const std::vector<Json> fresh = isolated(requests);
+    EXPECT_EQ(results_of(requests), fresh) << fault;
+    EXPECT_EQ(ran.run, 5) << "each counts once";
+    EXPECT_EQ(ran.conflicts, (std::vector{title_of(requests[1]), title_of(requests[2])}))
+        << "the first results differed";
+    EXPECT_EQ(ran.failures.size(), 1U) << fault;
+    EXPECT_EQ(ran.statuses[Status::budget], 4) << fault;
+  }
+}
+
+TEST_F(SharedProcess, CountsWhatARecordSaysOfItFromTheBeginningOfEachCell) {
+  options.limits.hard_seconds = 0.5;
+  options.keeps_output = true;
+  const std::vector<Request> requests = {hostile("chatter"), hostile("swell"),   hostile("toil", 0),
+                                         hostile("toil", 1), hostile("toil", 2), hostile("none")};
+  results_of(requests);
+  EXPECT_EQ(ran.statuses[Status::budget], 6) << "three of 0.3 s each have a limit of 0.5 s";
+  constexpr std::int64_t kNearly = 60 << 20;
+  const auto peak = [&](int i) { return record_of(requests[i]).summary.peak_memory_bytes; };
+  EXPECT_GT(peak(1), peak(5) + kNearly);
+  EXPECT_LT(peak(5), peak(0) + kNearly);
+  EXPECT_FALSE(record_of(requests[0]).output.empty());
+  EXPECT_EQ(record_of(requests[5]).output, "");
+}
+
+TEST_F(SharedProcess, EndsWithWhatACellLeavesRunning) {
+  const std::vector<Request> requests = {hostile("remember", 0), hostile("daemon"),
+                                         hostile("remember", 1)};
+  const std::vector<Json> shared = results_of(requests);
+  EXPECT_FALSE(lives(told()));
+  EXPECT_EQ(shared, isolated(requests)) << "the third cell has a new one";
+}
+
+TEST_F(SharedProcess, HasRecordsOnDiskWhileItsNextCellRuns) {
+  options.limits = {.hard_seconds = 600, .idle_seconds = 600};
+  const std::vector<Request> requests = {hostile("none"), hostile("linger"), hostile("sleep")};
+  const pid_t runner = run_apart(requests);
+  wait_until([&] { return store.has(requests[0]) && store.has(requests[1]); });
+  kill(runner, SIGKILL);
+  status_of(runner);
+  EXPECT_EQ(record_of(requests[1]).status, Status::budget);
+}
+
+// A cell that kept something for the next one would give it another result here. The whole suite
+// takes minutes: this is a sample of it.
+TEST_F(SharedProcess, GivesTheRecordsOfFreshOnesInAnyOrder) {
+  constexpr std::uint64_t kSeed = 53;
+  constexpr std::size_t kShare = 8;
+  const bool is_whole = std::getenv("ISOLINE_LONG_TESTS") != nullptr;
+  Suite suite = read_suite("quick");
+  for (MatrixBlock& block : suite.blocks) {
+    if (is_whole) break;
+    block.seeds = {0};
+    block.budget.iterations = std::min<std::int64_t>(block.budget.iterations, 3);
+    block.budget.work = std::min<std::int64_t>(block.budget.work, 300);
+  }
+  std::vector<Request> requests = expand(catalog, suite, Rates::builtin());
+  std::erase_if(requests, [](const Request& request) { return request.problem.is_learned; });
+  std::ranges::shuffle(requests, std::mt19937_64(kSeed));
+  if (!is_whole) requests.resize(requests.size() / kShare);
+  options = {.jobs = one_a_core()};
+  const std::vector<Json> fresh = isolated(requests), shared = results_of(requests);
+  EXPECT_TRUE(ran.conflicts.empty());
+  for (std::size_t i = 0; i < requests.size(); ++i)
+    EXPECT_EQ(shared[i], fresh[i]) << title_of(requests[i]);
 }
 
 // --- The output of a cell: captured, bounded, kept on request.
