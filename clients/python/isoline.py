@@ -5,7 +5,7 @@ script that imports this module:
 
     isoline run --problem 'process[command="python3 mine.py"]'
 
-Both exchange frames over a private socket, so the script may print anything. docs/wire-format.md
+Both exchange frames over a private socket, so the script may print anything. docs/serving-problems.md
 describes the frames; docs/bring-a-simulator.md and docs/bring-an-optimizer.md have examples.
 """
 

@@ -1,6 +1,6 @@
 // The frames between this program and another on a socket: a header of 16 bytes, then as many bytes
 // as it states. All numbers are little-endian; a payload is doubles or UTF-8 text.
-// docs/wire-format.md has it to the byte.
+// docs/serving-problems.md has it to the byte.
 #pragma once
 
 #include <bit>

@@ -146,7 +146,7 @@ class Questions(WithTree):
         program = tree.path / 'build' / 'release' / 'isoline'
         os.utime(newer, (program.stat().st_mtime + 5,) * 2)
         result = tree.run('describe')
-        self.assertEqual(result.stdout, 'program list\n')
+        self.assertEqual(result.stdout, 'program describe\n')
         self.assertIn('problems/mine.cpp is newer', result.stderr)
         self.assertEqual(tree.run('completion', 'bash').stderr, '')
 
