@@ -360,7 +360,7 @@ void Worker::run(const std::function<void(Trace&)>& work) {
   std::fflush(stdout);
 }
 
-// What a record says of a process counts from the beginning of each work.
+// A record's facts about its process count from the beginning of each work.
 void Worker::serve(const std::function<void(const Request&, Trace&)>& work, int channel) {
   constexpr std::int64_t kLarge = 16 << 20;  // bytes of memory that are given back
   prctl(PR_SET_CHILD_SUBREAPER, 1);

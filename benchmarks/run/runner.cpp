@@ -223,7 +223,7 @@ class Runner {
     bool is_shared = false;        // its process has run others, or may
     bool is_being_judged = false;  // the cell itself has ended
   };
-  // What the process of a worker is kept ready for.
+  // The cells that the process of a worker is kept ready for, and those that it has finished.
   struct Kept {
     std::string problem;
     int threads = 1;
