@@ -80,6 +80,9 @@ class Tree:
         self.bin = folder / 'bin'
         self.bin.mkdir()
         shutil.copy(LAUNCHER, self.path / 'isoline')
+        for name in ('debian/control', 'tests/kernels.sh'):
+            (self.path / name).parent.mkdir()
+            shutil.copy(ROOT / name, self.path / name)
         for name in tools:
             write_program(self.bin / name, TOOLS[name])
         self.environment = {**os.environ, 'PATH': f'{self.bin}:{os.environ["PATH"]}',
@@ -164,7 +167,7 @@ class Container(unittest.TestCase):
         self.assertEqual([commands[0], commands[-1]], [plan, pack])
         [tools] = re.findall(r'install -y --no-install-recommends (.*)', commands[1])
         for tool in tools.split():
-            self.assertIn(f'"{tool}:', LAUNCHER.read_text('utf-8'))
+            self.assertIn(f'\n {tool}', (root / 'debian/control').read_text('utf-8'))
         self.assertEqual(pack.split()[-1], 'build')
         self.assertIn(f'COPY --from=build /isoline/{install.split("./")[-1]} /tmp/', run)
         self.assertRegex(run, r'RUN apt-get update && apt-get install .* /tmp/isoline_\*\.deb ')
