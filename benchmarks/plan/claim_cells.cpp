@@ -38,7 +38,7 @@ std::vector<Request> expanded(const Expansion& from, Json block) {
     own["budget"] = budget;
   }
   std::erase_if(matrix.get_ref<Json::array_t&>(), [&](Json& part) {
-    for (const char* own : {"long", "deviation", "budgets"}) part.erase(own);
+    for (const char* own : {"long", "deviation", "stands_in", "budgets"}) part.erase(own);
     return part["optimizers"].empty();
   });
   const Json suite{{"schema", "isoline.suite/1"}, {"name", "claims"}, {"matrix", matrix}};

@@ -110,7 +110,7 @@ std::string papers_page(const std::vector<reports::Judgement>& judgements) {
 // Published records are the same for all: only the reader's own runs can fail.
 int exit_code_of(const std::vector<reports::Judgement>& judgements) {
   const auto has_failed = [](const reports::Judgement& one) {
-    return one.verdict == reports::Verdict::not_reproduced && one.reached.empty();
+    return one.verdict == reports::Verdict::differs && one.reached.empty();
   };
   if (std::ranges::any_of(judgements, has_failed)) return kWorse;
   const bool is_any_decided =

@@ -20,6 +20,7 @@ using Works = std::vector<std::int64_t>;
 
 // Sums and products in another order; a target is compared with the same formula that set it.
 constexpr Real kRounding = 1e-12;
+constexpr Real kSquares = 1e-6;  // sums of squares in another order, in single precision, too
 // For a loss below its declared minimum by single precision, as a share of its scale.
 constexpr Real kBelowMinimum = 1e-6;
 
@@ -56,6 +57,7 @@ class Invariants {
     check_losses();
     if (record.hits && record.minimum && record.scale) check_hits(*record.hits);
     if (!broke_off) check_verdicts();
+    if (!broke_off) check_answer();
   }
 
   std::vector<std::string> broken() && { return std::move(broken_); }
@@ -228,6 +230,37 @@ class Invariants {
     const Real of_loss = record_.aim == Aim::x ? tau * tau : tau;
     hold(is_in_x || (record_.minimum && summary_.best_loss <= goal_at(of_loss) + slack()),
          "its status is target, but its best loss, {}, is above the target", summary_.best_loss);
+  }
+
+  // The answer is where the run returned: the last of its path, and what its uncertainty is of. Its
+  // residual norm gives a mean of squares over samples as the loss, with ½ or without, and the
+  // variance where the noise is not given.
+  void check_answer() {
+    if (!record_.answer || record_.request.problem.is_learned) return;
+    const std::span<const Real> x = record_.answer->point(kReturned);
+    const auto is_returned = [&](const std::vector<Real>& other) {
+      return x.empty() || other.size() != x.size() ||
+             std::equal(x.begin(), x.end(), other.begin(), are_same);
+    };
+    if (record_.trajectory && !record_.trajectory->x.empty())
+      hold(is_returned(record_.trajectory->x.back()),
+           "its answer is not the last point of its trajectory");
+    if (record_.uncertainty)
+      hold(is_returned(record_.uncertainty->x), "its uncertainty is of another x than its answer");
+    if (!record_.answer->residual_norm) return;
+    const Real squared = std::pow(*record_.answer->residual_norm, 2), loss = summary_.loss;
+    const OptionValues& options = record_.request.problem.options;
+    const bool is_told = options.find("loss") == nullptr && options.number("tikhonov", 0) == 0;
+    const auto is_below = [&](Real least) {
+      return squared < least * (1 - kSquares) - kRounding * slack();
+    };
+    if (is_told && std::isfinite(squared) && std::isfinite(loss))
+      hold(!is_below(loss), "the norm of its residual is {}, which its loss, {}, contradicts",
+           *record_.answer->residual_norm, loss);
+    if (!is_told || !record_.uncertainty || record_.noise_level || is_below(2 * loss)) return;
+    const Real sum = record_.uncertainty->variance * Real(record_.uncertainty->degrees_of_freedom);
+    hold(std::abs(squared - sum) <= kSquares * (squared + sum) + kRounding * slack(),
+         "its variance times its degrees of freedom is not the square of its residual");
   }
 
   // The first point within the noise is the last.

@@ -118,9 +118,13 @@ void add_digests(ComparedCell& cell, const Record& record) {
       json.erase(name);
     }
   cell.trace = digest(json_text(path));
+  cell.rest = digest(json_text(json));
+  json["rates"] = record.request.rates;
+  if (record.answer) json["answer"] = to_json(record).at("answer");
+  if (record.failures) json["failures"] = to_json(record).at("failures");
+  if (record.fields) json["snapshots"] = record.fields->digest;
   for (const auto& [name, value] : json.items())
     cell.members.emplace_back(*shared_value(name, name), fnv1a(json_text(value)));
-  cell.rest = digest(json_text(json));
 }
 
 ComparedCell cell_of(const Record& record) {
@@ -157,6 +161,23 @@ ComparedCell cell_of(const Record& record) {
   return cell;
 }
 
+// Why the files of numbers beside a record are not its own; empty where they are.
+std::string damaged_numbers(const Record& record, const std::string& file) {
+  try {
+    if (record.fields) {
+      FieldFrames frames = *record.fields;
+      read_field_numbers(frames, field_path(file));
+    }
+    if (record.answer) {
+      AnswerPoints answer = *record.answer;
+      read_answer_numbers(answer, answer_path(file));
+    }
+  } catch (const UsageError& error) {
+    return error.what();
+  }
+  return "";
+}
+
 }  // namespace
 
 std::string figure_name(std::size_t figure) {
@@ -188,6 +209,8 @@ FolderCells read_cells(const std::string& folder, const Listener& listener) {
     try {
       const Record record = read_unchecked_record(files[i]);
       cells[i] = cell_of(record);
+      cells[i].file = files[i];
+      if (cells[i].doubt.empty()) cells[i].doubt = damaged_numbers(record, files[i]);
       marks[i] = mark_of(record);
     } catch (const std::exception&) {
       marks[i].cell.clear();

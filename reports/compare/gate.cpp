@@ -225,6 +225,10 @@ Difference silent_difference(const ComparedCell& a, const ComparedCell& b) {
   return difference;
 }
 
+bool has_other_members(const ComparedCell& a, const ComparedCell& b) {
+  return !a.members.empty() && !b.members.empty() && a.members != b.members;
+}
+
 CauseGroup& group_of(std::vector<CauseGroup>& groups, const std::string& cause) {
   const auto at = std::ranges::find(groups, cause, &CauseGroup::cause);
   if (at != groups.end()) return *at;
@@ -246,7 +250,11 @@ class Gate {
   GateResult run(const std::vector<ComparedCell>& before, const std::vector<ComparedCell>& after) {
     const Pairs pairs = paired(before, after);
     for (const auto& [a, b] : pairs.both) compare(*a, *b);
-    for (const ComparedCell* cell : pairs.only_after) result_.only_after.push_back(cell->title);
+    for (const ComparedCell* cell : pairs.only_after) {
+      result_.only_after.push_back(cell->title);
+      if (cell->doubt.empty()) continue;
+      result_.incomparable.push_back({cell->title, "NEW contradicts itself: " + cell->doubt});
+    }
     add_lack(pairs.only_before);
     name_what_changed();
     choose_timed();
@@ -301,8 +309,12 @@ class Gate {
             : distance_at_equal_loss(a.figures[kBestLoss], b.figures[kBestLoss], a.scale, a.x, b.x);
     if (apart > 0)
       result_.elsewhere.push_back({a.title, fmt::format("loss equal, x differs by {:.3g}", apart)});
-    if (found.empty() && !options_.tolerance && (a.trace != b.trace || a.rest != b.rest))
-      found.push_back(silent_difference(a, b));
+    if (found.empty() && (a.trace != b.trace || a.rest != b.rest || has_other_members(a, b))) {
+      if (!a.file.empty() && !b.file.empty())
+        found = member_differences(a, b, options_.tolerance, result_.uncompared);
+      else if (!options_.tolerance)
+        found.push_back(silent_difference(a, b));
+    }
     const bool is_coarse = !found.empty() && is_chaotic(a, options_.tolerance);
     if (is_coarse) found = coarse_differences(a, b);
     result_.equal += found.empty() && !is_coarse;
@@ -465,7 +477,11 @@ void conclude(GateResult& result, const GateOptions& options) {
     settle(kBetterOnly, "better, not worse in any cell", {settings, better, faster});
   } else {
     const bool is_equal = result.differences.empty() && settings.empty();
-    settle(kGood, is_equal ? "equal" : "changed, neither better nor worse", {settings});
+    const std::string omitted =
+        result.uncompared.empty()
+            ? ""
+            : "not compared: " + joined({result.uncompared.begin(), result.uncompared.end()});
+    settle(kGood, is_equal ? "equal" : "changed, neither better nor worse", {settings, omitted});
   }
 }
 
@@ -498,6 +514,11 @@ GateResult compare_results(const std::filesystem::path& before, const std::files
       baseline ? FolderCells{.cells = std::move(*baseline)} : read_cells(before, options.listener);
   const FolderCells now = read_cells(after, options.listener);
   GateResult result = Gate(options).run(old.cells, now.cells);
+  if (!baseline && !options.is_common_only)
+    if (const std::string lack = folder_lack(before, after); !lack.empty())
+      result.lack += (result.lack.empty() ? "" : "; ") + lack;
+  if (options.tolerance)
+    for (const char* never : {"memory", "times"}) result.uncompared.insert(never);
   conclude(result, options);
   if (baseline) result.remarks.push_back("Baselines do not store times, so times are not compared");
   for (const auto& [found, path] : {std::pair(&old, before), {&now, after}}) {

@@ -80,6 +80,7 @@ struct ComparedCell {
   std::string processor;
   bool is_cut = false;                 // a clock or a kill ended it
   std::string doubt;                   // why its record cannot be trusted; empty: it can
+  std::string file;                    // of its record; empty: of a baseline
   std::optional<Perturbed> perturbed;  // where a baseline has measured it
 
   bool has(std::size_t figure) const { return !figures.empty() && !std::isnan(figures[figure]); }
@@ -165,6 +166,15 @@ bool is_chaotic(const ComparedCell& cell, const std::optional<Real>& tolerance);
 // not, or that none of them reached and NEW does. What only some reached is no difference.
 Differences coarse_differences(const ComparedCell& before, const ComparedCell& after);
 
+// Every other member of the two records, number by number: within the tolerance times the norm of x*
+// for points, times the largest value of a column for others. Adds the members that a comparison
+// with a tolerance leaves out.
+Differences member_differences(const ComparedCell& before, const ComparedCell& after,
+                               const std::optional<Real>& tolerance,
+                               std::set<std::string>& uncompared);
+// "the plan of NEW lacks 3 of 12 cells; rates.json of NEW is missing"; empty where nothing lacks.
+std::string folder_lack(const std::filesystem::path& before, const std::filesystem::path& after);
+
 // Differences before any value differs: "adam: default of epsilon 1e-8 → 0.01", the harness.
 std::set<std::string> changed_options(const ComparedCell& before, const ComparedCell& after);
 std::vector<std::string> changed_parts(const ComparedCell& before, const ComparedCell& after);
@@ -210,6 +220,7 @@ struct GateResult {
   std::vector<ReasonedCell> allowed;  // only in BASE, or judged otherwise
   std::vector<ReasonedCell> incomparable, elsewhere;  // the second: of equal loss, at another x
   std::vector<std::string> remarks;
+  std::set<std::string> uncompared;  // members that a tolerance leaves out
   std::string verdict;  // one sentence, which names the cause
   ExitCode exit_code = kGood;
 };

@@ -115,9 +115,10 @@ std::string published_html(const Document& document) {
   };
   std::string html =
       fmt::format("<p class=checked>{} <a href=\"#claims\">{}</a>; <a href=\"#figures\">{}</a></p>",
-                  html_text(words("page.published", count(Verdict::reproduced, Verdict::consistent),
-                                  count(Verdict::stronger, Verdict::stronger),
-                                  count(Verdict::partly, Verdict::not_reproduced),
+                  html_text(words("page.published", count(Verdict::reproduced, Verdict::reproduced),
+                                  count(Verdict::agrees, Verdict::agrees),
+                                  count(Verdict::differs, Verdict::differs),
+                                  count(Verdict::partly, Verdict::one_run),
                                   count(Verdict::too_short, Verdict::not_comparable))),
                   html_text(words("page.each-claim")), html_text(words("page.all-figures")));
   const Judgement* best = nullptr;

@@ -157,7 +157,7 @@ std::string over_seeds(const Judgement& judgement) {
 }
 
 std::string_view mark_of(Verdict verdict) {
-  constexpr std::array<std::string_view, kVerdictNames.size()> kMarks = {"✓", "✓", "∼", "≈", "≁",
+  constexpr std::array<std::string_view, kVerdictNames.size()> kMarks = {"✓", "∼", "≈", "≁", "·",
                                                                          "✗", "…", "·", "·"};
   return kMarks[static_cast<std::size_t>(verdict)];
 }
@@ -197,6 +197,10 @@ std::vector<Reading> claim_notes(const Judgement& judgement) {
       measured && measured->predicted && judgement.is_of_one_run)
     notes.push_back({"One published run",
                      words("claim.one-run", measured->predicted->low, measured->predicted->high)});
+  if (const auto& direction = judgement.direction)
+    notes.push_back(
+        {"Direction", words("claim.direction", direction->with, direction->seeds, direction->p)});
+  if (!judgement.break_even.empty()) notes.push_back({"Break-even", judgement.break_even});
   if (!judgement.reading.empty()) notes.push_back({"Published figure", judgement.reading});
   if (!judgement.why.empty()) notes.push_back({"Reason", judgement.why + "."});
   if (!judgement.survives.empty())
@@ -212,6 +216,7 @@ std::vector<Reading> claim_notes(const Judgement& judgement) {
 std::string verdict_text(const Judgement& judgement) {
   if (judgement.is_verification && judgement.verdict == Verdict::reproduced) return "verified";
   if (judgement.is_verification && is_decided(judgement.verdict)) return "not verified";
+  if (judgement.verdict == Verdict::one_run) return words("claim.no-spread");
   std::string text(name_of(judgement.verdict));
   if (is_decided(judgement.verdict)) text += fmt::format(", n = {}", judgement.measured->n);
   return text;

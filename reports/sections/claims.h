@@ -75,9 +75,13 @@ Chosen chosen_of(const Term& term);  // over all seeds
 
 struct Measurement {
   Real value = 0;
-  Real low = 0, high = 0;  // 95 % of the bootstrap over seeds, of few their range; nan of one
-  std::size_t n = 0;       // seeds
+  Real low = 0, high = 0;       // 95 % of the bootstrap over seeds, of few their range; nan of one
+  std::size_t n = 0;            // seeds
+  std::vector<Real> each = {};  // of each seed by itself
   std::optional<Interval> predicted = {};  // 95 % of one further run, where logarithms tell
+  // How runs vary by shorter ones, six or more, where there is a single one of the whole length.
+  std::size_t shorter_runs = 0;
+  Real deviation_of_shorter = 0;  // on the scale of the verdict
 };
 // All terms are resampled by the same seeds: a ratio stays between runs of equal start and data.
 Measurement measure(const std::string& kind, const std::vector<Term>& terms,
@@ -85,28 +89,30 @@ Measurement measure(const std::string& kind, const std::vector<Term>& terms,
 
 // From the strongest to the weakest, then those that decide nothing.
 enum class Verdict {
-  stronger,
-  reproduced,
-  consistent,
-  partly,
-  at_odds,  // too few seeds for more
-  not_reproduced,
+  reproduced,  // it agrees, over six or more runs; or it is an identity that holds
+  agrees,
+  partly,     // one of its readings agrees, and another one does not
+  too_noisy,  // to tell a factor of two, or which side of a threshold
+  one_run,    // of a method with randomness: its spread is unknown
+  differs,
   too_short,
   undecidable,  // what a run would need was not published
   not_comparable
 };
 inline constexpr std::array<std::string_view, 9> kVerdictNames = {
-    "stronger than published", "reproduced", "consistent",  "partly",        "at odds",
-    "not reproduced",          "too short",  "undecidable", "not comparable"};
+    "reproduced", "agrees",    "partly",      "too noisy",     "one run",
+    "differs",    "too short", "undecidable", "not comparable"};
 inline std::string_view name_of(Verdict verdict) {
   return kVerdictNames[static_cast<std::size_t>(verdict)];
 }
 inline bool is_decided(Verdict verdict) { return verdict < Verdict::too_short; }
-inline bool is_supported(Verdict verdict) { return verdict <= Verdict::consistent; }
-// Combines two readings of one claim: the weaker verdict, or partly if only one supports the claim.
+inline bool is_supported(Verdict verdict) { return verdict <= Verdict::agrees; }
+// Combines two readings of one claim: the weaker verdict, or partly if only one supports the claim
+// and the other contradicts it.
 inline Verdict joint_verdict(Verdict one, Verdict other) {
-  if (is_supported(one) != is_supported(other)) return Verdict::partly;
-  return std::max(one, other);
+  const auto [stronger, weaker] = std::minmax(one, other);
+  if (is_supported(stronger) && weaker == Verdict::differs) return Verdict::partly;
+  return weaker;
 }
 
 // The published value with its error: the values that agree with it. A tie does not agree with a
@@ -122,14 +128,23 @@ struct Agreement {
 };
 Agreement agreement_of(const nlohmann::json& claim);  // or of a contrast
 
-// For a claim, or for its contrast. Reproduced: the interval over seeds lies within the band; where
-// the published figure is of one run, the band reaches into what one further run of ours would
-// give, the interval is on the published side of a tie, and the value is of the published order.
-// Consistent: it reaches into the band, and the value is on that side. Stronger: the whole interval
-// is beyond the band where the claim says that further is better. Partly: the whole interval is on
-// the published side, and the value between a third and three times the published effect (in
-// logarithms, of a ratio). Of fewer than six runs that were drawn it is consistent or at odds.
+// The one rule, for a claim or for its contrast. Of a published value, on the scale on which runs
+// are normal (logarithms of what is positive): with d the distance of the mean of n runs from it,
+// e = t₍n−1₎ s √(1 + 1/n) the error of one further run, and w the half-width of the stated error,
+// at least ln 1.1, it differs if |d| > √(e² + w²); otherwise the runs are too noisy if e > ln 2,
+// and agree if not. Of a threshold by a one-sided t interval of the mean; of an order, or where
+// runs failed, by the share of seeds that bear it out, which must be above ½. Runs without
+// randomness are exact: e = 0.
 Verdict verdict_of(const Measurement& measured, const nlohmann::json& claim, bool is_drawn);
+// How runs vary, on that scale; nothing of fewer than two or where some have no finite value there.
+std::optional<Real> deviation_of_runs(const Measurement& measured, const nlohmann::json& claim);
+
+// How many seeds lie on the published side of a tie, and the two-sided p of that by signs.
+struct Direction {
+  std::size_t with = 0, seeds = 0;
+  Real p = 1;
+};
+std::optional<Direction> direction_of(const Measurement& measured, const nlohmann::json& claim);
 
 // Whether terms of one problem are of several optimizers, in the claim or in its contrasts.
 bool has_rivals(const nlohmann::json& claim);
@@ -204,6 +219,8 @@ struct Judgement {
   std::string deviation;  // of the cells from the source, a sentence
   std::string reached;    // the share of its iterations and seeds that published records have
   std::optional<Measurement> measured;
+  std::optional<Direction> direction;
+  std::string break_even;  // of a comparison by the clock: what a step may cost
   std::optional<Agreement> band;
   Evidence evidence;          // none where nothing decides it
   std::vector<CellSet> sets;  // the longest first

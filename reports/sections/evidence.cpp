@@ -393,12 +393,95 @@ void name_survived_nulls(Judgement& out, Measured from) {
 
 // The length that the claim speaks of.
 std::int64_t needed_iterations(const Json& claim) {
-  if (claim.contains("length")) return claim["length"].at("iterations").get<std::int64_t>();
+  if (claim.contains("length") && claim["length"].contains("iterations"))
+    return claim["length"]["iterations"].get<std::int64_t>();
   const Json& quantity = claim.at("quantity");
   std::int64_t needed = quantity.value("iteration", std::int64_t{0});
   for (const Json& term : quantity.at("terms"))
     needed = std::max(needed, term.value("iteration", std::int64_t{0}));
   return needed;
+}
+
+// How the runs of a shorter set vary, where this one has a single run of each term.
+void borrow_spread(Judgement& out, const Measured& from) {
+  if (out.measured->n != 1) return;
+  for (const Json& set : from.claim.at("cells")) {
+    if (!set.contains("seeds") || set.at("iterations") >= from.iterations() ||
+        set.at("terms").at(0).at(0).at("cells").size() < kFewestForInterval ||
+        !missing_cells(set, from.runs).empty())
+      continue;
+    Judgement shorter = out;
+    take(shorter, {from.claim, set, from.runs});
+    const auto lend = [](Measurement& to, const Measurement& of, const Json& claim) {
+      const std::optional<Real> deviation = deviation_of_runs(of, claim);
+      if (!deviation) return;
+      to.shorter_runs = of.each.size();
+      to.deviation_of_shorter = *deviation;
+    };
+    lend(*out.measured, *shorter.measured, from.claim);
+    for (std::size_t i = 0; i < out.contrasts.size(); ++i)
+      lend(*out.contrasts[i].measured, *shorter.contrasts[i].measured,
+           from.claim.at("contrasts").at(i));
+    if (out.measured->shorter_runs > 0)
+      out.caveats.insert(
+          out.caveats.begin(),
+          words("claim.shorter-runs", out.measured->shorter_runs,
+                set.at("iterations").get<std::int64_t>(), out.measured->shorter_runs - 1));
+    return;
+  }
+}
+
+// Of a comparison by the clock: the first method has the loss of the second's end after so many
+// more of its iterations, so the second is the quicker one where its step costs less than that.
+// This does not depend on the speed of an implementation.
+std::string break_even_text(const Judgement& judged, const Measured& from) {
+  const Json& quantity = from.claim.at("quantity");
+  if (quantity.value("clock", "") != "seconds" || quantity.at("kind") != "ratio") return "";
+  const auto& terms = judged.evidence.terms;
+  std::vector<Real> ratios;
+  bool is_reached = true;
+  for (std::size_t seed = 0; seed < terms.at(0).runs.size(); ++seed) {
+    const auto found = from.runs.find(terms[0].runs[seed].cell),
+               other = from.runs.find(terms.at(1).runs.at(seed).cell);
+    if (found == from.runs.end() || other == from.runs.end()) return "";  // published ones
+    const Record &first = *found->second, &second = *other->second;
+    const auto steps = static_cast<Real>(second.summary.iterations);
+    const Real end = figure_of(second, {.column = quantity.at("column")});
+    Real needed = static_cast<Real>(first.summary.iterations);
+    bool is_there = false;
+    for (const std::int64_t iteration : first.curve.iteration) {
+      const Place place{.column = quantity.at("column"), .iteration = iteration};
+      is_there = figure_of(first, place) <= end;
+      if (!is_there) continue;
+      needed = static_cast<Real>(iteration);
+      break;
+    }
+    is_reached = is_reached && is_there;
+    if (steps > 0) ratios.push_back(needed / steps);
+  }
+  if (ratios.empty()) return "";
+  return words(is_reached ? "claim.break-even" : "claim.break-even-at-least", terms[1].method,
+               terms[0].method, median_of(std::move(ratios)));
+}
+
+// Why runs are too short to decide a claim; empty where they are not. `length` may state what was
+// published beyond the place that is read: below a tenth of it nothing is decided.
+std::string shortness_text(const Judgement& judged, const Measured& from) {
+  constexpr std::int64_t kTenth = 10;
+  if (from.iterations() < judged.needs)
+    return fmt::format("{} of the {} required iterations", from.iterations(), judged.needs);
+  if (from.set.contains("stands_in")) return from.set["stands_in"];
+  const Json length = from.claim.value("length", Json::object());
+  const std::int64_t published = length.value("published", std::int64_t{0});
+  if (kTenth * from.iterations() < published)
+    return words("claim.tenth-of-iterations", from.iterations(), published);
+  const Real seconds = length.value("published_seconds", 0.0);
+  Real longest = 0;
+  for (const std::string& cell : judged.cells)
+    longest = std::max(longest, from.runs.at(cell)->summary.processor_seconds);
+  return static_cast<Real>(kTenth) * longest < seconds
+             ? words("claim.tenth-of-seconds", longest, seconds)
+             : "";
 }
 
 void measure_in(Judgement& out, const Measured& from) {
@@ -416,13 +499,15 @@ void measure_in(Judgement& out, const Measured& from) {
   for (std::size_t i = 0; i < out.contrasts.size(); ++i)
     out.contrasts[i].evidence = evidence_of(
         claim.at("contrasts").at(i), set.at("contrast_terms").at(i), from.runs, from.iterations());
+  out.direction = direction_of(*out.measured, claim);
+  out.break_even = break_even_text(out, from);
   if (!out.why.empty()) return;
-  if (from.iterations() < out.needs) {
+  if (out.why = shortness_text(out, from); !out.why.empty()) {
     out.verdict = Verdict::too_short;
-    out.why = fmt::format("{} of the {} required iterations", from.iterations(), out.needs);
   } else if (!is_known) {
     out.why = "the runs do not have this value";
   } else {
+    if (out.is_drawn) borrow_spread(out, from);
     out.verdict = weakest_verdict(out, claim);
     if (is_supported(out.verdict)) name_survived_nulls(out, from);
     read_otherwise(out, from);

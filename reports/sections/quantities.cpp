@@ -105,15 +105,26 @@ Real path_figure(const Record& record, const Place& place) {
 }
 
 // How many times slower the logarithm of the error in x falls over the last third of the iterations
-// up to the place than over the first; 1 of an exponential, infinite where it falls no more.
+// up to the place than over the first; 1 of an exponential, infinite where it falls no more. Ends
+// are means of the logarithm over a sixth of the iterations: single points vary more than they
+// fall.
 Real slowdown(const Curve& curve, std::size_t index) {
   const std::int64_t all = curve.iteration[index];
-  const auto fall = [&](std::int64_t from, std::int64_t to) {
-    const std::size_t i = point_at(curve.iteration, from), j = point_at(curve.iteration, to);
-    const auto steps = static_cast<Real>(curve.iteration[j] - curve.iteration[i]);
-    return std::log(curve.x_error.at(i) / curve.x_error.at(j)) / steps;
+  constexpr std::int64_t kSixths = 6;
+  const auto level = [&](std::int64_t sixth) {
+    Real sum = 0, weight = 0;
+    const std::int64_t from = all * sixth / kSixths, to = all * (sixth + 1) / kSixths;
+    for (std::size_t i = 0; i + 1 < curve.iteration.size() && i < index; ++i) {
+      const std::int64_t begin = std::max(curve.iteration[i], from),
+                         end = std::min(curve.iteration[i + 1], to);
+      if (end <= begin) continue;
+      const auto steps = static_cast<Real>(end - begin);
+      sum += steps * (std::log(curve.x_error.at(i)) + std::log(curve.x_error.at(i + 1))) / 2;
+      weight += steps;
+    }
+    return sum / weight;
   };
-  const Real first = fall(0, all / 3), last = fall(2 * all / 3, all);
+  const Real first = level(0) - level(1), last = level(kSixths - 2) - level(kSixths - 1);
   if (!(first > 0)) return kUnknown;
   return last > 0 ? first / last : kNever;
 }
@@ -377,9 +388,9 @@ Measurement measure(const std::string& kind, const std::vector<Term>& terms,
   Measurement out{.low = kUnknown, .high = kUnknown, .n = terms.at(0).figures.at(0).size()};
   const Places seeds = all_seeds(terms[0]);
   out.value = quantity_over(kind, terms, seeds);
-  std::vector<Real> values;  // the quantity of each seed by itself
-  for (const std::size_t seed : seeds) values.push_back(quantity_over(kind, terms, {seed}));
-  std::erase_if(values, [](Real value) { return std::isnan(value); });
+  for (const std::size_t seed : seeds) out.each.push_back(quantity_over(kind, terms, {seed}));
+  std::erase_if(out.each, [](Real value) { return std::isnan(value); });
+  std::vector<Real> values = out.each;
   if (out.n < 2 || values.empty()) return out;
   if (kind == "value" || kind == "ratio" || kind == "greatest")
     out.predicted = prediction_of(values);
@@ -448,38 +459,144 @@ int side_of(const Json& claim) {
   return value == *neutral ? 0 : value > *neutral ? 1 : -1;
 }
 
-// The effect of a value as a share of what was published, in what adds up: logarithms of ratios.
-bool is_of_its_order(Real value, const Json& claim) {
-  constexpr Real kFewestThirds = 1.0 / 3, kMostThirds = 3;
+bool is_threshold(const Json& claim) {
   const Json& published = claim.at("published");
-  const bool is_ratio = claim.at("quantity").at("kind") == "ratio";
-  const auto effect = [=](Real of) { return is_ratio ? std::log(of) : of; };
-  const Real share = effect(value) / effect(published_value(published));
-  return share >= kFewestThirds && (!published.contains("value") || share <= kMostThirds);
+  return published.contains("at_least") || published.contains("at_most");
 }
 
-Verdict verdict_on_all(const Measurement& measured, const Json& claim) {
-  const bool is_point = std::isnan(measured.low);
-  const Real low = is_point ? measured.value : measured.low;
-  const Real high = is_point ? measured.value : measured.high;
+// Of the kinds that are counted, seed by seed.
+bool is_counted(const std::string& kind) {
+  return kind == "position" || kind == "order" || kind == "trend";
+}
+
+// The scale on which runs are normal: logarithms, or of a slope the change of the logarithm over
+// its abscissas, so that ln 2 is a factor of two on either; all else as it is.
+struct Scale {
+  bool is_log = false;
+  Real factor = 0;  // of slopes; 0: neither
+
+  Real operator()(Real value) const {
+    return is_log ? std::log(value) : factor > 0 ? factor * value : value;
+  }
+  bool tells_factors() const { return is_log || factor > 0; }
+};
+Scale scale_of(const std::vector<Real>& each, const Json& claim) {
+  const std::string kind = claim.at("quantity").at("kind");
+  if (kind.ends_with("slope")) {
+    Real least = kNever, most = 0;
+    for (const Json& term : claim["quantity"].at("terms")) {
+      least = std::min(least, term.value("at", 1.0));
+      most = std::max(most, term.value("at", 1.0));
+    }
+    return {.factor = most > least ? std::log(most / least) : 0};
+  }
+  const bool is_positive = std::ranges::all_of(each, [](Real value) { return value > 0; });
+  return {.is_log = kind != "mean_difference" && kind != "share" && !is_counted(kind) &&
+                    is_positive && published_value(claim.at("published")) > 0};
+}
+
+// The values on their scale; nothing where one is not finite there.
+std::optional<std::vector<Real>> scaled_values(const Measurement& measured, const Scale& scale) {
+  std::vector<Real> values;
+  for (const Real value : measured.each.empty() ? std::vector{measured.value} : measured.each) {
+    values.push_back(scale(value));
+    if (!std::isfinite(values.back())) return std::nullopt;
+  }
+  return values;
+}
+
+// P(X ≥ k) of n trials that each succeed with the probability q.
+Real binomial_tail(std::size_t k, std::size_t n, Real q) {
+  Real sum = 0;
+  for (std::size_t i = k; i <= n; ++i)
+    sum += std::exp(std::lgamma(Real(n) + 1) - std::lgamma(Real(i) + 1) -
+                    std::lgamma(Real(n - i) + 1)) *
+           std::pow(q, Real(i)) * std::pow(1 - q, Real(n - i));
+  return sum;
+}
+
+// Whether the share of successes lies above q, by its exact one-sided bound, or below it.
+constexpr Real kOneSided = 0.05;
+Verdict verdict_on_share(std::size_t successes, std::size_t n, Real q) {
+  if (binomial_tail(successes, n, q) <= kOneSided) return Verdict::agrees;
+  if (1 - binomial_tail(successes + 1, n, q) <= kOneSided) return Verdict::differs;
+  return Verdict::too_noisy;
+}
+
+Real mean_of(const std::vector<Real>& values) {
+  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<Real>(values.size());
+}
+
+// The spread of the runs: their own, or that of shorter ones.
+struct RunSpread {
+  Real deviation = 0;
+  std::size_t freedom = 0;  // 0: unknown
+};
+RunSpread spread_of_runs(const Measurement& measured, const std::vector<Real>& values) {
+  if (values.size() > 1) return {deviation_of(values), values.size() - 1};
+  if (measured.shorter_runs > 1) return {measured.deviation_of_shorter, measured.shorter_runs - 1};
+  return {};
+}
+
+Verdict verdict_on_value(const std::vector<Real>& values, const RunSpread& spread,
+                         const Scale& scale, const Json& claim) {
+  constexpr Real kLeast = 1.1, kFactor = 2, kTwoSided = 0.975;
+  const Real published = published_value(claim.at("published"));
+  const Agreement band = around(published, claim);
+  Real width = (scale(band.high) - scale(std::max(band.low, scale.is_log ? 1e-300 : band.low))) / 2;
+  if (scale.tells_factors()) width = std::max(width, std::log(kLeast));
+  const Real n = static_cast<Real>(values.size());
+  const Real error = spread.freedom == 0 ? 0
+                                         : student_quantile(kTwoSided, spread.freedom) *
+                                               spread.deviation * std::sqrt(1 + 1 / n);
+  if (std::abs(scale(published) - mean_of(values)) > std::hypot(error, width))
+    return Verdict::differs;
+  const Real effect = std::abs(published - neutral_of(claim).value_or(0));
+  const Real most = scale.tells_factors() || effect == 0 ? std::log(kFactor) : effect / kFactor;
+  return error > most ? Verdict::too_noisy : Verdict::agrees;
+}
+
+Verdict verdict_on_threshold(const std::vector<Real>& values, const RunSpread& spread,
+                             const Scale& scale, const Json& claim) {
   const Agreement band = agreement_of(claim);
-  const int side = side_of(claim);
-  const Real neutral = neutral_of(claim).value_or(0);
-  const auto is_on_side = [&](Real value) { return side == 0 || side * (value - neutral) > 0; };
-  const bool is_all_on_side = is_on_side(low) && is_on_side(high);
-  const bool is_of_one_run = claim.at("published").contains("runs") && measured.predicted;
-  const Interval expected = is_of_one_run ? *measured.predicted : Interval{low, high};
-  const bool reaches = expected.high >= band.low && expected.low <= band.high;
-  const bool is_within = is_of_one_run
-                             ? reaches && is_all_on_side && is_of_its_order(measured.value, claim)
-                             : band.holds(low) && band.holds(high);
-  if (is_within) return Verdict::reproduced;
-  if (reaches && is_on_side(measured.value)) return Verdict::consistent;
-  const std::string better = claim.at("published").value("better", "");  // further than the band
-  if (better == "less" ? high < band.low : better == "greater" && low > band.high)
-    return Verdict::stronger;
-  const bool is_partly = side != 0 && is_all_on_side && is_of_its_order(measured.value, claim);
-  return is_partly ? Verdict::partly : Verdict::not_reproduced;
+  const bool is_least = band.low > -kNever;
+  const Real sign = is_least ? 1 : -1, bound = is_least ? band.low : band.high;
+  const bool is_open = is_least ? band.is_low_open : band.is_high_open;
+  const Real half = spread.freedom == 0
+                        ? 0
+                        : student_quantile(1 - kOneSided, spread.freedom) * spread.deviation /
+                              std::sqrt(static_cast<Real>(values.size()));
+  const Real beyond = sign * (mean_of(values) - scale(bound));
+  if (is_open ? beyond - half > 0 : beyond - half >= 0) return Verdict::agrees;
+  return beyond + half < 0 || (is_open && beyond + half <= 0) ? Verdict::differs
+                                                              : Verdict::too_noisy;
+}
+
+Verdict verdict_on_runs(const Measurement& measured, const Json& claim, bool is_drawn) {
+  const std::string kind = claim.at("quantity").at("kind");
+  const Agreement band = agreement_of(claim);
+  const auto by_band = [&] {
+    return band.holds(measured.value) ? Verdict::agrees : Verdict::differs;
+  };
+  const bool is_printed = claim.at("tolerance").contains("absolute");
+  if (!is_drawn && (is_printed || is_threshold(claim) || is_counted(kind))) return by_band();
+  const auto n = std::max<std::size_t>(measured.n, 1);
+  if (is_drawn && n < 2 && measured.shorter_runs == 0) return Verdict::one_run;
+  if (kind == "share")
+    return verdict_on_share(static_cast<std::size_t>(std::llround(measured.value * Real(n))), n,
+                            std::clamp(band.low, 0.0, 1.0));
+  const Scale scale = scale_of(measured.each, claim);
+  const auto values = scaled_values(measured, scale);
+  const bool has_bound =
+      !is_threshold(claim) || std::isfinite(scale(band.low > -kNever ? band.low : band.high));
+  if (is_counted(kind) || !values || !has_bound) {
+    const auto with = std::ranges::count_if(measured.each, [&](Real v) { return band.holds(v); });
+    return is_drawn ? verdict_on_share(static_cast<std::size_t>(with), measured.each.size(), 0.5)
+                    : by_band();
+  }
+  const RunSpread spread = is_drawn ? spread_of_runs(measured, *values) : RunSpread{};
+  return is_threshold(claim) ? verdict_on_threshold(*values, spread, scale, claim)
+                             : verdict_on_value(*values, spread, scale, claim);
 }
 
 }  // namespace
@@ -509,9 +626,30 @@ Agreement agreement_of(const Json& claim) {
 }
 
 Verdict verdict_of(const Measurement& measured, const Json& claim, bool is_drawn) {
-  const Verdict verdict = verdict_on_all(measured, claim);
-  if (!is_drawn || measured.n >= kFewestForInterval) return verdict;
-  return is_supported(verdict) ? Verdict::consistent : Verdict::at_odds;
+  const Verdict verdict = verdict_on_runs(measured, claim, is_drawn);
+  const bool is_enough = !is_drawn || measured.n >= kFewestForInterval;
+  return verdict == Verdict::agrees && is_enough ? Verdict::reproduced : verdict;
+}
+
+std::optional<Real> deviation_of_runs(const Measurement& measured, const Json& claim) {
+  const auto values = scaled_values(measured, scale_of(measured.each, claim));
+  return values && values->size() > 1 ? std::optional(deviation_of(*values)) : std::nullopt;
+}
+
+std::optional<Direction> direction_of(const Measurement& measured, const Json& claim) {
+  const int side = side_of(claim);
+  const auto neutral = neutral_of(claim);
+  if (side == 0 || !neutral || measured.each.size() < 2) return std::nullopt;
+  Direction out;
+  std::size_t against = 0;
+  for (const Real value : measured.each) {
+    out.with += side * (value - *neutral) > 0;
+    against += side * (value - *neutral) < 0;
+  }
+  out.seeds = measured.each.size();
+  if (const std::size_t told = out.with + against; told > 0)
+    out.p = std::min(1.0, 2 * binomial_tail(std::max(out.with, against), told, 0.5));
+  return out;
 }
 
 }  // namespace isoline::reports

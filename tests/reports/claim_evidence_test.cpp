@@ -113,7 +113,7 @@ TEST(Evidence, ARatioIsDrawnWhereTheFirstLineShouldBe) {
     const Real end = plots[0].series[0].y.back();
     const bool is_within = end >= goal.low[0] && end <= goal.high[0];
     EXPECT_EQ(is_within, adam == 0.21);
-    EXPECT_EQ(judgement.verdict <= Verdict::consistent, is_within);
+    EXPECT_EQ(is_supported(judgement.verdict), is_within);
   }
 }
 

@@ -44,6 +44,33 @@ void renew_hits(Record& record) {
   renew_work(record);
 }
 
+// What a record holds beside its figures.
+void add_members(Record& record) {
+  record.request.rates = "physics.json";
+  record.answer = AnswerPoints{.unknowns = 2,
+                               .names = {"stiffness", "damping"},
+                               .units = {"N/m", "kg/s"},
+                               .points = {kReturned},
+                               .x = {{1, 2}},
+                               .residual_norm = 0};
+  record.uncertainty = Uncertainty{.x = {1, 2},
+                                   .standard_deviation = {0.1, 0.2},
+                                   .correlation = {{1, 0.5}, {0.5, 1}},
+                                   .degrees_of_freedom = 4,
+                                   .condition = 10};
+  renew_answer(record);
+  record.failures = Failures{.total = 2, .x = {{3, 4}}, .reasons = {"no root"}};
+  const std::size_t points = record.curve.iteration.size();
+  record.curve.kkt_residual.assign(points, 0.25);
+  record.curve.discrepancy.assign(points, 0.5);
+  record.trajectory = Trajectory{};
+  for (std::size_t i = 0; i < points; ++i) {
+    record.trajectory->x.push_back({1, 2});
+    record.trajectory->y.push_back({3, 4});
+  }
+  record.series["gap"].assign(points, 0.125);
+}
+
 Records sound_records() {
   Records all;
   for (const char* problem : {"square", "rosenbrock", "heat", "burgers"})
@@ -64,6 +91,7 @@ Records sound_records() {
         if (std::string(optimizer) == "newton") record.privileges = {"exact inverse"};
         record.build_parts = {{"platform", "p"}, {"harness", "h"}, {"problem", "q"}};
         record.criterion = digest_of(criterion_of(record));
+        add_members(record);
         renew_work(record);
         renew_verdicts(record);
         all.push_back(std::move(record));
@@ -297,6 +325,75 @@ std::vector<Fault> cell_faults() {
   };
 }
 
+// In members that no figure shows. In the path an exact comparison calls them changes.
+std::vector<Fault> member_faults() {
+  const auto uncertain = [](const auto& edit) {
+    return in_one([edit](Record& r) { edit(*r.uncertainty); });
+  };
+  const std::set<int> caught_or_named = {kGood, kWorse, kNotComparable};
+  return {
+      {"returned x + 50 %", in_one([](Record& r) {
+         r.uncertainty.reset();
+         r.trajectory.reset();
+         r.answer->x[0] = {1.5, 3};
+       }),
+       kCaught, kCaught},
+      {"returned x + 50 % alone", in_one([](Record& r) {
+         r.answer->x[0] = {1.5, 3};
+       }),
+       kCaught, kCaught, true},
+      {"returned x + 0.1 %", in_all([](Record& r) {
+         for (auto* x : {&r.answer->x[0], &r.uncertainty->x, &r.trajectory->x.back()})
+           *x = {1.001, 2.002};
+       }),
+       kBad, kBad},
+      {"residual norm × 0.1", in_one([](Record& r) { *r.answer->residual_norm *= 0.1; }), kCaught,
+       kCaught, true},
+      {"names reversed", in_all([](Record& r) { std::ranges::reverse(r.answer->names); }), kBad,
+       kBad},
+      {"units changed", in_all([](Record& r) { r.answer->units[0] = "lbf/in"; }), kBad, kBad},
+      {"failures removed", in_all([](Record& r) { r.failures.reset(); }), kBad, kBad},
+      {"a failed x changed", in_one([](Record& r) { r.failures->x[0][1] = 5; }), kBad, kBad},
+      {"rates renamed", in_all([](Record& r) { r.request.rates = "other.json"; }), kBad, kBad},
+      {"standard deviations × 0.1", uncertain([](Uncertainty& u) {
+         u.standard_deviation = {0.01, 0.02};
+       }),
+       kBad, kBad},
+      {"variance × 0.01", uncertain([](Uncertainty& u) { u.variance *= 0.01; }), kCaught, kCaught,
+       true},
+      {"degrees of freedom × 100", uncertain([](Uncertainty& u) { u.degrees_of_freedom *= 100; }),
+       kCaught, kCaught, true},
+      {"uncertainty removed", in_one([](Record& r) { r.uncertainty.reset(); }), kBad, kBad},
+      {"uncertainty at another x", uncertain([](Uncertainty& u) {
+         u.x = {5, 6};
+       }),
+       kCaught, kCaught, true},
+      {"noise level", in_one([](Record& r) { r.noise_level = 10; }), kBad, kBad},
+      {"a series × 10", in_one([](Record& r) { r.series["gap"].back() *= 10; }), caught_or_named,
+       kBad},
+      {"discrepancy × 0.1", in_one([](Record& r) {
+         for (Real& each : r.curve.discrepancy) each *= 0.1;
+       }),
+       caught_or_named, kBad},
+      {"KKT residual 0", in_one([](Record& r) { std::ranges::fill(r.curve.kkt_residual, 0); }),
+       caught_or_named, kBad},
+      {"flag of the best-known loss", in_one([](Record& r) { r.is_best_known = true; }), kBad,
+       kBad},
+      {"trajectory", in_one([](Record& r) {
+         r.trajectory->y[3] = {3, 5};
+       }),
+       caught_or_named, kBad},
+      {"success criterion emptied", in_one([](Record& r) { r.criterion.clear(); }), kCaught,
+       kCaught},
+      {"an additional record that is not its request's",
+       [](Records& all) {
+         all.push_back(all[0]);
+         all.back().cell = "0123456789abcdef";
+       },
+       kApart, kApart, true},
+  };
+}
+
 std::vector<Fault> changes_without_harm() {
   return {
       {"target → converged", in_one_that_reached(ends_as(Status::converged)), kFine, kFine},
@@ -407,6 +504,23 @@ TEST_F(Faults, InTimesCountsAndTargetsBreakAnInvariantEach) {
 TEST_F(Faults, InFiguresAreCaught) { expect(figure_faults()); }
 TEST_F(Faults, InTheCriterionOfSuccessAreCaught) { expect(criterion_faults()); }
 TEST_F(Faults, InCellsAreCaught) { expect(cell_faults()); }
+TEST_F(Faults, InMembersThatNoFigureShowsAreCaught) { expect(member_faults()); }
+
+TEST_F(Faults, InThePlanAndTheRatesOfAFolderAreCaught) {
+  const ResultFolder base, copy;
+  write(base, sound_records());
+  write(copy, sound_records());
+  Records half = sound_records();
+  base.add(plan_of(half));
+  half.resize(half.size() / 2);
+  copy.add(plan_of(half));
+  EXPECT_EQ(compare_results(base.path(), copy.path(), {}).exit_code, kWorse);
+  copy.add(plan_of(sound_records()));
+  EXPECT_EQ(compare_results(base.path(), copy.path(), {}).exit_code, kGood);
+  base.add_file("rates.json", "{}");
+  EXPECT_EQ(compare_results(base.path(), copy.path(), {.tolerance = 1e-6}).exit_code, kWorse);
+}
+
 TEST_F(Faults, ThatChangeNoResultAreNone) { expect(changes_without_harm()); }
 
 TEST_F(Faults, AWorseStatusIsWorse) {

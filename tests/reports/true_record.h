@@ -2,6 +2,9 @@
 // loss and its hits follow from its losses, and its verdicts from its last point.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+
 #include "core/records/record.h"
 #include "core/status.h"
 
@@ -20,6 +23,16 @@ inline void renew_verdicts(Record& record) {
   if (!record.criterion.empty()) record.criterion = digest_of(criterion_of(record));
 }
 
+// The norm of its residual and the variance that follow from its last loss, ½‖y − y*‖².
+inline void renew_answer(Record& record) {
+  if (!record.answer || !record.answer->residual_norm) return;
+  const Real squared = 2 * std::max<Real>(record.summary.loss, 0);
+  record.answer->residual_norm = std::sqrt(squared);
+  if (record.uncertainty)
+    record.uncertainty->variance =
+        squared / static_cast<Real>(record.uncertainty->degrees_of_freedom);
+}
+
 // The last loss, with the best of all and the targets that it reaches.
 inline void end_at(Record& record, Real loss) {
   record.summary.loss = record.curve.loss.back() = loss;
@@ -35,6 +48,7 @@ inline void end_at(Record& record, Real loss) {
     }
   }
   if (loss < record.summary.best_loss) record.summary.best_loss = loss;
+  renew_answer(record);
   renew_verdicts(record);
 }
 
