@@ -15,12 +15,16 @@ import json
 import os
 import platform
 import re
+import select
 import shlex
+import shutil
+import signal
 import socket
 import struct
 import subprocess
 import sys
 import tempfile
+import zlib
 
 try:
     import numpy
@@ -376,6 +380,7 @@ class _Differences(_Given):
     """Products by central differences, with their nominal cost in forwards."""
 
     differences = True
+    STEP = 6e-6  # relative: the cube root of rounding
 
     def __init__(self, forward, start):
         super().__init__(forward, True, True, True)
@@ -388,7 +393,7 @@ class _Differences(_Given):
         """Along v, by a step that is relative to the size of each unknown."""
         sizes = [max(abs(a), size) for a, size in zip(point.x, self.sizes)]
         length = max((abs(b) / size for b, size in zip(v, sizes)), default=0) or 1
-        h = 6e-6 / length  # the cube root of rounding
+        h = self.STEP / length
         ahead, behind = ([a + s * h * b for a, b in zip(point.x, v)] for s in (1, -1))
         ahead, behind = (_column(self.forward(self._like(x)), "forward(x)") for x in (ahead, behind))
         return _column([(a - b) / (2 * h) for a, b in zip(ahead, behind)])
@@ -481,8 +486,9 @@ def problem(
         if minimum is not None and not abs(float(minimum)) < float("inf"):
             raise Refused(f"minimum must be a finite number, got {minimum}")
         products = _products_of(forward, start, vjp, jvp, jacobian, differences)
-        if names is None and isinstance(forward, command):
-            names = forward.names
+        if isinstance(forward, command):
+            names = forward.names if names is None else names
+            note = " ".join(filter(None, (note, forward.note(products.differences)))) or None
         names, units = _labels(names, len(start), "names"), _labels(units, len(start), "units")
         if target is None and truth is not None:
             target = _Point(products, _vector(_column(truth, "truth"))).y
@@ -541,19 +547,21 @@ class command:
 
     run: the command, such as "./model in.txt". It runs in a new, empty folder for each call. Words of
         it that name files in the present folder are passed with their full paths.
-    template: a file with "~ name ~" where the value of that unknown goes, as of PEST, whose first line
-        "ptf ~" may be there. `names` are in the order of their first occurrence. Its result is the
-        file `input` in the new folder; by default the name of the template with the suffix .txt.
+    template: a file with "~ name ~" where the value of that unknown goes; with a first line "ptf ~", a
+        template of PEST, whose fields keep their widths and hold as many digits as fit. `names` are in
+        the order of their first occurrence; upper and lower case are the same. Its result is the file
+        `input` in the new folder; by default the name of the template with the suffix .txt.
     read: the name of the file that contains the results, of which all words that are numbers count;
         or a function that gets the new folder and returns numbers. Default: what the program prints.
+    instructions: an instruction file of PEST, by which the results are read instead.
     files: further files of the present folder that the program finds in its own.
-    seconds: after so long, the program is killed.
+    seconds: after so long, the program and all that it started are killed.
 
-    If the program exits with a code other than 0, is killed, or leaves no numbers, the call raises
-    RuntimeError: a failed evaluation.
+    If the program exits with a code other than 0, is killed, reports an error, or leaves no numbers,
+    the call raises RuntimeError: a failed evaluation. What it leaves running is killed.
     """
 
-    def __init__(self, run, template, read=None, input=None, files=(), seconds=None):
+    def __init__(self, run, template, read=None, input=None, files=(), seconds=None, instructions=None):
         self.read, self.seconds = read, seconds
         self.files = [os.path.abspath(each) for each in files]
         self.input = input or os.path.splitext(os.path.basename(template))[0] + ".txt"
@@ -561,21 +569,60 @@ class command:
             os.path.abspath(word) if os.path.isfile(word) and word != self.input else word
             for word in shlex.split(run)
         ]
+        self.instructions = _instructions(instructions) if instructions else None
         with open(template, encoding="utf-8") as file:
             text = file.read()
-        marked = re.match(r"ptf\s+(\S)[^\n]*\n", text)
+        marked = re.match(r"ptf[ \t]+(\S)[^\n]*\n", text, re.IGNORECASE)
+        self.is_pest = marked is not None
         self.mark, self.text = (marked[1], text[marked.end() :]) if marked else ("~", text)
         self.parts = self.text.split(self.mark)
         if len(self.parts) < 3 or len(self.parts) % 2 == 0:
             raise Refused(f"{template} must contain each unknown as {self.mark} name {self.mark}")
-        self.names = list(dict.fromkeys(name.strip() for name in self.parts[1::2]))
+        fields = self.parts[1::2]
+        for i in range(2, len(self.parts) - 1, 2):
+            if not self.is_pest and self.parts[i] == "":
+                raise Refused(
+                    f"{template}: the adjacent fields {self.parts[i - 1].strip()} and "
+                    f"{self.parts[i + 1].strip()} would become one word; put a space between them, or "
+                    f"begin the file with a line 'ptf {self.mark}', which keeps their widths"
+                )
+        for field in fields:
+            if not field.strip() or "\n" in field:
+                raise Refused(f"{template}: a field must be {self.mark} name {self.mark} in one line, got {field!r}")
+        typed = {field.strip().lower(): field.strip() for field in reversed(fields)}
+        self.names = [typed[name] for name in dict.fromkeys(field.strip().lower() for field in fields)]
+        self.digits = min(len(field) + 2 - len("-.e-10") for field in fields) if self.is_pest else 17
+        _remove_abandoned()
+
+    def note(self, is_by_differences):
+        """What its fields do to x; None where they hold all digits."""
+        if self.digits >= 17:
+            return None
+        said = f"The narrowest field of the template holds about {max(self.digits, 1)} digits of x."
+        if is_by_differences and 10.0 ** -(self.digits - 1) > 0.1 * _Differences.STEP:
+            said += f" Central differences step by {_Differences.STEP:g} of x, below what such a field resolves."
+        return said
+
+    def _field(self, name, value):
+        if not self.is_pest:
+            return f"{value:.17g}"
+        width = len(name) + 2 * len(self.mark)
+        for digits in range(17, 0, -1):
+            for text in (f"{value:.{digits}g}", re.sub(r"e([+-])0*(\d)", r"e\1\2", f"{value:.{digits - 1}e}")):
+                text = text.replace("e+", "e")
+                if len(text) > width:
+                    text = text.replace("0.", ".", 1) if text.lstrip("-").startswith("0.") else text
+                if len(text) <= width:
+                    return text.rjust(width)
+        raise RuntimeError(f"the field {name.strip()} has a width of {width} characters, which cannot hold {value:g}")
 
     def __call__(self, x):
-        values = dict(zip(self.names, map(float, x)))
+        values = dict(zip((name.lower() for name in self.names), map(float, x)))
         parts = [
-            f"{values[part.strip()]:.17g}" if i % 2 else part for i, part in enumerate(self.parts)
+            self._field(part, values[part.strip().lower()]) if i % 2 else part
+            for i, part in enumerate(self.parts)
         ]
-        with tempfile.TemporaryDirectory(prefix="isoline-") as folder:
+        with tempfile.TemporaryDirectory(prefix=f"{_folder_prefix()}{os.getpid()}-", ignore_cleanup_errors=True) as folder:
             for path in self.files:
                 os.symlink(path, os.path.join(folder, os.path.basename(path)))
             with open(os.path.join(folder, self.input), "w", encoding="utf-8") as file:
@@ -583,16 +630,23 @@ class command:
             return self._results(folder, self._printed(folder))
 
     def _printed(self, folder):
-        child = subprocess.Popen(
-            self.words, cwd=folder, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
-            stderr=subprocess.PIPE, text=True, errors="replace",
-        )
-        try:
-            printed, complaints = child.communicate(timeout=self.seconds)
-        except subprocess.TimeoutExpired:
-            child.kill()
-            child.communicate()
-            raise RuntimeError(f"the program ran for more than {self.seconds} s") from None
+        """Runs the program in a group of its own, which ends with it: no pipe is waited for."""
+        with tempfile.TemporaryFile() as out, tempfile.TemporaryFile() as err:
+            guard = _guard()
+            begun = lambda: os.write(guard, f"{os.getpid()} {folder}\n".encode())
+            child = subprocess.Popen(
+                self.words, cwd=folder, stdin=subprocess.DEVNULL, stdout=out, stderr=err,
+                start_new_session=True, preexec_fn=begun,
+            )
+            try:
+                is_over = _await(child.pid, self.seconds)
+            finally:  # before it is waited for: no other process can have the number of its group
+                _kill_group(child.pid)
+                child.wait()
+                os.write(guard, b"\n")
+            if not is_over:
+                raise RuntimeError(f"the program ran for more than {self.seconds} s")
+            printed, complaints = (_text_of(file) for file in (out, err))
         if child.returncode != 0:
             last = (complaints.strip() or printed.strip() or "no output").splitlines()[-1]
             raise RuntimeError(f"exit code {child.returncode}: {last}")
@@ -601,21 +655,208 @@ class command:
     def _results(self, folder, printed):
         if callable(self.read):
             return self.read(folder)
+        name = self.read or "the output"
         if self.read is not None:
             path = os.path.join(folder, self.read)
             if not os.path.isfile(path):
                 raise RuntimeError(f"the program did not write {self.read}")
             with open(path, encoding="utf-8", errors="replace") as file:
                 printed = file.read()
-        numbers = []
-        for word in printed.replace(",", " ").split():
-            try:
-                numbers.append(float(word))
-            except ValueError:
-                pass  # a word between the numbers
+        numbers = _read_by(self.instructions, printed, name) if self.instructions else _numbers(printed, name)
         if not numbers:
-            raise RuntimeError(f"{self.read or 'the output'} contains no numbers")
+            raise RuntimeError(f"{name} contains no numbers")
         return numbers
+
+
+# As programs write them; Fortran has the exponents d and q, and none before three digits.
+_NUMBER = re.compile(
+    r"[+-]?(?:(?:\d+\.?\d*|\.\d+)(?:[eEdDqQ][+-]?\d+)?|(?:\d+\.\d*|\.\d+)[+-]\d{3}|nan|inf(?:inity)?)", re.IGNORECASE
+)
+_LIKE_NUMBER = re.compile(r"[+-]?\.?\d[\d_.eEdDqQ+-]*")
+_OVERFLOW = re.compile(r"[+-]?\*{2,25}")
+_ERROR = re.compile(r"\W*(?:(?:FATAL\W+)?ERROR\b|(?i:(?:fatal\W+)?error\s*:(?!\s*[+-]?\.?\d)))")
+
+
+def _number(word, name):
+    """Of a word that is one; RuntimeError otherwise."""
+    if _OVERFLOW.fullmatch(word):
+        raise RuntimeError(f"{name} has an overflow: {word}")
+    if not _NUMBER.fullmatch(word):
+        raise RuntimeError(f"{name} has {word!r} in place of a number")
+    plain = re.sub(r"[dDqQ]", "e", word) if not word.lstrip("+-")[:1].isalpha() else word
+    return float(re.sub(r"(?<=[\d.])([+-]\d{3})$", r"e\1", plain))
+
+
+def _numbers(text, name):
+    numbers = []
+    for line in text.splitlines():
+        if _ERROR.match(line):
+            raise RuntimeError(f"{name} reports an error: {line.strip()[:200]}")
+        words = line.replace(",", " ").split()
+        is_data = all(_NUMBER.fullmatch(word) or _OVERFLOW.fullmatch(word) for word in words)
+        is_banner = bool(words) and not is_data and words[0].strip("*") == ""
+        for word in words:  # others stand between the numbers
+            is_wanted = is_data or _NUMBER.fullmatch(word) or _LIKE_NUMBER.fullmatch(word)
+            if is_wanted or (_OVERFLOW.fullmatch(word) and not is_banner):
+                numbers.append(_number(word, name))
+    return numbers
+
+
+def _instructions(path):
+    """The instruction lines of a file of PEST, each a list of words."""
+    with open(path, encoding="utf-8") as file:
+        lines = file.read().splitlines()
+    first = re.match(r"pif[ \t]+(\S)\s*$", lines[0] if lines else "", re.IGNORECASE)
+    if not first:
+        raise Refused(f"{path}: the first line of an instruction file must be 'pif' and a mark, such as 'pif @'")
+    mark = re.escape(first[1])
+    word = re.compile(rf"\s*({mark}[^{mark}]+{mark}|![^!\s]+!|\[[^\]\s]+\]\d+:\d+|\([^)\s]+\)\d+:\d+|[lLtT]\d+|[wW]|&)(?=\s|$)")
+    all_lines = []
+    for number, line in enumerate(lines[1:], 2):
+        words, at = [], 0
+        while line[at:].strip():
+            found = word.match(line, at)
+            if not found:
+                raise Refused(f"{path}, line {number}: cannot read the instruction {line[at:].strip()!r}")
+            words.append(found[1])
+            at = found.end()
+        if words[:1] == ["&"] and all_lines:
+            all_lines[-1] += words[1:]
+        elif words:
+            all_lines.append(words)
+    return first[1], all_lines
+
+
+def _read_by(instructions, text, name):
+    """The observations, in the order of the instructions."""
+    mark, instruction_lines = instructions
+    lines, at, numbers = text.splitlines(), -1, []
+
+    def missing(word):
+        return RuntimeError(f"{name} ends before the instruction {word}")
+
+    for words in instruction_lines:
+        column = 0
+        for i, word in enumerate(words):
+            kind = word[0].lower()
+            if kind == mark.lower() and word[-1] == word[0] and len(word) > 1:
+                wanted = word[1:-1]
+                if i == 0:
+                    at += 1
+                    while at < len(lines) and wanted not in lines[at]:
+                        at += 1
+                    if at >= len(lines):
+                        raise missing(word)
+                    column = lines[at].index(wanted) + len(wanted)
+                    continue
+                found = lines[at].find(wanted, column) if at >= 0 else -1
+                if found < 0:
+                    raise RuntimeError(f"{name}, line {at + 1}: no {wanted!r} for the instruction {word}")
+                column = found + len(wanted)
+                continue
+            if kind == "l":
+                at, column = at + int(word[1:]), 0
+                if at >= len(lines):
+                    raise missing(word)
+                continue
+            if not 0 <= at < len(lines):
+                raise missing(word)
+            line = lines[at]
+            if kind == "t":
+                column = int(word[1:]) - 1
+            elif kind == "w":
+                found = re.compile(r"\s+").search(line, column)
+                if not found:
+                    raise RuntimeError(f"{name}, line {at + 1}: no blank for the instruction {word}")
+                column = found.end()
+            else:
+                if kind == "!":
+                    found = re.compile(r"[\s,]*([^\s,]+)").match(line, column)
+                    value, observation = (found[1] if found else ""), word[1:-1]
+                    column = found.end() if found else column
+                else:
+                    observation, first, last = re.fullmatch(r"[\[(](.+)[\])](\d+):(\d+)", word).groups()
+                    begin, column = int(first) - 1, int(last)
+                    if kind == "(":  # the word that lies in these columns, whole
+                        found = next((each for each in re.finditer(r"[^\s,]+", line)
+                                      if each.end() > begin and each.start() < column), None)
+                        value, column = (found[0], found.end()) if found else ("", column)
+                    else:
+                        value = line[begin:column].strip()
+                if observation.lower() != "dum":
+                    numbers.append(_number(value, f"{name}, line {at + 1}, observation {observation},"))
+    return numbers
+
+
+# --- programs end by their group, with their folder
+
+_guards = {}  # by process: a pipe to a shell that outlives this process
+
+
+def _guard():
+    """A pipe that takes lines "GROUP FOLDER". When this process is gone, both of the last line end."""
+    process = os.getpid()
+    if process not in _guards or _guards[process][0].poll() is not None:
+        work = ('trap "" 1 2 15; while read -r a b; do group=$a; folder=$b; done; '
+                '[ -z "$group" ] || kill -s KILL -- "-$group" 2>/dev/null; '
+                '[ -z "$folder" ] || rm -rf -- "$folder" || rm -rf -- "$folder"')
+        shell = subprocess.Popen(["sh", "-c", work], stdin=subprocess.PIPE, stdout=subprocess.DEVNULL,
+                                 stderr=subprocess.DEVNULL, cwd="/", start_new_session=True)
+        _guards[process] = (shell, os.dup(shell.stdin.fileno()))
+        os.set_inheritable(_guards[process][1], False)
+        shell.stdin.close()
+    return _guards[process][1]
+
+
+def _kill_group(group):
+    try:
+        os.killpg(group, signal.SIGKILL)
+    except (ProcessLookupError, PermissionError):
+        pass
+
+
+def _await(process, seconds):
+    """Whether it ended in time. It is not waited for: its number stays taken."""
+    if seconds is None:
+        os.waitid(os.P_PID, process, os.WEXITED | os.WNOWAIT)
+        return True
+    descriptor = os.pidfd_open(process)
+    try:
+        waiting = select.poll()
+        waiting.register(descriptor, select.POLLIN)
+        return bool(waiting.poll(1000 * seconds))
+    finally:
+        os.close(descriptor)
+
+
+def _text_of(file):
+    file.seek(0)
+    return file.read().decode(errors="replace")
+
+
+def _folder_prefix():
+    """Of the folders of this machine's processes, whose numbers belong to a namespace."""
+    try:
+        space = os.readlink("/proc/self/ns/pid")
+    except OSError:
+        space = ""
+    return f"isoline-{zlib.crc32(f'{platform.node()} {space}'.encode()):08x}-"
+
+
+def _remove_abandoned():
+    """Folders of scripts that were killed together with what would have removed them."""
+    prefix = _folder_prefix()
+    with os.scandir(tempfile.gettempdir()) as entries:
+        for each in entries:
+            owner = each.name[len(prefix) :].split("-")[0]
+            if not each.name.startswith(prefix) or not owner.isdigit() or os.path.exists(f"/proc/{owner}"):
+                continue
+            try:
+                is_ours = each.is_dir(follow_symlinks=False) and each.stat(follow_symlinks=False).st_uid == os.getuid()
+            except OSError:
+                continue
+            if is_ours:
+                shutil.rmtree(each.path, ignore_errors=True)
 
 
 def _bound(side, start):

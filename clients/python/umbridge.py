@@ -16,6 +16,7 @@ import argparse
 import array
 import ast
 import atexit
+import collections
 import ctypes
 import http.client
 import http.server
@@ -23,6 +24,7 @@ import ipaddress
 import json
 import math
 import os
+import re
 import signal
 import socket
 import subprocess
@@ -235,6 +237,28 @@ class Refusal(Exception):
         self.kind, self.status = kind, status
 
 
+class Turns:
+    """A lock that serves those who wait in the order in which they came."""
+
+    def __init__(self):
+        self.own, self.waiting, self.is_taken = threading.Lock(), collections.deque(), False
+
+    def __enter__(self):
+        with self.own:
+            gate = threading.Lock()
+            if self.is_taken:
+                gate.acquire()
+                self.waiting.append(gate)
+            self.is_taken = True
+        gate.acquire()
+
+    def __exit__(self, *_):
+        with self.own:
+            self.is_taken = bool(self.waiting)
+            if self.waiting:
+                self.waiting.popleft().release()
+
+
 class Served:
     """The models loss (x ↦ L), residual (x ↦ r = y − y*) and start (no input, x0) of one run."""
 
@@ -245,7 +269,7 @@ class Served:
         self.run, self.offers = run, offers
         self.sizes = {"loss": ([run.n], [1]), "residual": ([run.n], [run.residuals]), "start": ([], [run.n])}
         self.best, self.best_loss = run.x0, math.inf
-        self.lock, self.called = threading.Lock(), time.monotonic()
+        self.lock, self.called = Turns(), time.monotonic()
         self.is_over = threading.Event()
 
     def support(self, name):
@@ -314,11 +338,38 @@ class Served:
 
 
 class Handler(http.server.BaseHTTPRequestHandler):
-    timeout = 60  # seconds for a request to arrive
+    patience = 60  # seconds for a whole request to arrive
     served = None
     host = "127.0.0.1"
     most_bytes = 1 << 20
     disable_nagle_algorithm = True  # head and body are two packets
+
+    def setup(self):
+        super().setup()
+        self.limit = threading.Timer(self.patience, self.stop_reading)
+        self.limit.daemon = True
+        self.limit.start()
+
+    def stop_reading(self):
+        try:
+            self.connection.shutdown(socket.SHUT_RD)  # the answer can still be written
+        except OSError:
+            pass
+
+    def finish(self):
+        self.limit.cancel()
+        super().finish()
+
+    def body(self):
+        length = self.headers.get("Content-Length", "0")
+        is_whole = re.fullmatch("[0-9]{1,15}", length) and int(length) <= self.most_bytes
+        if not is_whole or "chunked" in str(self.headers.get("Transfer-Encoding")):
+            raise Refusal("InvalidInput", f"the body must have a Content-Length of at most {self.most_bytes} bytes", 413)
+        body = self.rfile.read(int(length))
+        if len(body) < int(length):
+            raise Refusal("InvalidInput", f"{len(body)} of {length} bytes arrived within {self.patience} s", 408)
+        self.limit.cancel()
+        return body
 
     def has_own_host(self):
         """Whether the request names an address. A page of another site would name its own domain."""
@@ -345,18 +396,14 @@ class Handler(http.server.BaseHTTPRequestHandler):
                 raise Refusal("InvalidInput", "UM-Bridge has no such path with this HTTP method", 404)
             if not self.has_own_host():
                 raise Refusal("InvalidInput", "Host must be the address of this server", 403)
-            length = self.headers.get("Content-Length", "0")
-            if not length.isdigit() or int(length) > self.most_bytes or "chunked" in str(
-                    self.headers.get("Transfer-Encoding")):
-                raise Refusal("InvalidInput", f"the body must have a Content-Length of at most {self.most_bytes} bytes", 413)
-            answer = self.served.answer(path, self.rfile.read(int(length)))
+            answer = self.served.answer(path, self.body())
         except Refusal as refusal:
             status, answer = refusal.status, {"error": {"type": refusal.kind, "message": str(refusal)}}
         except isoline.Stop:
             status, answer = 400, {"error": {"type": "InvalidInput", "message": "the run is over: its "
                                              "target is reached or its budget is spent"}}
             self.served.is_over.set()
-        except (isoline.Refused, OverflowError) as error:
+        except (isoline.Refused, OverflowError, ValueError, TypeError) as error:
             status, answer = 400, {"error": {"type": "InvalidInput", "message": str(error)[:500]}}
         text = json.dumps(answer).encode()
         self.send_response(status)
@@ -377,6 +424,7 @@ def serve(given):
     served = Served(run, offers)
     Handler.served, Handler.host = served, given.host
     Handler.most_bytes = (1 << 20) + 64 * (2 * run.n + run.residuals)
+    http.server.ThreadingHTTPServer.request_queue_size = 1024  # clients that the system does not make wait
     server = http.server.ThreadingHTTPServer((given.host, given.port), Handler)
     server.daemon_threads = True
     threading.Thread(target=server.serve_forever, daemon=True).start()

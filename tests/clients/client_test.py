@@ -1,5 +1,6 @@
 """The client of Python, driven as Isoline drives it: with NumPy where it is, and without."""
 
+import glob
 import json
 import os
 import socket
@@ -7,6 +8,7 @@ import struct
 import subprocess
 import sys
 import tempfile
+import time
 import unittest
 
 CLIENT = sys.argv.pop(1)  # the folder that isoline.py lies in
@@ -283,6 +285,83 @@ class Commands(unittest.TestCase):
         self.assertIn("did not write", self.ask("true", "model([1, 2])", ", read='out'"))
         self.assertIn("no numbers", self.ask("echo none", "model([1, 2])"))
         self.assertIn("0.2 s", self.ask("exec sleep 60", "model([1, 2])", ", seconds=0.2"))
+        self.assertIn("0.2 s", self.ask("sleep 60; echo 1", "model([1, 2])", ", seconds=0.2"))
+
+    def test_reads_numbers_as_programs_write_them(self):
+        for printed, expected in (
+            ("1.0D+00 -2d0 1.234-105", "[1.0, -2.0, 1.234e-105]"), ("steps 3 of 2nd kind", "[3.0]"),
+            ("***** RESULTS *****", "no numbers"), ("1 1_000", "1_000"), ("head = ****", "overflow: ****"),
+            ("3 *** 4", "overflow"), ("ERROR 42: no mesh", "ERROR 42"), ("Error: mesh 3", "Error: mesh"),
+            ("error: 0.5", "[0.5]"),
+        ):
+            self.assertIn(expected, self.ask(f"printf '%s' '{printed}'", "model([1, 2])"))
+
+    def test_keeps_the_widths_of_templates_of_pest(self):
+        self.TEMPLATE = "PTF #\n#  a   ##  b   #\n# A #\n"
+        self.assertEqual(self.ask("true", "model.names"), "['a', 'b']")
+        columns = "head -n 1 $1 | cut -c 1-8; head -n 1 $1 | cut -c 9-16; tail -n 1 $1"
+        self.assertEqual(self.ask(columns, "model([1/3, -1e-10])"), "[0.3333333, -1e-10, 0.3333]")
+        self.assertIn("width", self.ask("cat $1", "model([-1e-10, 1])"))
+        self.assertIn("below", self.ask("true", "model.note(True)"))
+        with tempfile.TemporaryDirectory() as folder:
+            with open(os.path.join(folder, "in.tpl"), "w") as file:
+                file.write("~ a ~~ b ~\n")
+            ran = subprocess.run(
+                [sys.executable, "-c", "import isoline; isoline.command('true', 'in.tpl')"], cwd=folder,
+                env=dict(os.environ, PYTHONPATH=CLIENT), capture_output=True, text=True,
+            )
+        self.assertIn("adjacent", ran.stderr)
+
+    def test_reads_by_instructions_of_pest(self):
+        self.TEMPLATE = "~ a ~\n"
+        lines = ["pif @", "l1 !o1! !dum! !o2!", "@flow rate@ @=@ !q!", "l2 [a]3:8 (b)10:13", "l1 t5 !c! @=@ !d!",
+                 "& !e!"]
+        printed = ["1.0D0, 7 8", "skip", "xx flow rate = 5", "next", "  1.2500 -3.25e1", "abc 99 x=4 6"]
+        program = "printf '%s\\n' " + " ".join(f"'{line}'" for line in printed)
+        with tempfile.NamedTemporaryFile("w", suffix=".ins") as file:
+            file.write("\n".join(lines))
+            file.flush()
+            said = self.ask(program, "model([1])", f", instructions={file.name!r}")
+            self.assertEqual(said, "[1.0, 8.0, 5.0, 1.25, -32.5, 99.0, 4.0, 6.0]")
+            self.assertIn("flow rate", self.ask("echo 1 2 3", "model([1])", f", instructions={file.name!r}"))
+
+    def test_leaves_nothing_behind_when_it_is_killed(self):
+        with tempfile.TemporaryDirectory() as folder:
+            with open(os.path.join(folder, "in.tpl"), "w") as file:
+                file.write("~ a ~")
+            with open(os.path.join(folder, "program.sh"), "w") as file:
+                file.write("echo $$ > mark; sleep 600 & sleep 600\n")
+            environment = dict(os.environ, PYTHONPATH=CLIENT, TMPDIR=folder)
+            text = "import isoline\nisoline.command('sh program.sh', 'in.tpl', seconds=500)([1])"
+            script = subprocess.Popen([sys.executable, "-c", text], cwd=folder, env=environment)
+            until(lambda: [mark for mark in glob.glob(folder + "/isoline-*/mark") if os.path.getsize(mark)])
+            with open(glob.glob(folder + "/isoline-*/mark")[0]) as file:
+                group = int(file.read())
+            script.kill()
+            script.wait()
+            until(lambda: not is_alive(group))
+            until(lambda: not glob.glob(folder + "/isoline-*"))
+
+
+def until(holds):
+    end = time.monotonic() + 60
+    while not holds():
+        if time.monotonic() > end:
+            raise AssertionError("waited too long")
+        time.sleep(0.02)
+
+
+def is_alive(group):
+    """Whether any process of the group runs: those that ended may wait for their parent."""
+    for name in os.listdir("/proc"):
+        try:
+            with open(f"/proc/{name}/stat") as file:
+                fields = file.read().rsplit(")", 1)[1].split()
+        except (OSError, IndexError):
+            continue
+        if int(fields[2]) == group and fields[0] != "Z":
+            return True
+    return False
 
 
 class Optimizers(unittest.TestCase):

@@ -73,6 +73,14 @@ class Repository(unittest.TestCase):
         self.pack("theirs")
         self.run_steps(compare=1)
 
+    def test_members_outside_the_own_folder_and_links_are_refused(self):
+        for make, named in (("mkdir -p theirs && cp -r ours theirs && cd theirs", "ours"),
+                            ("ln -s /etc/passwd ours/link", "ours"), ("mkfifo ours/fifo", "ours")):
+            self.run_in(f"rm -rf archive/* theirs ours/link ours/fifo; ({make}; tar -czf a.tgz {named})"
+                        f"; find . -name a.tgz -exec mv {{}} archive/"
+                        f"{'mallory' if 'theirs' in make else 'ours'}.tar.gz ';'")
+            self.run_steps(unpack=1)
+
 
 if __name__ == "__main__":
     unittest.main(argv=[sys.argv[0], *sys.argv[2:]], verbosity=2)
