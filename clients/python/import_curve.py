@@ -26,7 +26,7 @@ ORACLES = ("forward", "pullback", "pushforward", "jacobian", "sparse_jacobian", 
 STATUSES = ("converged", "target", "budget", "stalled", "diverged")
 TIMES = ("wall_seconds", "processor_seconds")
 COLUMNS = ("loss", "iteration", "work", "x_error", "gradient_norm", "step_norm", *TIMES, *ORACLES[:-1])
-NUMBER = re.compile(r"[+-]?(\d+\.?\d*([eE][+-]?\d+)?|\.\d+([eE][+-]?\d+)?|inf(inity)?|nan)", re.I)
+NUMBER = re.compile(r"[+-]?((\d+\.?\d*|\.\d+)([eEdD][+-]?\d+)?|inf(inity)?|nan)", re.I)
 MOST_COUNT = 2 ** 53  # above it doubles skip whole numbers
 
 
@@ -35,7 +35,15 @@ class Refused(Exception):
 
 
 def number(text):
-    return float(text) if NUMBER.fullmatch(text) else None
+    """As core/numbers.h reads it: with a sign, a decimal point, and an exponent by e or Fortran's d."""
+    if not NUMBER.fullmatch(text):
+        return None
+    return float(re.sub(r"(?<=[\d.])[dD]", "e", text))
+
+
+def separator_of(line):
+    """Semicolons if the line has one, else commas, else blanks."""
+    return next((each for each in ";,\t" if each in line), " " if " " in line.strip() else ",")
 
 
 def fnv1a(text):
@@ -137,7 +145,9 @@ def curve_of(path, told):
 
     curve, places, width, previous = {}, {}, None, {}
     with open(path, encoding="utf-8-sig", newline="") as file:
-        rows = csv.reader(file, skipinitialspace=True)
+        separator = separator_of(file.readline())
+        file.seek(0)
+        rows = csv.reader(file, skipinitialspace=True, delimiter=separator)
         try:
             for row in rows:
                 row, line = [field.strip() for field in row], rows.line_num
@@ -176,7 +186,7 @@ def curve_of(path, told):
                         value = int(value)
                     elif value is None:
                         refuse(line, f"{quantity} is missing" if not field else
-                               f"{quantity} is not a number: '{field[:40]}'")
+                               f"{quantity} is not a number, such as -1.5e-3: '{field[:40]}'")
                     elif quantity in TIMES and not value >= 0:
                         refuse(line, f"{quantity} must be at least 0, got {value}")
                     if is_count or quantity in TIMES:
@@ -267,6 +277,20 @@ def template_for(told, folder):
     return None
 
 
+def require_attainable(told, curve, template, file):
+    """A loss below the least attainable one, beyond its error and rounding, is of another loss."""
+    minimum = template["minimum"] if template else told.get("minimum")
+    if minimum is None or template and template["request"]["problem"]["options"].get("mode") == "learn":
+        return  # the best loss known of a learned problem may be bettered
+    start = curve["loss"][0]
+    slack = 1e-9 * max(abs(minimum), abs(start - minimum) if math.isfinite(start) else 0)
+    for row, loss in enumerate(curve["loss"]):
+        if -math.inf < loss < minimum - slack:
+            raise Refused(f"{file}: the loss {loss} of point {row + 1} (work {curve['work'][row]}) is below "
+                          f"{minimum}, the least attainable loss of {told['problem']}; is it the same loss, "
+                          "with the same factor?")
+
+
 def record_of(told, curve, files, template):
     unknown = "unknown"
     if template and any(name in told for name in ("minimum", "scale", "x_scale")):
@@ -349,6 +373,7 @@ def import_curve(curve_file, description_file, folder):
         raise Refused(f"{curve_file}: line {line}: a zero byte is not allowed")
     curve = curve_of(curve_file, told)
     template = template_for(told, folder)
+    require_attainable(told, curve, template, curve_file)
     files = {"description": description_file.read_text(encoding="utf-8"), "bytes": read,
              "curve": read.decode(errors="replace"), "name": curve_file.name}
     record = record_of(told, curve, files, template)

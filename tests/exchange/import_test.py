@@ -116,6 +116,18 @@ class Import(unittest.TestCase):
         by_place = description({"loss": 2, "forward": 3})
         self.assertEqual(self.imported(CURVE.split("\n", 1)[1], by_place)["curve"]["loss"], plain)
 
+    def test_separators_and_exponents_are_those_of_other_programs(self):
+        plain = self.imported()["curve"]["loss"]
+        for separator in ";\t":
+            other = CURVE.replace(",", separator).replace("24.2", "2.42D+01")
+            self.assertEqual(self.imported(other)["curve"]["loss"], plain)
+
+    def test_a_loss_below_the_least_attainable_one_is_refused(self):
+        self.assertIn("work 3", self.refusal("f,nfev\n24.2,1\n-1,3\n"))
+        told = {"problem": "their-bridge[span=30]", "minimum": 2}
+        self.assertIn("point 2", self.refusal("f,nfev\n24.2,1\n1.9,3\n", **told))
+        self.imported("f,nfev\n24.2,1\n-1e-15,3\n")  # rounding
+
     def test_what_is_not_finite_is_kept(self):
         record = self.imported("f,nfev\n3,1\nNaN,2\ninf,3\n-Infinity,4\nnan,5\n")
         self.assertEqual(record["curve"]["loss"][1:4], ["nan", "inf", "-inf"])
