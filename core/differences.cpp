@@ -1,11 +1,18 @@
 // ECNoise, and steps of differences.
 #include "core/differences.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 #include <limits>
 #include <utility>
+#include <vector>
+
+#include "core/random.h"
 
 namespace isoline {
 namespace {
@@ -78,6 +85,91 @@ Vector noise_of_values(const std::function<Vector(Real t)>& f) {
   return noise;
 }
 
+namespace {
+
+// The error of the last place of each of these values, if all have at most nine decimal digits, at
+// most eight decimals, or single precision; the largest of these. `changes`: which rows count.
+Vector last_places(const std::vector<Vector>& values, const std::vector<Index>& rows) {
+  constexpr int kMostDigits = 9, kMostDecimals = 8;
+  constexpr Real kRounded = 0.2887;  // the standard deviation of rounding to 1
+  int digits = 1, decimals = 0;
+  bool is_single = true;
+  std::array<char, 32> text;
+  const auto has = [&](Real value, const char* form, int places) {
+    std::snprintf(text.data(), text.size(), form, places, value);
+    return std::strtod(text.data(), nullptr) == value;
+  };
+  for (const Vector& y : values)
+    for (const Index i : rows) {
+      is_single = is_single && static_cast<Real>(static_cast<float>(y[i])) == y[i];
+      while (digits <= kMostDigits && !has(y[i], "%.*e", digits - 1)) ++digits;
+      while (decimals <= kMostDecimals && !has(y[i], "%.*f", decimals)) ++decimals;
+    }
+  Vector place = Vector::Zero(values[0].size());
+  for (Index i = 0; i < place.size(); ++i) {
+    const Real size = std::abs(values[0][i]);
+    if (digits <= kMostDigits && size > 0)
+      place[i] = std::pow(10.0, std::floor(std::log10(size)) + 1 - digits);
+    if (decimals <= kMostDecimals) place[i] = std::max(place[i], std::pow(10.0, -decimals));
+    if (is_single)
+      place[i] =
+          std::max(place[i], size * static_cast<Real>(std::numeric_limits<float>::epsilon()));
+  }
+  return kRounded * place;
+}
+
+}  // namespace
+
+Real noise_of_calls(const Vector& y0, const std::function<Vector(Real t)>& y) {
+  constexpr Real kNear = 1e-8, kFar = 1e-3, kNotSmooth = 0.5;
+  constexpr Real kBent = 1e-4;  // of the change: a smooth y bends less over so small a step
+  constexpr std::size_t kMostRows = 1000;
+  const Real size = y0.norm();
+  Real noise = std::numeric_limits<Real>::epsilon();
+  if (!(size > 0) || !std::isfinite(size)) return noise;
+  std::vector<Vector> values{y0};
+  const Vector near = y(kNear), nearer = y(2 * kNear);
+  const Real bend = (nearer - 2 * near + y0).norm() / std::sqrt(6.0);
+  if (std::isfinite(bend) && bend > kBent * (near - y0).norm())
+    noise = std::max(noise, bend / size);
+  for (const Real t : {kFar, 2 * kFar, 3 * kFar}) values.push_back(y(t));
+  const Vector second = values[2] - 2 * values[1] + y0;
+  const Real third = (values[3] - 3 * values[2] + 3 * values[1] - y0).norm();
+  if (!std::isfinite(third)) return noise;
+  if (third > kNotSmooth * second.norm()) noise = std::max(noise, third / std::sqrt(20.0) / size);
+  std::vector<Index> rows;
+  for (Index i = 0; i < y0.size() && rows.size() < kMostRows; ++i)
+    if (values[3][i] != y0[i]) rows.push_back(i);
+  if (rows.empty()) return noise;
+  return std::max(noise, last_places(values, rows).norm() / size);
+}
+
+Vector line_inside(const Vector& start, const Vector& sizes, const Vector* lower,
+                   const Vector* upper) {
+  constexpr Real kFarthest = 4e-3;  // t of the calls of noise_of_calls, and more
+  RandomStream stream(0, "", "noise of values");
+  Vector line = sizes.cwiseProduct(stream.uniform_vector(start.size(), -1, 1));
+  line /= line.cwiseQuotient(sizes).lpNorm<Eigen::Infinity>();
+  if (lower == nullptr) return line;
+  const auto is_outside = [&](Index i) {
+    const Real end = start[i] + kFarthest * line[i];
+    return end > (*upper)[i] || end < (*lower)[i];
+  };
+  for (Index i = 0; i < line.size(); ++i) {
+    if (is_outside(i)) line[i] = -line[i];
+    if (is_outside(i)) line[i] = 0;
+  }
+  return line;
+}
+
+std::array<Real, 2> difference_offsets(Real h, bool is_central, Real up, Real down) {
+  const Real side = up >= down ? 1 : -1, room = std::max({up, down, 0.0});
+  if (!is_central) return {up >= h ? h : down >= h ? -h : side * std::min(h, room), 0};
+  if (up >= h && down >= h) return {h, -h};
+  const Real inward = side * std::min(h, room / 2);
+  return {inward, 2 * inward};
+}
+
 Real forward_step(Real noise) { return std::pow(8.0, 0.25) * std::sqrt(noise); }
 Real central_step(Real noise) { return std::cbrt(3 * noise); }
 
@@ -86,6 +178,11 @@ Vector sizes_of_unknowns(const Vector& start) {
   const Real largest = start.lpNorm<Eigen::Infinity>();
   const Real unknown = largest > 0 ? std::min<Real>(1, largest) : 1;
   return (start.array().abs() > kNothing * largest).select(start.cwiseAbs(), unknown);
+}
+
+std::string name_of_unknown(const std::vector<std::string>& names, Index i) {
+  const auto at = static_cast<std::size_t>(i);
+  return at < names.size() && !names[at].empty() ? names[at] : fmt::format("x{}", i + 1);
 }
 
 }  // namespace isoline

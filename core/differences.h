@@ -1,7 +1,10 @@
 // The noise in the values of a function, and the steps of differences that follow from it.
 #pragma once
 
+#include <array>
 #include <functional>
+#include <string>
+#include <vector>
 
 #include "core/array.h"
 
@@ -22,5 +25,34 @@ Real central_step(Real noise);
 
 // The size of each unknown: |x₀|, or that of the largest, at most 1, where x₀ = 0.
 Vector sizes_of_unknowns(const Vector& start);
+
+// The noise of y in a call, relative to ‖y‖, at least rounding: by five calls y(t) at t > 0 along a
+// line through the point where y is `y0`; t in sizes of the unknowns. What is left at two steps
+// near the point, and what is not smooth at three steps farther away, as of an adaptive solver,
+// whose values jump where the number of its steps does; the larger one holds. And the last place of
+// values that were printed with few digits or are of single precision, which small steps do not
+// show.
+Real noise_of_calls(const Vector& y0, const std::function<Vector(Real t)>& y);
+
+// The direction of those calls, (n), in sizes of the unknowns; towards the inside at a bound. No
+// bounds: nullptr.
+Vector line_inside(const Vector& start, const Vector& sizes, const Vector* lower,
+                   const Vector* upper);
+
+// The offsets of the calls of a difference quotient: h; h and −h; or, where a bound is nearer than
+// that, inward, with two calls of second order. `up`, `down`: the room for t and −t. The second is
+// 0 where one call is enough; both are 0 where there is no room.
+std::array<Real, 2> difference_offsets(Real h, bool is_central, Real up, Real down);
+// dy/dt at 0 from y there and at the offsets; `second` is not used where its offset is 0.
+template <class Array>
+auto difference_quotient(const std::array<Real, 2>& at, const Array& y0, const Array& first,
+                         const Array& second) {
+  const auto [a, b] = at;
+  if (b == 0) return Array((first - y0) / a);
+  return Array((b * b * (first - y0) - a * a * (second - y0)) / (a * b * (b - a)));
+}
+
+// "x3", or the unknown's own name. `names`: (n), or empty.
+std::string name_of_unknown(const std::vector<std::string>& names, Index i);
 
 }  // namespace isoline

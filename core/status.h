@@ -17,7 +17,8 @@ namespace isoline {
 
 enum class Status {
   running,
-  converged,     // the method stopped by its own test
+  converged,     // the method stopped by its own test, and the harness found a solution there
+  unconfirmed,   // the method stopped by its own test, and the harness did not; the message says why
   target,        // the harness measured L at or below the target
   discrepancy,   // the harness measured ‖y − y*‖ at or below τδ, with δ the noise level
   budget,        // iterations, work or time are spent
@@ -30,9 +31,9 @@ enum class Status {
   memory,        // out of its memory limit
   interrupted,   // the user stopped the run
 };
-inline constexpr std::array<std::string_view, 13> kStatusNames = {
-    "running",      "converged", "target",  "discrepancy", "budget", "stalled",    "diverged",
-    "inapplicable", "failed",    "crashed", "timeout",     "memory", "interrupted"};
+inline constexpr std::array<std::string_view, 14> kStatusNames = {
+    "running",  "converged",    "unconfirmed", "target",  "discrepancy", "budget", "stalled",
+    "diverged", "inapplicable", "failed",      "crashed", "timeout",     "memory", "interrupted"};
 
 inline std::string_view name_of(Status status) {
   return kStatusNames[static_cast<std::size_t>(status)];

@@ -1,19 +1,20 @@
 // J of residuals without derivatives, for methods of least squares: by differences whose steps
 // follow from the noise of the calls, with rank-one updates between; Broyden (1965). The noise is
-// that of a repeated call at the start, or that of ECNoise's tables, at least rounding. M₂ of h =
-// 8^¼ √(ε_f/M₂), a bound on the second derivative along an unknown, is ‖r‖ over the square of the
+// measured once, by five calls or by ECNoise's tables, and is at least rounding. M₂ of h = 8^¼
+// √(ε_f/M₂), a bound on the second derivative along an unknown, is ‖y‖ over the square of the
 // unknown's size; Moré, Wild (2012), ACM TOMS 38.
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <string_view>
+#include <vector>
 
 #include "core/archive.h"
 #include "core/differences.h"
 #include "core/options.h"
-#include "core/random.h"
 #include "optimizers/meter.h"
 
 namespace isoline::optimizers {
@@ -21,9 +22,9 @@ namespace isoline::optimizers {
 inline const Choices kJacobians{"exact", "differences", "central", "ecnoise"};
 inline constexpr const char* kJacobianHelp =
     "exact: as the problem offers it; differences, central: by forward or central differences of "
-    "r, which cost n or 2n forward solves, with the noise of a repeated call; ecnoise: by forward "
-    "differences with the noise by ECNoise, 8 to 29 calls at the start, which also sees noise that "
-    "repeats, as of iterative solvers";
+    "r, which cost n or 2n forward solves, with steps that follow from the noise of y, which five "
+    "calls at the start measure; ecnoise: by forward differences with the noise by ECNoise, 8 to 29 "
+    "calls at the start";
 
 class DifferenceJacobian {
  public:
@@ -33,26 +34,31 @@ class DifferenceJacobian {
     const bool is_central = kind == "central";
     if (sizes_.size() == 0) measure(f, theta, kind == "ecnoise", at);
     const Index n = theta.size();
-    const Matrix y = at.y();
-    J_.resize(y.size(), n);
-    moved_ = theta;
-    Vector h(n);
-    const Index calls = is_central ? 2 : 1;
-    Matrix points = theta.replicate(1, calls * n);
+    y_ = at.y().reshaped();
+    J_.setZero(y_.size(), n);
+    const Real step = is_central ? central_step(noise_) : forward_step(noise_);
+    std::vector<std::array<Real, 2>> offsets;
+    Matrix points(n, is_central ? 2 * n : n);
+    Index calls = 0;
     for (Index j = 0; j < n; ++j) {
-      const Real size = std::max(std::abs(theta[j]), sizes_[j]);
-      h[j] = size * (is_central ? central_step(noise_) : forward_step(noise_));
-      if (const Bounds* bounds = f.bounds(); bounds && theta[j] + h[j] > bounds->upper[j])
-        h[j] = -h[j];
-      points(j, calls * j) = theta[j] + h[j];
-      if (is_central) points(j, calls * j + 1) = theta[j] - h[j];
+      offsets.push_back(offsets_of(f, theta, j, step * size_of(theta, j), is_central));
+      for (const Real offset : offsets.back()) {
+        if (offset == 0) continue;
+        points.col(calls) = theta;
+        points(j, calls++) = theta[j] + offset;
+      }
     }
-    f.announce(points);
-    for (Index j = 0; j < n; ++j) J_.col(j) = column(f, theta, j, h[j], is_central, y);
+    f.announce(points.leftCols(calls));
+    for (Index j = 0; j < n; ++j)
+      J_.col(j) = column(f, theta, j, offsets[static_cast<std::size_t>(j)]);
+    constexpr Real kLarger = 30;  // an unknown that does not show is tried once more
+    for (Index j = 0; j < n; ++j)
+      if (const Real h = step * size_of(theta, j); !shows(j, h))
+        J_.col(j) = column(f, theta, j, offsets_of(f, theta, j, kLarger * h, is_central));
     theta_ = theta;
-    y_ = y.reshaped();
     is_fresh_ = true;
     at.set_jacobian(J_);
+    f.know_jacobian(theta, J_, noise_);
   }
   // Broyden's update: J moves least so that J Δθ = Δy.
   void update(const Vector& theta, Linearization& at) {
@@ -66,50 +72,59 @@ class DifferenceJacobian {
     at.set_jacobian(J_);
   }
   bool is_fresh() const { return is_fresh_; }  // not yet updated
+  Real noise() const { return noise_; }        // of y in a call, relative to ‖y‖
   bool is_noisy() const { return noise_ > std::numeric_limits<Real>::epsilon(); }
   bool has_jacobian() const { return J_.size() > 0; }
   void persist(Archive& archive) { archive(J_, theta_, y_, sizes_, noise_, is_fresh_); }
 
  private:
-  // The noise of r relative to it, of two calls at the start or by ECNoise along a line through it.
+  Real size_of(const Vector& theta, Index j) const {
+    return std::max(std::abs(theta[j]), sizes_[j]);
+  }
+  static std::array<Real, 2> offsets_of(Meter& f, const Vector& theta, Index j, Real h,
+                                        bool is_central) {
+    constexpr Real kNone = std::numeric_limits<Real>::infinity();
+    const Bounds* const bounds = f.bounds();
+    return difference_offsets(h, is_central, bounds ? bounds->upper[j] - theta[j] : kNone,
+                              bounds ? theta[j] - bounds->lower[j] : kNone);
+  }
+  // Whether the column is more than noise.
+  bool shows(Index j, Real h) const { return J_.col(j).norm() * h > 2 * noise_ * y_.norm(); }
+
+  // Along a line through θ, inside the bounds.
   void measure(Meter& f, const Vector& theta, bool by_tables, Linearization& at) {
     sizes_ = sizes_of_unknowns(theta);
-    const auto y = [&](const Vector& point) -> Vector {
-      f.linearize(point, other_);
+    const Bounds* const bounds = f.bounds();
+    const Vector line = line_inside(theta, sizes_, bounds ? &bounds->lower : nullptr,
+                                    bounds ? &bounds->upper : nullptr);
+    const auto y = [&](Real t) -> Vector {
+      f.linearize(theta + t * line, other_);
       return other_.y().reshaped();
     };
-    Real noise = 0;
-    if (by_tables) {
-      RandomStream stream(0, "", "noise of values");
-      const Vector line = sizes_.cwiseProduct(stream.uniform_vector(theta.size(), -1, 1));
-      noise = noise_of_values([&](Real t) { return y(theta + t * line); }).norm();
-    } else {
-      noise = (y(theta) - at.y().reshaped()).norm();
+    if (!by_tables) {
+      noise_ = noise_of_calls(at.y().reshaped(), y);
+      return;
     }
-    const Real level = noise / (other_.y() - f.target()).norm() / (by_tables ? 1 : std::sqrt(2.0));
+    const Real level = noise_of_values(y).norm() / at.y().norm();
     noise_ = std::max(std::isfinite(level) ? level : 0, std::numeric_limits<Real>::epsilon());
   }
-  Vector column(Meter& f, const Vector& theta, Index j, Real h, bool is_central, const Matrix& y) {
-    moved_[j] = theta[j] + h;
-    const Real ahead = moved_[j];  // what rounding leaves of the step
-    f.linearize(moved_, other_);
-    Vector difference = other_.y().reshaped();
-    Real length = ahead - theta[j];
-    if (is_central) {
-      moved_[j] = theta[j] - h;
+  Vector column(Meter& f, const Vector& theta, Index j, std::array<Real, 2> offsets) {
+    if (offsets[0] == 0) return Vector::Zero(y_.size());  // an unknown that its bounds fix
+    std::array<Vector, 2> y;
+    moved_ = theta;
+    for (std::size_t i = 0; i < 2 && offsets[i] != 0; ++i) {
+      moved_[j] = theta[j] + offsets[i];
+      offsets[i] = moved_[j] - theta[j];  // what rounding leaves of it
       f.linearize(moved_, other_);
-      difference -= other_.y().reshaped();
-      length = ahead - moved_[j];
-    } else {
-      difference -= y.reshaped();
+      y[i] = other_.y().reshaped();
     }
-    moved_[j] = theta[j];
-    return difference / length;
+    if (offsets[1] == 0) y[1] = y[0];
+    return difference_quotient<Vector>(offsets, y_, y[0], y[1]);
   }
   Matrix J_;                      // (m, n)
   Vector theta_, moved_, sizes_;  // (n)
   Vector y_;                      // (m), at θ
-  Real noise_ = 0;                // of r in a call, relative to it
+  Real noise_ = 0;                // of y in a call, relative to ‖y‖
   bool is_fresh_ = false;
   Linearization other_;
 };

@@ -276,6 +276,9 @@ struct LevenbergMarquardt {
     Vector step, candidate, bend;   // (n), of the acceleration
     Vector Jd, residual, Jbend;     // (m·B)
     Real last_length = kUnbounded;  // ‖D d‖ of the last step that only rounding could judge
+    std::string jacobian;           // as the option has it; by differences where none is offered
+
+    bool has_updated_jacobian() const { return jacobian != "exact" && !differences.is_fresh(); }
   };
   static void persist(State& s, Archive& archive) {
     s.squares.persist(archive);
@@ -287,6 +290,9 @@ struct LevenbergMarquardt {
 
   State init(Meter& f, const Vector&) const {
     State s;
+    const bool has_own = f.is_granted(Oracle::jacobian) || f.is_granted(Oracle::layer_factors) ||
+                         f.is_sparse() || f.is_granted(Oracle::pullback);
+    s.jacobian = jacobian == "exact" && !has_own ? "differences" : jacobian;
     s.squares.start(f);
     s.damping.mu = initial_damping;
     s.spectral = SpectralStep(spectral_factorization(factorization));
@@ -308,14 +314,14 @@ struct LevenbergMarquardt {
     if (accelerates && !accelerate(f, theta, s)) return reject(f, theta, s);
     s.candidate = theta + s.step;
     if (f.bounds() && !f.bounds()->hold(s.candidate)) predicted = project(f, theta, s);
-    if (s.candidate == theta && !f.has_fresh_batches()) return Status::converged;
+    if (s.candidate == theta && !f.has_fresh_batches()) return stop(f, theta, s);
     f.linearize(s.candidate, s.trial);
     const Real actual = s.squares.misfit() - 0.5 * (s.trial.y() - f.target()).squaredNorm();
     const Real rounding = f.has_fresh_batches() ? 0 : rounding_of_misfit(f, s);
     const bool is_rounding = predicted <= rounding && std::abs(actual) <= rounding;
     if (is_rounding) {
       const Real length = std::sqrt(s.squares.squared_length(s.step));
-      if (!(length <= s.last_length / 2)) return Status::converged;
+      if (!(length <= s.last_length / 2)) return stop(f, theta, s);
       s.last_length = length;
     } else if (!(actual > 0 && predicted > 0)) {
       return reject(f, theta, s);
@@ -331,8 +337,15 @@ struct LevenbergMarquardt {
   Status reject(Meter& f, const Vector& theta, State& s) const {
     f.reject_step();
     s.gain = 0;
-    if (jacobian == "exact" || s.differences.is_fresh()) return s.damping.reject();
-    s.differences.renew(f, theta, jacobian, s.at);  // the update may be to blame
+    return s.has_updated_jacobian() ? renew(f, theta, s)
+                                    : s.damping.reject();  // it may be to blame
+  }
+  // A J of updates does not tell that no step is left.
+  Status stop(Meter& f, const Vector& theta, State& s) const {
+    return s.has_updated_jacobian() ? renew(f, theta, s) : Status::converged;
+  }
+  Status renew(Meter& f, const Vector& theta, State& s) const {
+    s.differences.renew(f, theta, s.jacobian, s.at);
     s.squares.set(f, s.at, theta, s.residual, scaling);
     return Status::running;
   }
@@ -342,7 +355,7 @@ struct LevenbergMarquardt {
 
   Status step_fixed(Meter& f, Vector& theta, State& s) const {
     f.linearize(theta, s.at);
-    if (jacobian != "exact") s.differences.renew(f, theta, jacobian, s.at);
+    if (s.jacobian != "exact") s.differences.renew(f, theta, s.jacobian, s.at);
     s.residual = (s.at.y() - f.target()).reshaped();
     const auto filter = damping == "absolute" ? absolute_filter(initial_damping, f.samples())
                                               : tikhonov_filter(initial_damping);
@@ -360,11 +373,11 @@ struct LevenbergMarquardt {
   // J, −r and D at the point just accepted.
   void accept(Meter& f, const Vector& theta, State& s) const {
     s.residual = (f.target() - s.at.y()).reshaped();
-    if (jacobian != "exact") {
+    if (s.jacobian != "exact") {
       if (broyden && s.differences.has_jacobian() && s.gain >= kPoorGain)
         s.differences.update(theta, s.at);
       else
-        s.differences.renew(f, theta, jacobian, s.at);
+        s.differences.renew(f, theta, s.jacobian, s.at);
     }
     s.squares.set(f, s.at, theta, s.residual, scaling);
     s.has_point = true;
@@ -383,12 +396,14 @@ struct LevenbergMarquardt {
     return 0.5 * s.Jd.squaredNorm() + s.damping.mu * s.squares.squared_length(s.step);
   }
 
-  // The rounding error of ½‖r‖², r = y − y*, whose components have errors of ε|y|. Where a step and
+  // The rounding error of ½‖r‖², r = y − y*, whose components have errors of ε|y|, ε that of a call
+  // where J comes by differences. Where a step and
   // its prediction change ½‖r‖² by less, the loss cannot judge it; x, which depends on the
   // gradient, still becomes more accurate as long as steps become shorter.
   static Real rounding_of_misfit(Meter& f, const State& s) {
     const Real largest = (f.target().reshaped() - s.residual).lpNorm<Eigen::Infinity>();  // of y
-    return kEpsilon * (s.squares.misfit() + s.residual.norm() * largest);
+    const Real error = s.jacobian == "exact" ? kEpsilon : s.differences.noise();
+    return error * (s.squares.misfit() + s.residual.norm() * largest);
   }
 
   // Geodesic acceleration, Transtrum and Sethna (2012): d ← d + a, a = argmin ‖J a + ½ r''‖² +
@@ -549,7 +564,11 @@ std::string objection_of_levenberg_marquardt(const OptionValues& options, const 
 
 OracleSet needs_of_levenberg_marquardt(const OptionValues& options, const Problem& problem) {
   const std::string factorization = options.text("factorization");
-  if (options.text("jacobian") != "exact") return {Oracle::forward};
+  const OracleSet offers = problem.offers();
+  const bool has_own =
+      offers.contains(Oracle::jacobian) || offers.contains(Oracle::layer_factors) ||
+      offers.contains(Oracle::sparse_jacobian) || offers.contains(Oracle::pullback);
+  if (options.text("jacobian") != "exact" || !has_own) return {Oracle::forward};
   if (problem.bounds() && options.text("damping") == "adaptive")
     return {Oracle::forward, Oracle::jacobian};
   if (options.text("damping") != "adaptive")

@@ -12,6 +12,8 @@
 #include "core/foreign/call_log.h"
 #include "core/frames.h"
 #include "core/status.h"
+#include "optimizers/differences.h"
+#include "optimizers/examination.h"
 
 namespace isoline::optimizers {
 namespace {
@@ -256,6 +258,7 @@ Status Meter::begin(VectorRef theta) {
   accepted_ = theta;
   trace_.start_loss = judged_.loss;
   trace_.start_x_error = trace_.last.x_error;
+  start_gradient_ = trace_.last.gradient_norm;
   set_scales();
   observe(judged_.loss, judged_theta_);
   keep_point();
@@ -300,7 +303,8 @@ void Meter::persist(Archive& archive) {
   archive(counts_, work_, spared_, disturbed_, iteration_, next_kept_, best_loss_, next_target_,
           target_loss_, target_x_error_, targets_met_, stall_loss_, stall_iteration_, status_,
           batch_loss_, batch_x_error_, judged_.loss, judged_theta_, paid_loss_, is_prepaid_,
-          previous_, wall, processor, refined_);
+          previous_, wall, processor, refined_, known_theta_, known_J_, known_noise_,
+          start_gradient_);
   const bool are_spectra_wanted =
       trace_.spectra.are_wanted;        // the caller decides this, not the file
   archive.raw(&trace_, sizeof trace_);  // plain data; no reader waits for its atomics
@@ -372,6 +376,15 @@ Vector Meter::finish(VectorRef theta, Status verdict) {
   watch_.pause();
   if (trace_.last.iteration != iteration_ || judged_theta_ != theta || !judged_.batch)
     look_at(theta);
+  if (verdict == Status::running) verdict = Status::converged;
+  if (is_target_met()) verdict = Status::target;
+  if (is_at_noise()) verdict = Status::discrepancy;
+  if (!std::isfinite(judged_.loss)) verdict = Status::diverged;
+  if (verdict == Status::converged && !problem_.is_learned())
+    if (const std::string why = doubt(); !why.empty()) {
+      verdict = Status::unconfirmed;
+      if (trace_.message[0] == '\0') set_text(trace_.message, why);
+    }
   count_into(trace_.last);  // a library may have made many calls since its last iteration
   trace_.last.wall_seconds = watch_.seconds();
   trace_.last.processor_seconds = watch_.processor_seconds();
@@ -382,12 +395,83 @@ Vector Meter::finish(VectorRef theta, Status verdict) {
   keep_uncertainty();
   keep_returned();
   if (problem_.is_learned() && !problem_.field()) show();
-  if (verdict == Status::running) verdict = Status::converged;
-  if (is_target_met()) verdict = Status::target;
-  if (is_at_noise()) verdict = Status::discrepancy;
-  if (!std::isfinite(judged_.loss)) verdict = Status::diverged;
   trace_.status = verdict;
   return judged_theta_;
+}
+
+// J at the returned point: that of the method, that of the problem, or by forward differences,
+// which count as calls of the run do. False where the budget has none left for them.
+bool Meter::know_jacobian_at_end() {
+  if (known_theta_.size() == judged_theta_.size() && known_theta_ == judged_theta_) return true;
+  const problems::Products has = problem_.products();
+  const bool offers_it = problem_.offers().contains(Oracle::jacobian);
+  try {
+    if (offers_it && !has.are_differences) {
+      problem_.jacobian(known_J_, judged_);
+      known_theta_ = judged_theta_;
+      return true;
+    }
+    const std::int64_t price =
+        prices_[static_cast<std::size_t>(offers_it ? Oracle::jacobian : Oracle::forward)];
+    const std::int64_t calls = offers_it ? 1 : 2 * problem_.unknowns();
+    if (work_ + calls * price > budget_.work) return false;
+    if (offers_it) {
+      problem_.jacobian(known_J_, judged_);
+      counts_[static_cast<std::size_t>(Oracle::jacobian)] += calls;
+      work_ += calls * price;
+      known_theta_ = judged_theta_;
+      known_noise_ = std::max(known_noise_, has.noise);
+      return true;
+    }
+    Linearization at;
+    DifferenceJacobian differences;
+    const Vector theta = judged_theta_;
+    linearize(theta, at);
+    differences.renew(*this, theta, "central", at);
+    return true;
+  } catch (const BudgetSpent&) {
+    return false;
+  }
+}
+
+std::string Meter::doubt() {
+  constexpr Index kMostUnknowns = 256;
+  constexpr Real kSmall = 1e-5;  // of the gradient at the start
+  if (judged_.loss > trace_.start_loss) return "its loss is not below that of the start";
+  const Index n = problem_.unknowns();
+  if (!problem_.is_least_squares() || n > kMostUnknowns) {
+    const bool is_bounded = problem_.bounds() != nullptr;
+    const Real slope = is_bounded ? trace_.last.kkt_residual : trace_.last.gradient_norm;
+    if (!(slope > kSmall * start_gradient_)) return "";
+    return fmt::format("gradient not small: {:.2g}, {:.2g} at the start", slope, start_gradient_);
+  }
+  const bool was_known =
+      known_theta_.size() == judged_theta_.size() && known_theta_ == judged_theta_;
+  if (!know_jacobian_at_end()) return "no calls were left to see whether the gradient is small";
+  const bool is_by_method = !problem_.offers().contains(Oracle::jacobian);
+  const Vector r = (judged_.y - problem_.target()).reshaped(), slope = known_J_.transpose() * r;
+  LeastSquaresPoint at{.J = known_J_,
+                       .residual = r,
+                       .theta = judged_theta_,
+                       .sizes = sizes_of_unknowns(problem_.standard_start()),
+                       .is_held = std::vector<bool>(static_cast<std::size_t>(n)),
+                       .names = problem_.names(),
+                       .size_of_y = judged_.y.norm(),
+                       .noise = known_noise_,
+                       .has_exact_jacobian = !is_by_method && !problem_.products().are_differences};
+  if (const Bounds* bounds = problem_.bounds())
+    for (Index i = 0; i < n; ++i)
+      at.is_held[static_cast<std::size_t>(i)] =
+          bounds->is_active(judged_theta_, slope, i) || bounds->lower[i] == bounds->upper[i];
+  std::string why = doubt_of(at);
+  const Real rounding = 10 * std::numeric_limits<Real>::epsilon();
+  if (!why.empty() || !is_by_method || known_noise_ > rounding) return why;
+  at.forgives_noise = false;  // forward differences do not show six digits of a steep y
+  why = doubt_of(at);
+  if (why.empty() || !was_known || work_ + 2 * n > budget_.work) return why;
+  known_theta_.resize(0);
+  if (!know_jacobian_at_end()) return "no calls were left to see whether the gradient is small";
+  return doubt_of(at);
 }
 
 // Judges θ, or the last that was, where the budget has no more for this one: then false.

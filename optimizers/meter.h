@@ -170,6 +170,12 @@ class Meter {
   }
   Status status() const { return status_; }
   void reject_step() { ++trace_.rejected_steps; }
+  // A method's own J (m·B, n) at θ, by differences, and the relative noise of y that it measured.
+  void know_jacobian(VectorRef theta, const Matrix& J, Real noise) {
+    known_theta_ = theta;
+    known_J_ = J;
+    known_noise_ = noise;
+  }
   void claim(std::string_view words);  // a library's statement about its own success
   // Quantities of the method, which the trace stores at the same iterations as those of the
   // problem. A method names them once, at its start, and reports them each time they change.
@@ -205,6 +211,8 @@ class Meter {
   void share_rounds(std::int64_t calls);
   void disturb(Point& at);
   bool look_at(VectorRef theta);
+  std::string doubt();  // why the returned point is not confirmed as a solution; empty where it is
+  bool know_jacobian_at_end();
   bool pay_for_judged();
   bool is_out_of_work() const {
     const std::int64_t price = prices_[static_cast<std::size_t>(Oracle::forward)];
@@ -294,6 +302,10 @@ class Meter {
   bool is_prepaid_ = false;    // a forward at judged_theta_
   Vector accepted_;            // (n), the last θ that was judged and is paid for
   bool measures_gradients_ = true;
+  Vector known_theta_;  // (n)
+  Matrix known_J_;      // (m·B, n) there
+  Real known_noise_ = std::numeric_limits<Real>::epsilon();
+  Real start_gradient_ = 0;                 // ‖∇L‖
   const problems::Refinement* refinement_;  // nullptr: none
   problems::Refinement::State refined_;
   std::int64_t solve_iterations_;  // as so many calls a solve of this step counts

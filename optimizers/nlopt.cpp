@@ -115,12 +115,15 @@ void set_initial_step(nlopt_opt handle, const Vector& theta, Real multiple, Real
   nlopt_set_initial_step(handle, step.data());
 }
 
-// The first step stays what it is without bounds, unless a bound is nearer.
+// The first step stays what it is without bounds, unless a bound is nearer: a step of the distance
+// to one would let a simplex fall onto it. As NLopt chooses its own.
 void set_bounds(nlopt_opt handle, const Vector& theta, const Bounds& bounds) {
-  constexpr Real kShareOfBox = 0.25;  // as NLopt chooses it
+  constexpr Real kShareOfBox = 0.25, kShareOfWay = 0.75;
   Vector step(theta.size());
   nlopt_get_initial_step(handle, theta.data(), step.data());
   step = step.array().abs().min(kShareOfBox * (bounds.upper - bounds.lower).array());
+  for (const Vector& way : {Vector(bounds.upper - theta), Vector(theta - bounds.lower)})
+    step = (way.array() > 0).select(step.cwiseMin(kShareOfWay * way), step);
   step = (step.array() > 0).select(step, 1);  // of an unknown that is fixed
   nlopt_set_initial_step(handle, step.data());
   nlopt_set_lower_bounds(handle, bounds.lower.data());

@@ -1,14 +1,23 @@
 // Measures the required properties of every problem.
 #include "problems/conformance.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <memory>
+#include <utility>
 
+#include "core/decompose.h"
 #include "core/differences.h"
+#include "core/failures.h"
 #include "core/foreign/call_log.h"
 #include "core/workspace.h"
+#include "problems/differences.h"
 
 namespace isoline::problems {
 namespace {
@@ -22,17 +31,19 @@ constexpr Steps kSteps = {1e-2, 0.5, 16}, kFewSteps = {1e-2, 0.125, 3};
 constexpr Real kEpsilon = std::numeric_limits<Real>::epsilon();
 constexpr const char* kRounding = "rounding in double precision, with a margin for cancellation";
 constexpr const char* kDifferences =
-    "central differences with h = 6e-6: their error is about h²/6 times the third derivative, plus "
-    "1/h times the rounding error of y; y is assumed to have 16 correct digits";
+    "central differences, whose step h follows from the noise of y: their error is about h²/6 times the "
+    "third derivative, plus 1/h times that noise";
 
 // One problem, one point, and what is measured there. Directions and steps are relative to the
 // sizes of the unknowns where the scale is each unknown's own.
 class Examination {
  public:
   Examination(const Problem& problem, StartScale scale, RandomStream& stream)
-      : problem_(problem), scale_(scale), stream_(stream) {
+      : problem_(problem), scale_(scale), stream_(stream), sink_(*failures_) {
     sizes_ = scale == StartScale::own ? sizes_of_unknowns(problem.start())
                                       : Vector::Ones(problem.unknowns());
+    if (const Bounds* bounds = problem.bounds())  // an unknown that its bounds fix does not move
+      sizes_ = (bounds->lower.array() < bounds->upper.array()).select(sizes_, 0);
     constexpr int kTries = 20;  // a problem may have no value here and there
     for (int i = 0; i < kTries && (i == 0 || !at_.y.allFinite()); ++i) {
       theta_ = near_start();
@@ -46,6 +57,9 @@ class Examination {
       call_seconds_ = std::min(call_seconds_, call_clock() - begin);
     }
     piece_ = piece_of(at_);
+    if (!problem_.is_elsewhere() || is_slow() || !at_.y.allFinite()) return;
+    noise_ = relative_noise(problem_, problem_.start());
+    h_ = central_step(noise_);
   }
 
   std::vector<Finding> findings;
@@ -58,7 +72,50 @@ class Examination {
     if (!has_values)
       add("y is finite near the start", 1, 0, "20 sampled points near the start have no finite y");
     if (!has_target) add("y* is finite", 1, 0, "the target must consist of finite numbers");
+    if (has_values && problem_.has_identity_network() && !start().y.allFinite())
+      add("y is finite at the start", 1, 0,
+          "each method begins there, so the call at the starting point must succeed");
     return has_values && has_target;
+  }
+
+  // What the unknowns do to y: their effects, and how many of their combinations have one. Always
+  // holds: a model may have an unknown too many.
+  void rank() {
+    constexpr Index kMostUnknowns = 64;
+    const Index n = problem_.unknowns();
+    if (!problem_.has_identity_network() || problem_.samples() != 1 || n > kMostUnknowns ||
+        is_slow())
+      return;
+    Matrix J;
+    if (offers(Oracle::jacobian))
+      problem_.jacobian(J, at_);
+    else
+      J = by_differences();
+    if (!J.allFinite()) return;
+    const Matrix sized = J * sizes_.cwiseMax(theta_.cwiseAbs()).asDiagonal();
+    const bool is_exact = offers(Oracle::jacobian) && !problem_.products().are_differences;
+    const Real error = is_exact ? 100 * kEpsilon : 4 * std::sqrt(noise_);
+    std::string without;
+    std::vector<Index> effective;
+    for (Index j = 0; j < n; ++j) {
+      if (sizes_[j] == 0) continue;
+      if (sized.col(j).norm() > error * at_.y.norm() && sized.col(j).norm() > 0)
+        effective.push_back(j);
+      else
+        without += (without.empty() ? "" : ", ") + name_of_unknown(problem_.names(), j);
+    }
+    Vector sigma;
+    Index found = 0;
+    if (!effective.empty()) {
+      Matrix scaled = sized(Eigen::all, effective);
+      scaled.array().rowwise() /= scaled.colwise().norm().array();
+      if (!singular_values(scaled, sigma)) return;
+      found = (sigma.array() > error * sigma[0]).count();
+    }
+    add(fmt::format("rank of J near the start: {} of {}{}", found, n,
+                    without.empty() ? "" : fmt::format("; {} has no effect on y", without)),
+        static_cast<Real>(std::min(n, J.rows()) - found), static_cast<Real>(n),
+        "an unknown without effect keeps its value");
   }
 
   void repeatability() {
@@ -105,7 +162,7 @@ class Examination {
     Real h = steps().first;
     const Vector v = smooth_direction(h, steps().count);
     const Matrix Jv = push(v, at_);
-    const Real floor = 1e4 * kEpsilon * (at_.y.norm() + Jv.norm());
+    const Real floor = remainder_floor() * (at_.y.norm() + Jv.norm());
     const Real slope = order_of([&](Real step) { return remainder(v, Jv, step); }, h, floor);
     add("y(x + h v) − y(x) − h J v falls as h² (deviation of the exponent)", std::abs(slope - 2),
         0.1, "a wrong J v gives exponent 1; the third derivative changes it by O(h)");
@@ -117,7 +174,7 @@ class Examination {
     const Vector v = smooth_direction(h, steps().count);
     const Matrix u = cotangent() / std::sqrt(static_cast<Real>(problem_.residuals()));
     const Real change = pull(u, at_).dot(v);
-    const Real floor = 1e4 * kEpsilon * (u.norm() * at_.y.norm() + std::abs(change));
+    const Real floor = remainder_floor() * (u.norm() * at_.y.norm() + std::abs(change));
     const auto remainder_at = [&](Real step) {
       const Point at = point_at(theta_ + step * v);
       return std::abs(u.cwiseProduct(at.y - at_.y).sum() - step * change);
@@ -134,7 +191,8 @@ class Examination {
     const Real difference = (loss(theta_ + h_ * v) - loss(theta_ - h_ * v)) / (2 * h_);
     const Real scale = sized(g).norm() + std::abs(at_.loss);
     add("⟨∇L, v⟩ equals the change of L along v", relative(std::abs(difference - g.dot(v)), scale),
-        1e-6, kDifferences);
+        problem_.products().are_differences ? 1e-3 : std::max(1e-6, quotient_error()),
+        kDifferences);
   }
 
   void jacobian() {
@@ -298,13 +356,46 @@ class Examination {
   static bool is_dense_feasible(Index entries) { return entries <= 4'000'000; }
   static Real relative(Real gap, Real scale) { return gap == 0 ? 0 : gap / scale; }
   // Differences agree with each other as far as they have digits.
-  Real product_limit() const { return problem_.products().are_differences ? 1e-5 : 1e-12; }
+  Real product_limit() const {
+    return problem_.products().are_differences ? std::max(1e-5, quotient_error()) : 1e-12;
+  }
+  // Below, the remainder of Taylor's formula shows the error of y and of J v.
+  Real remainder_floor() const {
+    const bool is_noisy = noise_ > 10 * kEpsilon;
+    return is_noisy ? 10 * (noise_ + quotient_error() * kSteps.first) : 1e4 * kEpsilon;
+  }
+  // Of central differences with steps by the noise of y, with a margin for its direction.
+  Real quotient_error() const { return 100 * std::pow(noise_, 2.0 / 3); }
+  Matrix by_differences() const {
+    Matrix J(problem_.residuals(), problem_.unknowns());
+    const Vector sizes = sizes_.cwiseMax(theta_.cwiseAbs());
+    const Bounds* const bounds = problem_.bounds();
+    constexpr Real kNone = std::numeric_limits<Real>::infinity();
+    for (Index j = 0; j < J.cols(); ++j) {
+      const std::array<Real, 2> at = difference_offsets(
+          forward_step(noise_) * sizes[j], false, bounds ? bounds->upper[j] - theta_[j] : kNone,
+          bounds ? theta_[j] - bounds->lower[j] : kNone);
+      J.col(j).setZero();
+      if (at[0] == 0) continue;
+      Vector moved = theta_;
+      moved[j] += at[0];
+      const Vector y = point_at(moved).y.reshaped(), y0 = at_.y.reshaped();
+      J.col(j) = difference_quotient<Vector>(at, y0, y, y);
+    }
+    return J;
+  }
   const char* product_reason() const {
     return problem_.products().are_differences ? kDifferences : kRounding;
   }
   bool offers(Oracle oracle) const { return problem_.offers().contains(oracle); }
   void add(std::string property, Real figure, Real limit, std::string reason) {
     findings.push_back({std::move(property), figure, limit, std::move(reason)});
+    const std::int64_t before = std::exchange(reported_, failures_->total);
+    if (findings.back().holds() || failures_->total == before || failures_->kept == 0) return;
+    const int last = failures_->kept - 1;
+    findings.back().reason +=
+        fmt::format("; the call at x = ({}) failed: {}", fmt::join(failures_->point(last), ", "),
+                    std::string_view(failures_->reason[last]));
   }
 
   // A direction that crosses no nondifferentiable point of the problem, at any of the points ±h,
@@ -350,7 +441,10 @@ class Examination {
     return stream_.normal_vector(problem_.residuals())
         .reshaped(problem_.outputs(), problem_.samples());
   }
-  Vector near_start() { return near(problem_.start(), scale_, stream_); }
+  Vector near_start() {
+    const Vector drawn = near(problem_.start(), scale_, stream_);
+    return problem_.bounds() ? problem_.bounds()->nearest(drawn) : drawn;
+  }
   const Steps& steps() const { return is_slow() ? kFewSteps : kSteps; }
   const Point& start() {
     if (start_.y.size() == 0) problem_.forward(problem_.start(), start_);
@@ -409,7 +503,11 @@ class Examination {
   const Problem& problem_;
   const StartScale scale_;
   RandomStream& stream_;
-  Vector sizes_;  // (n), of the unknowns
+  std::unique_ptr<FailedEvaluations> failures_ = std::make_unique<FailedEvaluations>();
+  FailureSink sink_;
+  std::int64_t reported_ = 0;  // of the failures
+  Real noise_ = kEpsilon;      // of y in a call, relative to it
+  Vector sizes_;               // (n), of the unknowns
   Vector theta_;
   Point at_;                      // the linearization at theta_
   Point start_;                   // that of the problem, once it is needed
@@ -442,6 +540,7 @@ std::vector<Check> checks_of(const Problem& problem, bool is_slow) {
     checks.insert(checks.end(), {&Examination::jacobian, &Examination::sparse_jacobian,
                                  &Examination::hessian_product});
   }
+  checks.push_back(&Examination::rank);
   if (problem.has_identity_network())
     checks.insert(checks.end(), {&Examination::curvature, &Examination::hessian});
   checks.insert(checks.end(),

@@ -2,6 +2,7 @@
 #include "problems/differences.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <limits>
@@ -15,8 +16,6 @@
 namespace isoline::problems {
 namespace {
 
-constexpr Real kRounding = std::numeric_limits<Real>::epsilon();
-
 // The workspace of P at x, and y there.
 struct Inside final : Scratch {
   Workspace w, moved;
@@ -25,14 +24,15 @@ struct Inside final : Scratch {
 
 class Differenced final : public Physics {
  public:
-  Differenced(std::unique_ptr<Physics> inside, const std::string& derivatives)
+  // `start`: where the noise is measured, once, before the first product.
+  Differenced(std::unique_ptr<Physics> inside, const std::string& derivatives, Vector start,
+              std::optional<Bounds> bounds)
       : inside_(std::move(inside)),
         is_central_(derivatives == "central"),
-        has_products_(derivatives != "none") {}
-  void set_steps(Real noise, Vector sizes) {
-    step_ = is_central_ ? central_step(noise) : forward_step(noise);
-    sizes_ = std::move(sizes);
-  }
+        has_products_(derivatives != "none"),
+        start_(std::move(start)),
+        sizes_(sizes_of_unknowns(start_)),
+        bounds_(std::move(bounds)) {}
   void set_jitter(const Jitter& jitter, const Matrix& target) {
     jitter_ = jitter;
     target_ = target;
@@ -48,7 +48,16 @@ class Differenced final : public Physics {
             .pushforward_price = calls,
             .pullback_price = calls * inputs(),
             .are_differences = has_products_,
-            .are_at_once = has_products_};
+            .are_at_once = has_products_,
+            .noise = noise_};
+  }
+  void keep_inverse() { has_inverse_ = true; }
+  Inverse inverse_kind() const override {
+    return has_inverse_ ? inside_->inverse_kind() : Inverse::none;
+  }
+  Index inverse_price() const override { return inside_->inverse_price(); }
+  Success local_inverse(BatchRef y, BatchRef x0, BatchRef c, BatchOut x) const override {
+    return inside_->local_inverse(y, x0, c, x);
   }
 
   void begin_forwards(BatchRef x) const override { inside_->begin_forwards(x); }
@@ -64,12 +73,11 @@ class Differenced final : public Physics {
   // Along v by a step relative to the size of each unknown.
   void pushforward(BatchRef v, BatchOut Jv, Workspace& w) const override {
     Inside& own = w.as<Inside>();
-    const Real h = step_along(own, v);
-    Jv = moved(own, v, h);
-    if (is_central_)
-      Jv = (Jv - moved(own, v, -h)) / (2 * h);
-    else
-      Jv = (Jv - own.y) / h;
+    const std::array<Real, 2> at = offsets_along(own, v);
+    if (at[0] == 0) return Jv.setZero(), void();  // unknowns that their bounds fix
+    const Matrix first = moved(own, v, at[0]);
+    const Matrix second = at[1] == 0 ? first : moved(own, v, at[1]);
+    Jv = difference_quotient<Matrix>(at, own.y, first, second);
   }
   void pullback(BatchRef u, BatchOut JTu, Workspace& w) const override {
     const Index k = inputs(), batch = u.cols();
@@ -90,32 +98,58 @@ class Differenced final : public Physics {
   }
 
  private:
-  Real step_along(const Inside& own, BatchRef v) const {
-    const Vector sizes = own.w.x.rowwise().lpNorm<Eigen::Infinity>().cwiseMax(sizes_);
+  // Inside the bounds, for all samples.
+  std::array<Real, 2> offsets_along(const Inside& own, BatchRef v) const {
+    measure_noise(own);
+    const Matrix& x = own.w.x;
+    const Vector sizes = x.rowwise().lpNorm<Eigen::Infinity>().cwiseMax(sizes_);
     const Real length = (v.array().colwise() / sizes.array()).abs().maxCoeff();
-    return step_ / (length > 0 ? length : 1);
+    const Real step = is_central_ ? central_step(noise_) : forward_step(noise_);
+    Real up = std::numeric_limits<Real>::infinity(), down = up;
+    for (Index b = 0; bounds_ && b < x.cols(); ++b)
+      for (Index i = 0; i < x.rows(); ++i) {
+        if (v(i, b) == 0) continue;
+        const Real to_upper = (bounds_->upper[i] - x(i, b)) / std::abs(v(i, b));
+        const Real to_lower = (x(i, b) - bounds_->lower[i]) / std::abs(v(i, b));
+        up = std::min(up, v(i, b) > 0 ? to_upper : to_lower);
+        down = std::min(down, v(i, b) > 0 ? to_lower : to_upper);
+      }
+    return difference_offsets(step / (length > 0 ? length : 1), is_central_, up, down);
   }
   // All forwards of J, in the order in which jacobian() asks for them.
   void begin_differences(const Inside& own) const {
-    const Index k = inputs(), calls = is_central_ ? 2 : 1;
-    Matrix points(k, calls * k);
+    const Index k = inputs();
+    Matrix points(k, 2 * k);
+    Index calls = 0;
     for (Index i = 0; i < k; ++i) {
       const Matrix v = Matrix::Identity(k, k).col(i);
-      const Real h = step_along(own, v);
-      points.col(calls * i) = own.w.x + h * v;
-      if (is_central_) points.col(calls * i + 1) = own.w.x - h * v;
+      for (const Real h : offsets_along(own, v))
+        if (h != 0) points.col(calls++) = own.w.x + h * v;
     }
-    inside_->begin_forwards(points);
+    inside_->begin_forwards(points.leftCols(calls));
   }
   // P(x + h v)
-  Matrix moved(Inside& own, BatchRef v, Real h) const {
-    Matrix y(outputs(), v.cols());
-    own.moved.x = own.w.x + h * v;
+  Matrix moved(Inside& own, BatchRef v, Real h) const { return value(own, own.w.x + h * v); }
+  Matrix value(Inside& own, const Matrix& x) const {
+    Matrix y(outputs(), x.cols());
+    own.moved.x = x;
     own.moved.context = own.w.context;
     own.moved.saved_is_current = false;
     inside_->forward(own.moved.x, own.w.context, y, own.moved);
     disturb(own.moved.x, y);
     return y;
+  }
+  void measure_noise(const Inside& own) const {
+    if (noise_ > 0) return;
+    Inside other;
+    other.w.context = own.w.context;
+    const Index batch = own.w.x.cols();
+    const Vector line = line_inside(start_, sizes_, bounds_ ? &bounds_->lower : nullptr,
+                                    bounds_ ? &bounds_->upper : nullptr);
+    const auto y = [&](Real t) -> Vector {
+      return value(other, (start_ + t * line).replicate(1, batch)).reshaped();
+    };
+    noise_ = noise_of_calls(y(0), y);
   }
   // The number of the call is a digest of x: products have no state.
   void disturb(BatchRef x, BatchOut y) const {
@@ -126,9 +160,10 @@ class Differenced final : public Physics {
   }
 
   std::unique_ptr<Physics> inside_;
-  bool is_central_, has_products_;
-  Real step_ = 0;
-  Vector sizes_;  // (k)
+  bool is_central_, has_products_, has_inverse_ = false;
+  Vector start_, sizes_;  // (k)
+  std::optional<Bounds> bounds_;
+  mutable Real noise_ = 0;  // 0: not yet measured
   std::optional<Jitter> jitter_;
   Matrix target_;  // (m, B)
 };
@@ -136,33 +171,24 @@ class Differenced final : public Physics {
 }  // namespace
 
 Real relative_noise(const Problem& problem, const Vector& x) {
-  RandomStream stream(0, "", "noise of values");
-  const Vector direction =
-      sizes_of_unknowns(x).cwiseProduct(stream.uniform_vector(x.size(), -1, 1));
+  const Bounds* const bounds = problem.bounds();
+  const Vector line = line_inside(x, sizes_of_unknowns(x), bounds ? &bounds->lower : nullptr,
+                                  bounds ? &bounds->upper : nullptr);
   Point at;
   std::uint64_t call = 0;
-  const auto value = [&](Real t) -> Vector {
-    problem.forward(x + t * direction, at);
+  const auto y = [&](Real t) -> Vector {
+    problem.forward(x + t * line, at);
     if (const Jitter* jitter = problem.jitter()) jitter->disturb(call++, problem.target(), at.y);
     return at.y.reshaped();
   };
-  const Real size = value(0).lpNorm<Eigen::Infinity>();
-  const Vector noise = noise_of_values(value);
-  const Real relative = noise.norm() / std::sqrt(static_cast<Real>(noise.size())) / size;
-  return std::isfinite(relative) ? std::max(kRounding, relative) : kRounding;
+  return noise_of_calls(y(0), y);
 }
 
-void replace_derivatives(ProblemParts& parts, const std::string& derivatives) {
-  Real noise = 0;
-  const Vector start = parts.start.standard;
-  if (derivatives != "none") {
-    Problem plain(std::move(parts));
-    noise = relative_noise(plain, start);
-    parts = std::move(plain).parts();
-  }
-  auto physics = std::make_unique<Differenced>(std::move(parts.physics), derivatives);
-  physics->set_steps(noise, sizes_of_unknowns(start));
+void replace_derivatives(ProblemParts& parts, const std::string& derivatives, bool keeps_inverse) {
+  auto physics = std::make_unique<Differenced>(std::move(parts.physics), derivatives,
+                                               parts.start.standard, parts.bounds);
   if (parts.jitter) physics->set_jitter(*parts.jitter, parts.target);
+  if (keeps_inverse) physics->keep_inverse();
   parts.physics = std::move(physics);
 }
 

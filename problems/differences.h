@@ -8,12 +8,14 @@
 
 namespace isoline::problems {
 
-// The noise of y in a call at x, relative to the largest |yᵢ| there; at least that of rounding.
-// Calls P up to kNoiseSpacings · kNoiseCalls times.
+// The noise of y in a call, relative to ‖y‖, by six calls at and near x, inside the bounds.
 Real relative_noise(const Problem& problem, const Vector& x);
 
 // `derivatives`: "none", or "forward" or "central" differences of forward solves, which cost what
-// they call: k or 2k for J. They see the jitter of the calls. No inverse and no sparse J remain.
-void replace_derivatives(ProblemParts& parts, const std::string& derivatives);
+// they call: k or 2k for J. Six further calls at
+// the start measure the noise of y. They see the jitter of the calls. No sparse J
+// remains, and an inverse only where it is kept.
+void replace_derivatives(ProblemParts& parts, const std::string& derivatives,
+                         bool keeps_inverse = false);
 
 }  // namespace isoline::problems

@@ -12,6 +12,7 @@
 #include "core/foreign/call_log.h"
 #include "core/foreign/handshake.h"
 #include "core/foreign/workers.h"
+#include "problems/differences.h"
 #include "problems/problem.h"
 
 namespace isoline::problems {
@@ -297,6 +298,10 @@ ProblemParts process_parts(const ProblemHandshake& said, const std::shared_ptr<S
       return why.empty() ? error : kNaN;
     };
   if (!said.truth.empty()) parts.truth = vector_of(said.truth);
+  const bool has_products = said.oracles.contains(Oracle::pushforward) ||
+                            said.oracles.contains(Oracle::pullback) ||
+                            said.oracles.contains(Oracle::jacobian);
+  if (said.are_differences && !has_products) replace_derivatives(parts, "central", true);
   return parts;
 }
 

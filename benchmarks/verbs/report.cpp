@@ -16,8 +16,8 @@
 #include "benchmarks/cli/views.h"
 #include "benchmarks/plan/claim_cells.h"
 #include "core/errors.h"
+#include "core/records/naming.h"
 #include "core/results/study.h"
-#include "core/spec.h"
 #include "core/text.h"
 #include "reports/sections/words.h"
 
@@ -64,17 +64,13 @@ reports::Yardstick yardstick_of(const ReportArguments& given) {
 // Leaves out the runs and the planned cells of other problems. A spec keeps each setting that has
 // its name and all its options.
 void keep_problems(reports::Study& study, const std::string& text) {
-  const std::vector<Spec> kept = parse_specs(text);
-  const auto is_other = [&](const std::string& spec) {
-    const Spec of = parse_spec(spec);
-    return std::ranges::none_of(kept, [&](const Spec& wanted) {
-      return wanted.name == of.name && std::ranges::all_of(wanted.options, [&](const auto& option) {
-               return std::ranges::find(of.options, option) != of.options.end();
-             });
-    });
-  };
-  std::erase_if(study.runs, [&](const Record& run) { return is_other(run.request.problem.spec); });
-  std::erase_if(study.plan.cells, [&](const PlannedCell& cell) { return is_other(cell.problem); });
+  std::set<std::string> kept;  // specifications, as cells have them
+  for (const Record& run : study.runs)
+    if (is_named(run.request.problem, text)) kept.insert(run.request.problem.spec);
+  std::erase_if(study.runs,
+                [&](const Record& run) { return !kept.contains(run.request.problem.spec); });
+  std::erase_if(study.plan.cells,
+                [&](const PlannedCell& cell) { return !kept.contains(cell.problem); });
   require(!study.runs.empty(), [&] {
     return fmt::format("--problem {}: these results do not contain this problem", text);
   });

@@ -17,6 +17,7 @@
 #include "core/errors.h"
 #include "core/json.h"
 #include "core/output.h"
+#include "core/records/naming.h"
 #include "core/records/npy.h"
 #include "core/results/answers.h"
 #include "core/results/study.h"
@@ -84,10 +85,6 @@ struct Solution {
   }
 };
 
-bool is_named(const Component& component, const std::string& name) {
-  return component.name == name || component.spec == name || component.asked == name;
-}
-
 AnswerPoints answer_in(const std::vector<std::string>& folders, const Record& record) {
   AnswerPoints answer = *record.answer;
   if (!answer.is_in_file()) return answer;
@@ -105,9 +102,9 @@ AnswerPoints answer_in(const std::vector<std::string>& folders, const Record& re
 void compare_with(const Solution& other, Solution& solution) {
   const Record &a = *solution.record, &b = *other.record;
   if (a.request.problem.spec != b.request.problem.spec || a.request.seed != b.request.seed) return;
-  const Real descent = a.summary.start_loss - solution.loss();
-  const Real apart = results::distance_at_equal_loss(
-      solution.loss(), other.loss(), a.scale.value_or(descent), solution.point(), other.point());
+  const Real scale = results::scale_of_ties(a, solution.loss(), other.loss());
+  const Real apart = results::distance_at_equal_loss(solution.loss(), other.loss(), scale,
+                                                     solution.point(), other.point());
   if (apart > 0) ++solution.others;
   solution.distance = std::max(solution.distance, apart);
 }
@@ -150,6 +147,8 @@ std::string table_text(const Solution& solution) {
   if (solution.answer.residual_norm)
     text += fmt::format(", ‖y − y*‖ {:.6g}", *solution.answer.residual_norm);
   text += "\n";
+  if (!record.message.empty())
+    text += fmt::format("  {}\n", reports::terminal_text(record.message));
   const auto columns = reports::answer_columns(record, solution.answer, "{:.10g}");
   const std::size_t rows = columns[0].texts.size(), shown = std::min(rows, kMostRows);
   for (std::size_t row = 0; row <= shown; ++row) {
@@ -202,6 +201,7 @@ Json to_json(const Solution& solution) {
             {"optimizer", record.request.optimizer.spec},
             {"seed", record.request.seed},
             {"status", name_of(record.status)},
+            {"message", record.message},
             {"loss", json_number(solution.loss())},
             {"runs_at_another_point", solution.others},
             {"command", reports::rerun_command(record.request)},
@@ -327,7 +327,10 @@ int run(const SolutionArguments& given, Session& session) {
     else
       write_output(given.out, text, text.substr(0, text.find('\n')));
   }
-  return kGood;
+  const bool is_doubtful = std::ranges::any_of(solutions, [](const Solution& solution) {
+    return solution.record->status == Status::unconfirmed;
+  });
+  return is_doubtful ? kWorse : kGood;
 }
 
 }  // namespace
@@ -345,6 +348,8 @@ void register_solution(VerbRegistry& registry) {
   isoline solution results/quick --problem rosenbrock --format npy --out x.npy
   isoline solution net.json --input observed.csv --out x.csv)",
        .notes =
+           "The exit code is 2 if a point that is printed is `unconfirmed`: its method stopped by "
+           "its own test, and the harness did not find a solution there; the line below says why. "
            "`returned` is the point that the run returned, and `best` the evaluated point of least "
            "loss, if it is a different point. Standard deviations belong to the returned point of "
            "a least-squares problem that offers derivatives. With --format npy, the file contains the "

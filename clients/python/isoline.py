@@ -305,8 +305,6 @@ def _valued(compute, without):
 class _Given:
     """Products from functions of the user."""
 
-    differences, pushforward_price, pullback_price = False, 1, 1
-
     def __init__(self, forward, vjp, jvp, jacobian):
         self.forward, self.vjp, self.jvp, self.jac = forward, vjp, jvp, jacobian
         given = {"pullback": vjp, "pushforward": jvp, "jacobian": jacobian}
@@ -376,46 +374,8 @@ class _Jax(_Given):
         return _column(point.push(self.jax.numpy.asarray(v)))
 
 
-class _Differences(_Given):
-    """Products by central differences, with their nominal cost in forwards."""
-
-    differences = True
-    STEP = 6e-6  # relative: the cube root of rounding
-
-    def __init__(self, forward, start):
-        super().__init__(forward, True, True, True)
-        self.pushforward_price, self.pullback_price = 2, 2 * len(start)
-        largest = max(map(abs, start), default=0)
-        unknown = min(1, largest) or 1  # the size of an unknown that starts at 0, or at rounding
-        self.sizes = [abs(s) if abs(s) > 1e-8 * largest else unknown for s in start]
-
-    def push(self, point, v):
-        """Along v, by a step that is relative to the size of each unknown."""
-        sizes = [max(abs(a), size) for a, size in zip(point.x, self.sizes)]
-        length = max((abs(b) / size for b, size in zip(v, sizes)), default=0) or 1
-        h = self.STEP / length
-        ahead, behind = ([a + s * h * b for a, b in zip(point.x, v)] for s in (1, -1))
-        ahead, behind = (_column(self.forward(self._like(x)), "forward(x)") for x in (ahead, behind))
-        return _column([(a - b) / (2 * h) for a, b in zip(ahead, behind)])
-
-    def matrix(self, point):
-        columns = []
-        for i in range(len(point.x)):
-            columns.append(self.push(point, [float(i == j) for j in range(len(point.x))]))
-        return list(zip(*columns))
-
-    def pull(self, point, u):
-        return _column([sum(a * b for a, b in zip(column, u)) for column in zip(*point.jacobian())])
-
-    @staticmethod
-    def _like(values):
-        return values if numpy is None else numpy.asarray(values)
-
-
 def _products_of(forward, start, vjp, jvp, jacobian, differences):
-    if differences:
-        return _Differences(forward, start)
-    if vjp or jvp or jacobian:
+    if vjp or jvp or jacobian or differences:
         return _Given(forward, vjp, jvp, jacobian)
     for name, kind in (("torch", _Torch), ("jax", _Jax)):
         if name not in sys.modules:
@@ -462,7 +422,8 @@ def problem(
     forward(x) -> y. Products with the Jacobian come from one of these:
     - vjp(x, u) -> Jᵀu, jvp(x, v) -> Jv, jacobian(x) -> (m, n), if passed;
     - torch or jax, if forward takes and returns their arrays;
-    - central differences, with differences=True; the record states this, and their cost is counted.
+    - central differences, with differences=True, inside the bounds. Their steps follow from the noise of y,
+      which six calls at the start measure, so y may have six digits. Their cost is counted.
     Otherwise, the problem does not offer derivatives.
 
     inverse(y, x0) -> x, or None if it does not find a solution.
@@ -488,7 +449,7 @@ def problem(
         products = _products_of(forward, start, vjp, jvp, jacobian, differences)
         if isinstance(forward, command):
             names = forward.names if names is None else names
-            note = " ".join(filter(None, (note, forward.note(products.differences)))) or None
+            note = " ".join(filter(None, (note, forward.note()))) or None
         names, units = _labels(names, len(start), "names"), _labels(units, len(start), "units")
         if target is None and truth is not None:
             target = _Point(products, _vector(_column(truth, "truth"))).y
@@ -511,9 +472,7 @@ def problem(
             "inputs": len(start),
             "outputs": len(target),
             "oracles": ["forward"] + products.oracles + (["inverse"] if inverse else []),
-            "differences": products.differences,
-            "pushforward_price": products.pushforward_price,
-            "pullback_price": products.pullback_price,
+            "differences": bool(differences) and not (vjp or jvp or jacobian),
             "inverse": inverse_kind if inverse else None,
             "start": _json_numbers(start, "start"),
             "drawn": drawn,
@@ -594,14 +553,11 @@ class command:
         self.digits = min(len(field) + 2 - len("-.e-10") for field in fields) if self.is_pest else 17
         _remove_abandoned()
 
-    def note(self, is_by_differences):
+    def note(self):
         """What its fields do to x; None where they hold all digits."""
         if self.digits >= 17:
             return None
-        said = f"The narrowest field of the template holds about {max(self.digits, 1)} digits of x."
-        if is_by_differences and 10.0 ** -(self.digits - 1) > 0.1 * _Differences.STEP:
-            said += f" Central differences step by {_Differences.STEP:g} of x, below what such a field resolves."
-        return said
+        return f"The narrowest field of the template holds about {max(self.digits, 1)} digits of x."
 
     def _field(self, name, value):
         if not self.is_pest:

@@ -210,12 +210,13 @@ class Said {
   std::pair<std::vector<Real>, std::vector<Real>> bounds(std::int64_t count) const {
     const char* name = "bounds";
     if (!has(name)) return {};
-    const std::string law =
-        fmt::format("two lists of {} numbers, the lower bounds below the upper ones", count);
+    const std::string law = fmt::format(
+        "two lists of {} numbers, no lower bound above its upper one (equal ones fix an unknown)",
+        count);
     const Json& both = json_[name];
     if (!both.is_array() || both.size() != 2) refuse(name, law);
     std::pair found(reals(both[0], count, name, law), reals(both[1], count, name, law));
-    if (!std::ranges::equal(found.first, found.second, std::less())) refuse(name, law);
+    if (!std::ranges::equal(found.first, found.second, std::less_equal())) refuse(name, law);
     return found;
   }
 
@@ -272,12 +273,6 @@ Foreign foreign_of(const Said& said) {
   return foreign;
 }
 
-bool is_within(const std::vector<Real>& x, const ProblemHandshake& problem) {
-  if (x.empty() || problem.lower.empty()) return true;
-  return std::ranges::equal(problem.lower, x, std::less_equal()) &&
-         std::ranges::equal(x, problem.upper, std::less_equal());
-}
-
 // A part of a greeting. The caller handles a broken connection, as it handles a wrong argument; but
 // it can ask a program again that was killed.
 auto greeted(auto exchange) {
@@ -326,8 +321,18 @@ ProblemHandshake problem_handshake(const std::string& text, const std::string& s
   problem.names = said.labels("names", problem.inputs);
   problem.units = said.labels("units", problem.inputs);
   const auto require_within = [&](const char* name, const std::vector<Real>& x) {
-    require(is_within(x, problem),
-            [&] { return fmt::format("{} declares a {} outside its bounds", sender, name); });
+    for (std::size_t i = 0; i < x.size() && !problem.lower.empty(); ++i) {
+      const bool is_below = x[i] < problem.lower[i];
+      require(!is_below && !(x[i] > problem.upper[i]), [&] {
+        const std::string label = i < problem.names.size() && !problem.names[i].empty()
+                                      ? " ('" + problem.names[i] + "')"
+                                      : "";
+        return fmt::format("{} declares a {} outside its bounds: x{}{} is {}, {} its {} bound {}",
+                           sender, name, i + 1, label, x[i], is_below ? "below" : "above",
+                           is_below ? "lower" : "upper",
+                           is_below ? problem.lower[i] : problem.upper[i]);
+      });
+    }
   };
   require_within("start", problem.start);
   require_within("drawn", problem.drawn);

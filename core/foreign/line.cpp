@@ -117,8 +117,7 @@ void Line::fail(const std::string& what) {
 }
 
 void Line::fail_at(Verb verb, const std::string& why) {
-  throw FailedCall(fmt::format("{} failed at {}: {}{}", sender_, name_of(verb), why, state_text()),
-                   why);
+  throw FailedCall(fmt::format("{} failed at {}: {}", sender_, name_of(verb), why), why);
 }
 
 // Reads the program's output while waiting, so that a full pipe does not block the program.

@@ -288,7 +288,7 @@ TEST(Handshakes, OfAnotherProtocolOrRoleAreRefused) {
 }
 
 TEST(Handshakes, BoundsLieOneBelowTheOtherAndHoldEveryPointThatIsSaid) {
-  for (const Json& wrong : {Json{{0, 1}, {0, 1}}, Json{{0, 0}, {1, "nan"}}, Json{{0, 0}},
+  for (const Json& wrong : {Json{{0, 1}, {0, 0.5}}, Json{{0, 0}, {1, "nan"}}, Json{{0, 0}},
                             Json{{0}, {1}}, Json("none"), Json{{0, 0}, {1, "one"}}})
     EXPECT_TRUE(
         complaint("bounds", wrong).starts_with("`mine` declares bounds = " + json_text(wrong)));

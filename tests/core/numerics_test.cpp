@@ -2,15 +2,19 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <complex>
+#include <cstdio>
 #include <cstdlib>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <numbers>
 
 #include "core/convolution.h"
 #include "core/decompose.h"
+#include "core/differences.h"
 #include "core/errors.h"
 #include "core/fourier.h"
 #include "core/product.h"
@@ -413,6 +417,60 @@ INSTANTIATE_TEST_SUITE_P(Shapes, KernelGradients,
                                          ConvolutionShape{3, 2, 32, 4, true},
                                          ConvolutionShape{1, 3, 16, 8, true},
                                          ConvolutionShape{2, 16, 32, 8, false}));
+
+// y(t) of a smooth model, as a simulator would hand it over.
+Vector calls_of(Real t, const std::function<Real(Real)>& print) {
+  Vector y(30);
+  for (Index i = 0; i < y.size(); ++i)
+    y[i] = print((1.5 + t) * std::sin(0.1 * static_cast<Real>(i + 1) * (2 - 0.7 * t)));
+  return y;
+}
+Real noise_by(const std::function<Real(Real)>& print) {
+  const auto y = [&](Real t) { return calls_of(t, print); };
+  return noise_of_calls(y(0), y);
+}
+
+TEST(NoiseOfCalls, IsRoundingForASmoothFunction) {
+  EXPECT_EQ(noise_by([](Real y) { return y; }), std::numeric_limits<Real>::epsilon());
+}
+
+// A place of 10⁻⁵ of some 1.5, rounded: a fifth to a third of it in the root mean square.
+TEST(NoiseOfCalls, IsTheLastPlaceOfPrintedOrSingleNumbers) {
+  const auto printed = [](const char* form) {
+    return noise_by([=](Real y) {
+      std::array<char, 32> text;
+      std::snprintf(text.data(), text.size(), form, y);
+      return std::strtod(text.data(), nullptr);
+    });
+  };
+  EXPECT_NEAR(std::log10(printed("%.6g")), -6, 0.7);
+  EXPECT_NEAR(std::log10(printed("%.3f")), -3.5, 0.7);
+  EXPECT_NEAR(std::log10(noise_by([](Real y) { return static_cast<Real>(static_cast<float>(y)); })),
+              -7.5, 0.7);
+}
+
+// As of an adaptive solver, whose error jumps where the number of its steps changes.
+TEST(NoiseOfCalls, SeesJumpsThatSmallStepsDoNot) {
+  const auto y = [](Real t) -> Vector {
+    return calls_of(t, [](Real y) { return y; }) * (1 + 1e-3 * std::sin(1e4 * std::floor(2e3 * t)));
+  };
+  EXPECT_GT(noise_of_calls(y(0), y), 1e-5);
+}
+
+TEST(Differences, StayInsideTheirRoomAndAreOfSecondOrderThere) {
+  const auto y = [](Real t) { return Vector::Constant(1, std::exp(t)); };
+  for (const auto& [up, down] : {std::pair<Real, Real>{1, 1}, {0, 1}, {1, 0}, {1e-5, 1e-4}}) {
+    for (const bool is_central : {false, true}) {
+      const Real h = is_central ? 1e-4 : 1e-8;
+      const auto at = difference_offsets(h, is_central, up, down);
+      for (const Real offset : at) EXPECT_TRUE(offset <= up && -offset <= down);
+      const Vector slope =
+          difference_quotient<Vector>(at, y(0), y(at[0]), at[1] == 0 ? y(at[0]) : y(at[1]));
+      EXPECT_NEAR(slope[0], 1, 2e-8) << up << " " << down;  // h²/3, or rounding over h
+    }
+  }
+  EXPECT_EQ(difference_offsets(1e-4, true, 0, 0)[0], 0);  // an unknown that is fixed
+}
 
 }  // namespace
 }  // namespace isoline

@@ -2,9 +2,13 @@
 // gradient rules and baselines.
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <map>
+#include <string>
+#include <vector>
 
 #include "core/decompose.h"
+#include "optimizers/examination.h"
 #include "optimizers/ssbroyden.h"
 #include "tests/optimizers/run.h"
 #include "tests/optimizers/trial_problems.h"
@@ -469,6 +473,35 @@ TEST(Applicability, OfMethodsForNetworks) {
     EXPECT_NE(why(name, easy()), "") << name;
     EXPECT_EQ(why(name, network("4")), "") << name;
   }
+}
+
+// y = J x with residuals that J does not reach, so that the solution is x = 0.
+std::string doubt_at(const Matrix& J, const Vector& x, std::vector<bool> is_held = {}) {
+  const std::vector<std::string> names{"k", "c"};
+  Vector far = Vector::Zero(J.rows());
+  far[J.rows() - 1] = 0.1;
+  is_held.resize(static_cast<std::size_t>(x.size()));
+  return doubt_of({.J = J,
+                   .residual = J * x + far,
+                   .theta = x,
+                   .sizes = Vector::Ones(x.size()),
+                   .is_held = is_held,
+                   .names = names,
+                   .size_of_y = 1,
+                   .noise = std::numeric_limits<Real>::epsilon()});
+}
+
+TEST(Examination, ConfirmsASolutionAndNamesWhatSpeaksAgainstOne) {
+  Matrix J = Matrix::Zero(4, 2);
+  J.topRows(2) = Matrix::Identity(2, 2);
+  EXPECT_EQ(doubt_at(J, Vector::Zero(2)), "");
+  const Vector away = Vector::Unit(2, 1) * 1e-3;
+  EXPECT_NE(doubt_at(J, away).find("moves c"), std::string::npos);
+  EXPECT_EQ(doubt_at(J, away, {false, true}), "");  // a bound holds it
+  J.col(1).setZero();
+  EXPECT_NE(doubt_at(J, Vector::Zero(2)).find("c has no effect"), std::string::npos);
+  J.col(1) = 2 * J.col(0);
+  EXPECT_NE(doubt_at(J, Vector::Zero(2)).find("rank"), std::string::npos);
 }
 
 }  // namespace

@@ -1,0 +1,70 @@
+// Rank and Gauss-Newton step by the singular values of J D⁻¹, D the norms of J's columns.
+#include "optimizers/examination.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "core/decompose.h"
+#include "core/differences.h"
+
+namespace isoline::optimizers {
+
+std::string doubt_of(const LeastSquaresPoint& at) {
+  constexpr Real kRounding = std::numeric_limits<Real>::epsilon();
+  constexpr Real kEnough = 5e-7;   // of an unknown: half of 1e-6, as the step is of first order
+  constexpr Real kSure = 4;        // standard deviations
+  constexpr Real kOfSpread = 0.1;  // of its standard deviation: more noise leaves it undetermined
+  std::vector<Index> free;
+  for (Index i = 0; i < at.theta.size(); ++i)
+    if (!at.is_held[static_cast<std::size_t>(i)]) free.push_back(i);
+  if (free.empty()) return "";
+  const Index m = at.J.rows(), n = std::ssize(free);
+  const Matrix J = at.J(Eigen::all, free);
+  if (!is_finite(J) || !is_finite(at.residual)) return "its Jacobian is not finite";
+  const Vector D = J.colwise().norm();                                           // (n)
+  const Real error = at.noise * at.size_of_y / std::sqrt(static_cast<Real>(m));  // of an entry of y
+  const Real step = at.has_exact_jacobian ? 1 : std::sqrt(at.noise);  // of its differences
+  const auto size_of = [&](Index i) {
+    return std::max(std::abs(at.theta[free[i]]), at.sizes[free[i]]);
+  };
+  for (Index i = 0; i < n; ++i)
+    if (!(D[i] * size_of(i) * step > 2 * at.noise * at.size_of_y))
+      return fmt::format("{} has no effect here", name_of_unknown(at.names, free[i]));
+  Svd svd;
+  if (!thin_svd(J * D.cwiseInverse().asDiagonal(), svd))
+    return "its Jacobian has no singular values";
+  const Vector& sigma = svd.sigma;
+  const Index rank = std::min(m, n);
+  const Real least = at.has_exact_jacobian ? static_cast<Real>(std::max(m, n)) * kRounding : step;
+  if (!(sigma[rank - 1] > least * sigma[0])) {
+    Index largest = 0;  // of the direction that does not change y
+    svd.Vt.row(rank - 1).cwiseAbs().maxCoeff(&largest);
+    return fmt::format("its Jacobian does not have full rank: another value of {} gives the same y",
+                       name_of_unknown(at.names, free[largest]));
+  }
+  const Vector along = -(svd.U.transpose() * at.residual).cwiseQuotient(sigma);
+  const Vector move = D.cwiseInverse().cwiseProduct(svd.Vt.transpose() * along);
+  const Real r = at.residual.norm();
+  const Real spread = m > n ? r / std::sqrt(static_cast<Real>(m - n)) : 0;
+  const Matrix root = svd.Vt.transpose() * sigma.cwiseInverse().asDiagonal();
+  const Matrix square = root * sigma.cwiseInverse().asDiagonal();
+  Real slope_error = 0;  // of an entry of D⁻¹ Jᵀ r
+  for (Index i = 0; i < n; ++i)
+    slope_error = std::max(slope_error, error / (step * size_of(i)) * r / D[i]);
+  for (Index i = 0; i < n; ++i) {
+    const Real length = root.row(i).norm() / D[i];
+    const Real noise = kSure * (error * length + slope_error * square.row(i).norm() / D[i]);
+    const Real of_noise = at.forgives_noise ? std::min(noise, kOfSpread * spread * length) : 0;
+    const Real enough = std::max(kEnough * size_of(i), of_noise);
+    if (!(std::abs(move[i]) <= enough))
+      return fmt::format("gradient not small: the Gauss-Newton step moves {} by {:.2g}",
+                         name_of_unknown(at.names, free[i]), move[i]);
+  }
+  return "";
+}
+
+}  // namespace isoline::optimizers
