@@ -259,6 +259,12 @@ class DampedLeastSquares {
   Vector norms_, step_, moved_, pulled_, rest_;  // (n) ‖J_j‖, s = D d; (m·B) A s; (n); (m·B)
 };
 
+bool has_own_jacobian(const Problem& problem) {
+  const OracleSet offers = problem.offers();
+  return offers.contains(Oracle::jacobian) || offers.contains(Oracle::layer_factors) ||
+         offers.contains(Oracle::sparse_jacobian) || offers.contains(Oracle::pullback);
+}
+
 struct LevenbergMarquardt {
   Real initial_damping = 1e-4, rate = 1, acceleration = 0.75;
   std::string damping = "adaptive", factorization = "auto", scaling = "more", line_search;
@@ -290,9 +296,7 @@ struct LevenbergMarquardt {
 
   State init(Meter& f, const Vector&) const {
     State s;
-    const bool has_own = f.is_granted(Oracle::jacobian) || f.is_granted(Oracle::layer_factors) ||
-                         f.is_sparse() || f.is_granted(Oracle::pullback);
-    s.jacobian = jacobian == "exact" && !has_own ? "differences" : jacobian;
+    s.jacobian = jacobian == "exact" && !has_own_jacobian(f.problem()) ? "differences" : jacobian;
     s.squares.start(f);
     s.damping.mu = initial_damping;
     s.spectral = SpectralStep(spectral_factorization(factorization));
@@ -564,11 +568,7 @@ std::string objection_of_levenberg_marquardt(const OptionValues& options, const 
 
 OracleSet needs_of_levenberg_marquardt(const OptionValues& options, const Problem& problem) {
   const std::string factorization = options.text("factorization");
-  const OracleSet offers = problem.offers();
-  const bool has_own =
-      offers.contains(Oracle::jacobian) || offers.contains(Oracle::layer_factors) ||
-      offers.contains(Oracle::sparse_jacobian) || offers.contains(Oracle::pullback);
-  if (options.text("jacobian") != "exact" || !has_own) return {Oracle::forward};
+  if (options.text("jacobian") != "exact" || !has_own_jacobian(problem)) return {Oracle::forward};
   if (problem.bounds() && options.text("damping") == "adaptive")
     return {Oracle::forward, Oracle::jacobian};
   if (options.text("damping") != "adaptive")

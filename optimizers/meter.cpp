@@ -464,8 +464,8 @@ std::string Meter::doubt() {
       at.is_held[static_cast<std::size_t>(i)] =
           bounds->is_active(judged_theta_, slope, i) || bounds->lower[i] == bounds->upper[i];
   std::string why = doubt_of(at);
-  const Real rounding = 10 * std::numeric_limits<Real>::epsilon();
-  if (!why.empty() || !is_by_method || known_noise_ > rounding) return why;
+  constexpr Real kRounding = 1e-12;  // with what a steep y makes of it
+  if (!why.empty() || !is_by_method || known_noise_ > kRounding) return why;
   at.forgives_noise = false;  // forward differences do not show six digits of a steep y
   why = doubt_of(at);
   if (why.empty() || !was_known || work_ + 2 * n > budget_.work) return why;

@@ -18,7 +18,8 @@ struct OfLogarithms {
 
   template <class Scalar>
   void operator()(const Scalar* x, int n, Scalar* y, int m) const {
-    std::vector<Scalar> p(static_cast<std::size_t>(n));
+    thread_local std::vector<Scalar> p;  // no allocation once it is warm
+    p.resize(static_cast<std::size_t>(n));
     for (std::size_t i = 0; i < p.size(); ++i) p[i] = typical[i] * exp(x[i]);
     model(p.data(), n, y, m);
   }
