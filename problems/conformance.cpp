@@ -78,7 +78,7 @@ class Examination {
     return has_values && has_target;
   }
 
-  // What the unknowns do to y: their effects, and how many of their combinations have one. Always
+  // The effects of the unknowns on y, and how many of their combinations have one. Always
   // holds: a model may have an unknown too many.
   void rank() {
     constexpr Index kMostUnknowns = 64;
@@ -364,7 +364,7 @@ class Examination {
     const bool is_noisy = noise_ > 10 * kEpsilon;
     return is_noisy ? 10 * (noise_ + quotient_error() * kSteps.first) : 1e4 * kEpsilon;
   }
-  // Of central differences with steps by the noise of y, with a margin for its direction.
+  // The error of central differences with steps by the noise of y, with a margin for its direction.
   Real quotient_error() const { return 100 * std::pow(noise_, 2.0 / 3); }
   Matrix by_differences() const {
     Matrix J(problem_.residuals(), problem_.unknowns());
@@ -561,8 +561,9 @@ Index slow_calls_of(const Problem& problem) {
   const Products has = problem.products();
   Index calls = 3;                   // at the random point, at the start, and at the point again
   if (has.has_pullback) calls += 2;  // the gradient
+  constexpr Index kNoiseCalls = 6;   // that the steps of differences follow from
   if (has.are_differences)
-    calls += has.has_pullback ? has.pullback_price : 0;
+    calls += has.has_pullback ? has.pullback_price + kNoiseCalls : 0;
   else if (has.has_pushforward || has.has_pullback)
     calls += kFewSteps.count + 1;
   if (problem.inverse_kind() == Inverse::exact) calls += 2;

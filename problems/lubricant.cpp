@@ -4,7 +4,7 @@
 //   η = η_∞ + (η₀ a_T − η_∞) (1 + (λ a_T γ̇)^a)^(−s/a),  s = 1 − n.
 //
 // Yasuda, Armstrong, Cohen (1981), equation 2. Unknown: η₀, η_∞, λ, a, s, E. A curve with two
-// plateaus on logarithmic axes; λ, a and s are told apart only by the bend between them.
+// plateaus on logarithmic axes; only the bend between them separates λ, a and s.
 #include "problems/calibration.h"
 
 namespace isoline::problems {

@@ -37,14 +37,16 @@ namespace {
 
 volatile std::sig_atomic_t stop_requested = 0;
 
-// The message of a run that says nothing else: how many evaluations failed, and the first of them.
+// In the message of a run: how many evaluations failed, and the first of them.
 void note_failures(Trace& trace) {
   const FailedEvaluations& failed = trace.failures;
-  if (failed.total == 0 || trace.message[0] != '\0') return;
+  if (failed.total == 0 || (trace.message[0] != '\0' && trace.status != Status::unconfirmed))
+    return;
+  const std::string before = trace.message[0] == '\0' ? "" : std::string(trace.message) + "; ";
   constexpr std::size_t kShown = 8;
   const std::span<const double> x = failed.point(0);
   set_text(trace.message,
-           fmt::format("{} evaluation{} failed, the first{}{:.10g}{}: {}", failed.total,
+           fmt::format("{}{} evaluation{} failed, the first{}{:.10g}{}: {}", before, failed.total,
                        failed.total == 1 ? "" : "s", x.empty() ? "" : " at x = (",
                        fmt::join(x.first(std::min(x.size(), kShown)), ", "),
                        x.empty()           ? ""

@@ -400,7 +400,8 @@ bool Worker::poll() {
   return false;
 }
 
-// Of a child that is kept ready. It ends where its next work could be affected by this one.
+// The state of a child that is kept ready. It ends where its next work could be affected by this
+// one.
 bool Worker::has_answered() {
   Done done{};
   if (recv(channel_, &done, sizeof done, MSG_DONTWAIT) != sizeof done) return false;

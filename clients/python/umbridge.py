@@ -238,7 +238,7 @@ class Refusal(Exception):
 
 
 class Turns:
-    """A lock that serves those who wait in the order in which they came."""
+    """A lock that serves requests in the order in which they came."""
 
     def __init__(self):
         self.own, self.waiting, self.is_taken = threading.Lock(), collections.deque(), False

@@ -60,7 +60,7 @@ struct Sheet {
   std::string options_text;             // describe_options() as JSON text
   std::vector<std::string> oracles;     // offered by a problem, required by an optimizer
   std::vector<std::string> privileges;  // of an optimizer
-  // Of an optimizer: its group by required oracles; of a problem: what shares its operator.
+  // The group of an optimizer by required oracles; the problems that share an operator.
   std::string family;
   std::string mathematics;            // of an optimizer: the kind of its step
   std::string group;                  // of a problem: toy, physics, classical

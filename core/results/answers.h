@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <span>
 
 #include "core/real.h"
@@ -11,14 +10,12 @@
 
 namespace isoline::results {
 
-// The scale by which two losses of a record's problem tie: that of the success criterion, at most
-// the smaller of the two losses where the least loss is unknown. Never the loss at the start, which
-// may be larger by any factor.
+// The scale by which two losses of a record's problem tie: that of the success criterion, or the
+// smaller of the two losses where the least loss is unknown. Never the loss at the start, which may
+// be larger by any factor.
 inline Real scale_of_ties(const Record& record, Real loss_x, Real loss_z) {
   const Real smaller = std::min(std::abs(loss_x), std::abs(loss_z));
-  if (!record.minimum) return smaller;
-  return std::min(record.scale.value_or(smaller),
-                  std::max(smaller, std::numeric_limits<Real>::min()));
+  return record.minimum ? record.scale.value_or(smaller) : smaller;
 }
 
 // ‖x − z‖ where the losses tie but the points differ, else 0. Losses tie where they differ by less

@@ -297,7 +297,7 @@ class Decider {
     for (const std::size_t s : firsts(mean_scores(scores))) choice.first.push_back(methods_[s]);
     choice.is_kept = std::ranges::find(choice.first, out.places[0].method) != choice.first.end();
     if (!choice.first.empty()) {
-      // Of a size that is compared with others, the flips may be few.
+      // The flips may be few for a size that is compared with others.
       constexpr std::size_t kExact = 12, kDrawn = 4096;
       const FlipLevels levels = flip_levels(sums_of(scores, by_family(families)), kExact, kDrawn);
       for (std::size_t s = 0; s < methods_.size(); ++s) choice.group += levels.is_in_group(s);

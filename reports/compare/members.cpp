@@ -1,4 +1,4 @@
-// What of two records differs beyond the compared figures: every member of theirs, number by
+// The differences of two records beyond the compared figures: every member of theirs, number by
 // number, with or without a tolerance; and which members a comparison cannot judge.
 #include <fmt/format.h>
 
@@ -20,7 +20,7 @@ const std::set<std::string> kJudgedElsewhere = {"build",  "build_parts", "cell",
                                                 "schema", "status",      "request"};
 // Texts that may hold numbers and addresses of one machine: a change is named, and is not worse.
 const std::set<std::string> kTexts = {"claimed", "message"};
-// What stands beside the path of a run: as long as that is.
+// Arrays beside the path of a run: as long as that is.
 const std::set<std::string> kPathMembers = {"curve", "exhibit", "hits", "series", "trajectory"};
 
 constexpr Real kRounding = 1e-15;  // of double precision, as a share of a column

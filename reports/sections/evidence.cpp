@@ -431,7 +431,7 @@ void borrow_spread(Judgement& out, const Measured& from) {
   }
 }
 
-// Of a comparison by the clock: the first method has the loss of the second's end after so many
+// A comparison by the clock: the first method has the loss of the second's end after so many
 // more of its iterations, so the second is the quicker one where its step costs less than that.
 // This does not depend on the speed of an implementation.
 std::string break_even_text(const Judgement& judged, const Measured& from) {

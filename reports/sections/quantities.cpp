@@ -464,7 +464,7 @@ bool is_threshold(const Json& claim) {
   return published.contains("at_least") || published.contains("at_most");
 }
 
-// Of the kinds that are counted, seed by seed.
+// The kinds that are counted, seed by seed.
 bool is_counted(const std::string& kind) {
   return kind == "position" || kind == "order" || kind == "trend";
 }

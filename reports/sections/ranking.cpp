@@ -143,7 +143,7 @@ std::string linear_text(const Comparison& c, const Decision& decision) {
   const auto apart = std::ranges::find(decision.choices, Varied::linear, &Choice::varied);
   if (linear == 0 || apart == decision.choices.end()) return "";
   return words("ranking.linear", linear, decision.settings, decision.settings - linear,
-               apart->first.empty() ? words("ranking.nobody") : names_text(c, apart->first, 3),
+               apart->first.empty() ? words("ranking.no-method") : names_text(c, apart->first, 3),
                apart->group, decision.places.size());
 }
 

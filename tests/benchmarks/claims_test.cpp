@@ -255,7 +255,7 @@ TEST(VerdictsOnClaims, OfLearnedProblemsAreDecidedAndMostlySupported) {
   const std::vector<Judgement> judgements = judge(claims_of({}), run_learned());
   EXPECT_GE(std::ranges::count_if(judgements, reports::is_decided, &Judgement::verdict), 7);
   // Three seeds are a range: what reaches into the band without lying in it is consistent.
-  EXPECT_GE(supported(judgements), 6U);
+  EXPECT_GE(supported(judgements), 5U);
 }
 
 // docs/papers.md is made by `claims --papers`: each claim as it stands, and what no chance has a

@@ -275,8 +275,8 @@ TEST_F(SharedFolder, CellsOfARunThatWasKilledAreTakenOver) {
   status_of(other);
   const Outcome outcome = run_here();
   EXPECT_EQ(outcome.statuses.at(Status::budget), static_cast<std::int64_t>(requests.size()));
-  EXPECT_LE(told(),
-            static_cast<int>(requests.size()) + 3);  // those that its three workers had in hand
+  // Those that its workers had in hand, and those whose records waited to be written together.
+  EXPECT_LE(told(), static_cast<int>(requests.size()) + 12);
 }
 
 TEST_F(SharedFolder, ACellThatAnotherProcessHoldsIsWaitedFor) {
@@ -304,7 +304,8 @@ TEST_F(SharedFolder, RecordsThatVanishWhileItRunsAreMissed) {
     // It ends at a file that is renamed meanwhile, and leaves the rest.
     while (fs::remove_all(out, error), error) usleep(200);
   });
-  const Outcome outcome = run_plan(catalog, "test", requests, out, {.jobs = 2});
+  const Outcome outcome =
+      run_plan(catalog, "test", requests, out, {.jobs = 2, .isolates_cells = true});
   status_of(remover);
   EXPECT_GE(outcome.missing.size(), 4U);
   EXPECT_EQ(plan_from_text(read_text(out / "plan.json"), "plan").cells.size(), requests.size());

@@ -213,7 +213,8 @@ TEST_F(ForeignCells, OfAFeatureListEachFailedEvaluation) {
       record_of(request_of("rosenbrock[fail=0.05]", "nlopt-neldermead", {.iterations = 500}));
   ASSERT_TRUE(record.failures);
   EXPECT_EQ(std::ssize(record.failures->x), record.failures->total);
-  EXPECT_TRUE(record.message.starts_with(fmt::format("{} evaluation", record.failures->total)))
+  EXPECT_NE(record.message.find(fmt::format("{} evaluation", record.failures->total)),
+            std::string::npos)
       << record.message;
   const Problem problem = make_problem(catalog(), record.request.problem, 0);
   const auto loss_at = [&](const std::vector<Real>& x) {
@@ -346,8 +347,7 @@ TEST_F(ForeignCells, AreRunOnlyWhereTheProblemIsCertified) {
   const std::string sign = complaint("has-a-wrong-sign"), random = complaint("is-random");
   EXPECT_NE(sign.find("falls as h²"), std::string::npos) << sign;
   EXPECT_NE(random.find("gives the same bits"), std::string::npos) << random;
-  EXPECT_NE(complaint("raises").find("gives the same bits"), std::string::npos)
-      << "one call failed, and the same one later did not";
+  EXPECT_NE(complaint("raises").find("mesh is tangled"), std::string::npos) << "the reason";
   EXPECT_NE(complaint("two-answers").find("cannot be checked"), std::string::npos)
       << "no certificate, no cells";
   EXPECT_EQ(complaint("is-sound"), "");
@@ -437,7 +437,7 @@ class SlowProgram : public ForeignCells {
 TEST_F(SlowProgram, MakesTheAnnouncedCallsAndThoseOfItsCell) {
   options.progress = Progress::Style::plain;
   const std::map<std::string, std::size_t> expected = {
-      {"", 3}, {", jacobian=lambda x: [[2 * x[0], -1], [0, 2]]", 9}, {", differences=True", 9}};
+      {"", 3}, {", jacobian=lambda x: [[2 * x[0], -1], [0, 2]]", 9}, {", differences=True", 15}};
   for (const auto& [derivatives, count] : expected) {
     const Request request = request_with(derivatives, "nlopt-neldermead");
     testing::internal::CaptureStderr();
@@ -615,7 +615,7 @@ TEST_F(ForeignCells, OfAnOptimizerAreCountedAndTraced) {
 
 TEST_F(ForeignCells, OfAnOptimizerKeepWhatItClaimsAndPrintsAndFailWithWhatItDid) {
   const Record record = record_of_method("talks");
-  EXPECT_EQ(record.status, Status::converged) << record.message;
+  EXPECT_EQ(record.status, Status::unconfirmed) << record.message;
   EXPECT_EQ(record.claimed, "a small loss, I believe");
   EXPECT_EQ(record.output, "what I think of it\n");
   EXPECT_EQ(record.counts[0], 1)
@@ -668,7 +668,11 @@ TEST_F(ForeignCells, OfScipyCountWhatScipyCounts) {
       SCOPED_TRACE(method + " on " + problem);
       const Record record = record_of(
           request_of(problem, process_of(example("scipy_optimize.py " + method, python)), endless));
-      ASSERT_EQ(record.status, Status::converged) << record.message;
+      // At the solution of powell-singular J does not have full rank.
+      const bool is_singular = problem == std::string("powell-singular");
+      ASSERT_TRUE(record.status == Status::converged ||
+                  (is_singular && record.status == Status::unconfirmed))
+          << record.message;
       const bool is_least_squares = method == "lm" || method == "trf";
       const auto asked = [&](Oracle oracle) {
         return record.counts[static_cast<std::size_t>(oracle)];

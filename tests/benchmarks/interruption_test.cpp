@@ -106,7 +106,9 @@ class KilledRuns : public testing::Test {
                                   .budget = {.iterations = 20}}}};
     requests = expand(catalog, suite, {});
   }
-  Outcome run(const fs::path& out) { return run_plan(catalog, "test", requests, out, {.jobs = 2}); }
+  Outcome run(const fs::path& out) {  // slowly, so that there is something to interrupt
+    return run_plan(catalog, "test", requests, out, {.jobs = 2, .isolates_cells = true});
+  }
   pid_t run_apart() {
     return forked([&] { run(folder.path()); });
   }

@@ -297,7 +297,7 @@ class Commands(unittest.TestCase):
         columns = "head -n 1 $1 | cut -c 1-8; head -n 1 $1 | cut -c 9-16; tail -n 1 $1"
         self.assertEqual(self.ask(columns, "model([1/3, -1e-10])"), "[0.3333333, -1e-10, 0.3333]")
         self.assertIn("width", self.ask("cat $1", "model([-1e-10, 1])"))
-        self.assertIn("below", self.ask("true", "model.note(True)"))
+        self.assertIn("digits", self.ask("true", "model.note()"))
         with tempfile.TemporaryDirectory() as folder:
             with open(os.path.join(folder, "in.tpl"), "w") as file:
                 file.write("~ a ~~ b ~\n")

@@ -129,7 +129,7 @@ TEST(Plugin, AProblemOfForwardAloneIsInapplicableToWhoAsksForMore) {
       run(catalog, {"trial-forward"}, {"gd", "levenberg-marquardt", "nlopt-neldermead"});
   ASSERT_EQ(all.records.size(), 3U);
   EXPECT_EQ(all.records[0].status, Status::inapplicable);
-  EXPECT_EQ(all.records[1].status, Status::inapplicable);
+  EXPECT_NE(all.records[1].status, Status::inapplicable) << "by differences of its own";
   EXPECT_NE(all.records[2].status, Status::inapplicable);
   EXPECT_LT(all.records[2].summary.loss, all.records[2].summary.start_loss);
 }
