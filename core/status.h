@@ -17,13 +17,13 @@ namespace isoline {
 
 enum class Status {
   running,
-  converged,     // the method stopped by its own test, and the harness found a solution there
-  unconfirmed,   // the method stopped by its own test, and the harness did not; the message says why
-  target,        // the harness measured L at or below the target
-  discrepancy,   // the harness measured ‖y − y*‖ at or below τδ, with δ the noise level
-  budget,        // iterations, work or time are spent
-  stalled,       // no relative decrease above 1e-12 in Budget::stall iterations
-  diverged,      // the loss is not finite, or above 1e12 times its start
+  converged,    // the method stopped by its own test, and the harness found a solution there
+  unconfirmed,  // the method stopped by its own test, and the harness did not; the message says why
+  target,       // the harness measured L at or below the target
+  discrepancy,  // the harness measured ‖y − y*‖ at or below τδ, with δ the noise level
+  budget,       // iterations, work or time are spent
+  stalled,      // no relative decrease above 1e-12 in Budget::stall iterations
+  diverged,     // the loss is not finite, or above 1e12 times its start
   inapplicable,  // the cell cannot exist; the message says why
   failed,        // an exception; the message is its text
   crashed,       // a signal ended the process

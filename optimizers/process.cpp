@@ -1,6 +1,6 @@
 // An optimizer in another program: process[command="python3 mine.py"]. The program calls the
-// oracles over frames on a private socket (docs/serving-problems.md), and the meter counts them. Oracles
-// that its handshake did not declare are refused. Calls at the same θ share one forward.
+// oracles over frames on a private socket (docs/serving-problems.md), and the meter counts them.
+// Oracles that its handshake did not declare are refused. Calls at the same θ share one forward.
 #include <fmt/format.h>
 
 #include <array>

@@ -57,7 +57,8 @@ class Examination {
       call_seconds_ = std::min(call_seconds_, call_clock() - begin);
     }
     piece_ = piece_of(at_);
-    if (!problem_.is_elsewhere() || is_slow() || !at_.y.allFinite()) return;
+    if (!problem_.is_elsewhere() || is_slow() || !at_.y.allFinite() || !start().y.allFinite())
+      return;
     noise_ = relative_noise(problem_, problem_.start());
     h_ = central_step(noise_);
   }

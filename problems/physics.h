@@ -93,7 +93,7 @@ struct Products {
   Index pushforward_price = 1, pullback_price = 1;
   bool are_differences = false;  // quotients of forwards, of some eight digits
   bool are_at_once = false;      // by forwards none of which needs the result of another
-  Real noise = 0;                // of y in a call, relative to ‖y‖, where differences have found it
+  Real noise = 0;  // of y in a call, relative to ‖y‖, where differences have found it
 };
 
 class Physics {

@@ -1,6 +1,6 @@
-// A problem that another program computes, over frames on a private socket (docs/serving-problems.md):
-// process[command="python3 mine.py"]. Each problem object has its own program, which ends with it.
-// A point needs one forward; the products there use its results.
+// A problem that another program computes, over frames on a private socket
+// (docs/serving-problems.md): process[command="python3 mine.py"]. Each problem object has its own
+// program, which ends with it. A point needs one forward; the products there use its results.
 #include <fmt/format.h>
 
 #include <array>

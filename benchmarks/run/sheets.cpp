@@ -174,8 +174,8 @@ MeasuredPrice price_of(std::string_view name, std::int64_t declared, double forw
   return price;
 }
 
-// The network alone, as `isoline solution` applies it, to the samples of a batch at once: what one of
-// them takes.
+// The network alone, as `isoline solution` applies it, to the samples of a batch at once: what one
+// of them takes.
 MeasuredPrice inference_price(const Problem& problem, double forward, Real unit) {
   const problems::Network& network = problem.network();
   const Matrix& input = problem.batch().input;

@@ -166,8 +166,8 @@ bool is_chaotic(const ComparedCell& cell, const std::optional<Real>& tolerance);
 // not, or that none of them reached and NEW does. What only some reached is no difference.
 Differences coarse_differences(const ComparedCell& before, const ComparedCell& after);
 
-// Every other member of the two records, number by number: within the tolerance times the norm of x*
-// for points, times the largest value of a column for others. Adds the members that a comparison
+// Every other member of the two records, number by number: within the tolerance times the norm of
+// x* for points, times the largest value of a column for others. Adds the members that a comparison
 // with a tolerance leaves out.
 Differences member_differences(const ComparedCell& before, const ComparedCell& after,
                                const std::optional<Real>& tolerance,
@@ -221,7 +221,7 @@ struct GateResult {
   std::vector<ReasonedCell> incomparable, elsewhere;  // the second: of equal loss, at another x
   std::vector<std::string> remarks;
   std::set<std::string> uncompared;  // members that a tolerance leaves out
-  std::string verdict;  // one sentence, which names the cause
+  std::string verdict;               // one sentence, which names the cause
   ExitCode exit_code = kGood;
 };
 

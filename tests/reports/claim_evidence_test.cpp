@@ -167,8 +167,8 @@ TEST(ClaimSection, TellsAllOfItInEveryFormat) {
   for (const std::string& text :
        {terminal_claim(claim_section(judgement)), markdown_report(document), claims_html(document)})
     for (const char* part :
-         {"Adam ends twice as far.", "agrees, n = 3", "Someone (2022), Figure 1",
-          "±5 % from text", "1.9 to 2.1", "range of 3", "Drawn by hand.", "6 runs of 50 iterations",
+         {"Adam ends twice as far.", "agrees, n = 3", "Someone (2022), Figure 1", "±5 % from text",
+          "1.9 to 2.1", "range of 3", "Drawn by hand.", "6 runs of 50 iterations",
           "isoline claims twice --out results/twice", "sip2-b0.json"})
       EXPECT_TRUE(has(text, part)) << part << " in " << text;
 }
