@@ -210,13 +210,19 @@ std::string folder_lack(const std::filesystem::path& before, const std::filesyst
   if (gone > 0)
     lacks.push_back(
         fmt::format("the plan of NEW lacks {} of {}", gone, counted(old.size(), "cell")));
-  const auto rates = [](const std::filesystem::path& folder) {
-    const auto file = folder / "rates.json";
-    return is_there(file) ? read_text(file) : std::string();
+  const auto rates = [](const std::filesystem::path& folder) {  // a row each; NEW may have more
+    std::set<std::string> rows;
+    if (const auto file = folder / "rates.json"; is_there(file))
+      for (const Json& row :
+           parse_json(read_text(file), file.string()).value("rows", Json::array()))
+        rows.insert(json_text(row));
+    return rows;
   };
-  if (const std::string table = rates(before); !table.empty() && rates(after) != table)
-    lacks.push_back(
-        fmt::format("rates.json of NEW {}", rates(after).empty() ? "is missing" : "differs"));
+  const std::set<std::string> rows = rates(before), rows_now = rates(after);
+  if (is_there(before / "rates.json") && !is_there(after / "rates.json"))
+    lacks.emplace_back("rates.json of NEW is missing");
+  else if (!std::ranges::includes(rows_now, rows))
+    lacks.emplace_back("rates.json of NEW differs");
   return joined(lacks, "; ");
 }
 
