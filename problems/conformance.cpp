@@ -443,13 +443,13 @@ class Examination {
         .reshaped(problem_.outputs(), problem_.samples());
   }
   Vector near_start() {
-    constexpr Real kRoom = 0.05, kSteps = 0.02;  // of the box, and of the size of an unknown
+    constexpr Real kRoom = 0.05, kOfSize = 0.02;  // of the box, and of the size of an unknown
     Vector x = near(problem_.start(), scale_, stream_);
     const Bounds* const bounds = problem_.bounds();
     for (Index i = 0; bounds && i < x.size(); ++i) {
       const Real lower = bounds->lower[i], upper = bounds->upper[i];
       const Real room =
-          std::min(kRoom * (upper - lower), kSteps * std::max(sizes_[i], std::abs(x[i])));
+          std::min(kRoom * (upper - lower), kOfSize * std::max(sizes_[i], std::abs(x[i])));
       x[i] = std::clamp(x[i], lower + room, std::max(upper - room, lower + room));
     }
     return x;
