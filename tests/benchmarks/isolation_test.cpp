@@ -176,7 +176,7 @@ TEST_F(SharedProcess, HasRecordsOnDiskWhileItsNextCellRuns) {
 // takes minutes: this is a sample of it.
 TEST_F(SharedProcess, GivesTheRecordsOfFreshOnesInAnyOrder) {
   constexpr std::uint64_t kSeed = 53;
-  constexpr std::size_t kShare = 8;
+  constexpr std::size_t kShare = 64;
   const bool is_whole = std::getenv("ISOLINE_LONG_TESTS") != nullptr;
   Suite suite = read_suite("quick");
   for (MatrixBlock& block : suite.blocks) {
