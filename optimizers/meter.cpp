@@ -21,6 +21,8 @@ namespace {
 constexpr Real kInfinity = std::numeric_limits<Real>::infinity();
 constexpr Real kNone = -kInfinity;  // a loss that is never reached
 
+bool are_same(const Vector& a, const Vector& b) { return a.size() == b.size() && a == b; }
+
 // Whether a state that was read from a file is one of this problem.
 bool is_within(const problems::Refinement::State& state, const problems::Refinement* of) {
   return state.epochs >= 0 && state.iterations >= (of ? of->first : 1) &&
@@ -399,10 +401,10 @@ Vector Meter::finish(VectorRef theta, Status verdict) {
   return judged_theta_;
 }
 
-// J at the returned point: that of the method, that of the problem, or by forward differences,
+// J at the returned point: that of the method, that of the problem, or by central differences,
 // which count as calls of the run do. False where the budget has none left for them.
 bool Meter::know_jacobian_at_end() {
-  if (known_theta_.size() == judged_theta_.size() && known_theta_ == judged_theta_) return true;
+  if (are_same(known_theta_, judged_theta_)) return true;
   const problems::Products has = problem_.products();
   const bool offers_it = problem_.offers().contains(Oracle::jacobian);
   try {
@@ -445,8 +447,7 @@ std::string Meter::doubt() {
     if (!(slope > kSmall * start_gradient_)) return "";
     return fmt::format("gradient not small: {:.2g}, {:.2g} at the start", slope, start_gradient_);
   }
-  const bool was_known =
-      known_theta_.size() == judged_theta_.size() && known_theta_ == judged_theta_;
+  const bool was_known = are_same(known_theta_, judged_theta_);
   if (!know_jacobian_at_end()) return "no calls were left to see whether the gradient is small";
   const bool is_by_method = !problem_.offers().contains(Oracle::jacobian);
   const Vector r = (judged_.y - problem_.target()).reshaped(), slope = known_J_.transpose() * r;
