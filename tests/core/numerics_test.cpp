@@ -452,7 +452,8 @@ TEST(NoiseOfCalls, IsTheLastPlaceOfPrintedOrSingleNumbers) {
 // As of an adaptive solver, whose error jumps where the number of its steps changes.
 TEST(NoiseOfCalls, SeesJumpsThatSmallStepsDoNot) {
   const auto y = [](Real t) -> Vector {
-    return calls_of(t, [](Real y) { return y; }) * (1 + 1e-3 * std::sin(1e4 * std::floor(2e3 * t)));
+    return calls_of(t, [](Real value) { return value; }) *
+           (1 + 1e-3 * std::sin(1e4 * std::floor(2e3 * t)));
   };
   EXPECT_GT(noise_of_calls(y(0), y), 1e-5);
 }
