@@ -1,0 +1,381 @@
+"""The raw half of the table of conduct: what counters, codes, returned points and bounds of libraries mean.
+
+    python3 conduct.py measure FILE.json [METHOD…]   runs the methods that are installed, each run in its own process;
+                                                     with names, the other rows of the file stay
+    python3 conduct.py page FILE.json PAGE.md        writes the table between the marks of the page
+    python3 conduct.py csv FILE.json                 prints it as CSV
+
+Each column is a function; its text has what is measured, the rule for ✓, and what to do at ✗. It returns whether the
+rule holds, none where it cannot apply, and figures.
+"""
+import csv
+import datetime
+import functools
+import json
+import os
+import pathlib
+import pickle
+import re
+import select
+import signal
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+
+import inputs
+import methods
+import numpy
+
+SECONDS = 60  # of one run
+BUDGET = 10
+FAR = 1e6
+
+
+class Lost(Exception):
+    """A run without an outcome: why."""
+
+
+class Run:
+    """A method on an input: its outcome, its calls, and the bytes that it printed."""
+
+    def __init__(self, problem, outcome, printed):
+        self.problem, self.outcome, self.printed = problem, outcome, printed
+        self.calls, self.x = problem.calls, numpy.asarray(outcome.x, float).reshape(-1)
+        self.loss = problem.loss_at(self.x)
+
+    def best(self):
+        return min(self.calls, key=lambda each: each[1] if each[1] == each[1] else numpy.inf)
+
+
+def twice(method, problem, limit, in_threads):
+    """Two runs in one process: their calls and their x must have the same bits."""
+    both = [problem(), problem()]
+    found = [None, None]
+
+    def one(i):
+        found[i] = method.run(both[i], limit)
+
+    if in_threads:
+        threads = [threading.Thread(target=one, args=(i,)) for i in range(2)]
+        for each in threads:
+            each.start()
+        for each in threads:
+            each.join()
+    else:
+        one(0), one(1)
+    same = found[0].x.tobytes() == found[1].x.tobytes() and both[0].calls == both[1].calls
+    return same, [len(each.calls) for each in both]
+
+
+def in_child(work):
+    """What work() returns in a forked process, and the bytes that it printed; Lost where there is nothing."""
+    result_read, result_write = os.pipe()
+    with tempfile.TemporaryFile() as printed:
+        child = os.fork()
+        if child == 0:
+            os.setpgid(0, 0)
+            os.dup2(printed.fileno(), 1)
+            os.dup2(printed.fileno(), 2)
+            try:
+                answer = (True, work())
+            except inputs.Endless:
+                answer = (False, "without end")
+            except Exception as error:
+                answer = (False, f"raised {type(error).__name__}")
+            sys.stdout.flush()
+            libc_flush()
+            with os.fdopen(result_write, "wb") as file:
+                pickle.dump(answer, file)
+            os._exit(0)
+        os.close(result_write)
+        data, deadline = b"", time.monotonic() + SECONDS
+        while time.monotonic() < deadline:
+            if select.select([result_read], [], [], 0.5)[0]:
+                more = os.read(result_read, 1 << 20)
+                if not more:
+                    break
+                data += more
+        else:
+            data = None
+        os.close(result_read)
+        try:
+            os.killpg(child, signal.SIGKILL)
+        except ProcessLookupError:
+            pass
+        os.waitpid(child, 0)
+        size = printed.seek(0, os.SEEK_END)
+    if data is None:
+        raise Lost("not run: hung")
+    if not data:
+        raise Lost("not run: crashed")
+    is_done, answer = pickle.loads(data)
+    if not is_done:
+        raise Lost(answer)
+    return answer, size
+
+
+def libc_flush():
+    methods.ctypes.CDLL(None).fflush(None)
+
+
+class Runs:
+    """The runs of a method, each made once."""
+
+    def __init__(self, method):
+        self.method = method
+
+    @functools.lru_cache(maxsize=None)
+    def of(self, name, limit=None):
+        if name in self.method.lost:
+            raise Lost(self.method.lost[name])
+        make = PROBLEMS[name](self.method)
+
+        def work():
+            problem = make()
+            outcome = self.method.run(problem, limit)
+            return problem.calls, outcome
+
+        (calls, outcome), printed = in_child(work)
+        problem = make()
+        problem.calls = calls
+        return Run(problem, outcome, printed)
+
+
+PROBLEMS = {
+    "line": lambda _: inputs.line,
+    "E3": lambda _: inputs.decay,
+    "E3s": lambda _: lambda: inputs.decay(1e-6),
+    "E3 small": lambda _: lambda: inputs.decay(factor=1e-3),
+    "E3 within": lambda _: lambda: inputs.decay(bounds=(numpy.full(3, -FAR), numpy.full(3, FAR))),
+    "RB": lambda _: inputs.valley,
+    "RBb": lambda _: inputs.bounded_valley,
+    "QD": lambda _: inputs.solved,
+    "missing": lambda method: lambda: inputs.missing(method.takes == "residuals"),
+}
+
+
+def counts_equal(runs):
+    """Calls by its own counter and by ours, on E3. ✓: equal. ✗: count in your own function."""
+    run = runs.of("E3")
+    if run.outcome.own is None:
+        return None, f"none; {len(run.calls)} calls"
+    return run.outcome.own == len(run.calls), f"{run.outcome.own} of {len(run.calls)}"
+
+
+def calls_beyond(runs):
+    """Calls beyond a budget of 10, on RB. ✓: 0. ✗: end the run from your own function, by an exception or the library's
+    stop."""
+    if not runs.method.has_limit:
+        return None, "no limit of calls"
+    beyond = max(0, len(runs.of("RB", BUDGET).calls) - BUDGET)
+    return beyond == 0, f"{beyond}"
+
+
+def returned_point(runs):
+    """Returned point on RB, at its own end and at a budget of 10. ✓: the best evaluated one, bitwise. ✗: keep the best
+    point in your own function, and evaluate what is returned."""
+    words, is_best = [], True
+    for limit in (None, BUDGET) if runs.method.has_limit else (None,):
+        run = runs.of("RB", limit)
+        where = {bits for bits, _ in run.calls}
+        best = run.best()
+        if run.x.tobytes() not in where:
+            words.append("never evaluated")
+        elif run.loss > best[1]:
+            words.append(f"{run.loss - best[1]:.1g} above the best")
+        else:
+            words.append("best")
+        is_best &= words[-1] == "best"
+    return is_best, "; ".join(words)
+
+
+def started_at_solution(runs):
+    """Started at the solution (QD). ✓: success after at most n + 2 calls, 2 n + 10 by differences. ✗: test the start
+    yourself if calls are expensive."""
+    run = runs.of("QD")
+    most = 2 * run.problem.n + 10 if runs.method.differences else run.problem.n + 2
+    claim = "" if run.outcome.success else "no success, "
+    return run.outcome.success and len(run.calls) <= most, f"{claim}{run.outcome.code}, {len(run.calls)} calls"
+
+
+def trial_without_value(runs):
+    """A trial without a value. ✓: ends at a point with a value. ✗: return a large finite number in its place."""
+    run = runs.of("missing")
+    words = f"{run.outcome.code}, x = {run.x[0]:.4g}"
+    if all(loss == loss for _, loss in run.calls):
+        return None, f"none met; {words}"
+    return bool(numpy.isfinite(run.loss)), words
+
+
+def is_solved(run):
+    """Whether the Gauss-Newton step is below 1e-6 of each unknown, over those that no bound holds to 1e-6."""
+    p, x = run.problem, run.x
+    if p.own_loss:
+        return abs(float(p.own_slope(x)[0])) * x[0] ** 2 < 1e-6 * abs(x[0])
+    J, r = p.J(x), p.r(x)
+    free = numpy.ones(p.n, bool)
+    if p.bounds:
+        slope = J.T @ r
+        near = 1e-6 * numpy.maximum(abs(x), 1e-6)
+        free = ~(((x <= p.bounds[0] + near) & (slope > 0)) | ((x >= p.bounds[1] - near) & (slope < 0)))
+    if not (numpy.isfinite(J).all() and numpy.isfinite(r).all()):
+        return False
+    step = numpy.linalg.lstsq(J[:, free], -r, rcond=None)[0]
+    return bool((abs(step) <= 1e-6 * numpy.maximum(abs(x[free]), 1e-6)).all())
+
+
+def claims_success(runs):
+    """Claims success on the line, E3, E3s, RB, RBb and where values are missing. ✓: only where the step of Gauss-Newton
+    is below 1e-6 of each unknown. ✗: do not trust the code; tighten the tolerances, and look at the gradient."""
+    claimed, wrong = 0, []
+    for name in ("line", "E3", "E3s", "RB", "RBb", "missing"):
+        if name == "RBb" and not runs.method.keeps_bounds:
+            continue
+        try:
+            run = runs.of(name)
+        except Lost:
+            continue
+        claimed += run.outcome.success
+        if run.outcome.success and not is_solved(run):
+            wrong.append(name)
+    return not wrong, f"{claimed} claims" + (f", not so on {', '.join(wrong)}" if wrong else "")
+
+
+def outside(runs):
+    """Evaluations outside the bounds of RBb. ✓: 0. ✗: project x in your own function."""
+    if not runs.method.keeps_bounds:
+        return None, "takes no bounds"
+    run = runs.of("RBb")
+    lower, upper = run.problem.bounds
+    by = [max(float((lower - x).max()), float((x - upper).max())) for x in run.problem.points()]
+    count = sum(each > 0 for each in by)
+    return count == 0, f"{count} of {len(by)}" + (f", by up to {max(by):.2g}" if count else "")
+
+
+def scales(runs):
+    """An unknown in units of 1e6 (E3s), and the loss times 1e-3. ✓: the same x to 1e-6, calls within 10 %. ✗: divide
+    unknowns by their sizes, and the loss by its value at the start."""
+    plain, words, is_same = runs.of("E3"), [], True
+    for name, units in (("E3s", numpy.array([1, 1e6, 1])), ("E3 small", numpy.ones(3))):
+        run = runs.of(name)
+        off = float((abs(run.x / units - plain.x) / abs(plain.x)).max())
+        is_same &= off <= 1e-6 and abs(len(run.calls) - len(plain.calls)) <= 0.1 * len(plain.calls)
+        words.append(f"x off by {off:.1g}, {len(run.calls)} for {len(plain.calls)} calls")
+    return is_same, "; ".join(words)
+
+
+def loose_bound(runs):
+    """A bound that never binds (±1e6, on E3). ✓: at most 1.1 times the calls. ✗: pass only bounds that can bind."""
+    if not runs.method.keeps_bounds:
+        return None, "takes no bounds"
+    plain, within = runs.of("E3"), runs.of("E3 within")
+    return len(within.calls) <= 1.1 * len(plain.calls), f"{len(within.calls)} for {len(plain.calls)}"
+
+
+def second_run(runs):
+    """A second run in one process, and two threads, on E3. ✓: the same bits. ✗: run each fit in a process of its own."""
+    if runs.method.package.split()[0] in ("Rscript", "octave-cli", "c++"):
+        return None, "a process per run"
+    (same, _), _ = in_child(lambda: twice(runs.method, inputs.decay, None, False))
+    words = "second run " + ("same" if same else "differs")
+    if "threads" in runs.method.lost:
+        return same, f"{words}; threads {runs.method.lost['threads']}"
+    try:
+        (same_too, calls), _ = in_child(lambda: twice(runs.method, inputs.decay, None, True))
+    except Lost as lost:
+        return None, f"{words}; threads {lost}"
+    words += "; threads " + ("same" if same_too else f"differ: {calls[0]} and {calls[1]} calls")
+    return same and same_too, words
+
+
+def text_printed(runs):
+    """Text on the user's terminal, on E3. ✓: none. ✗: redirect its output."""
+    printed = runs.of("E3").printed
+    return printed == 0, f"{printed} bytes"
+
+
+COLUMNS = {
+    "own counter": counts_equal, "beyond a budget": calls_beyond, "returned point": returned_point,
+    "started at the solution": started_at_solution, "trial without a value": trial_without_value,
+    "claims success": claims_success, "outside the bounds": outside, "scales": scales, "loose bound": loose_bound,
+    "second run": second_run, "text": text_printed,
+}
+
+
+def versions():
+    """Of the packages, as Debian names them."""
+    names = ("python3-scipy", "python3-lmfit", "python3-iminuit", "libpetsc-real3.18", "libnlopt0", "libcminpack1",
+             "liblbfgs0", "coinor-libipopt1v5", "r-base-core", "r-cran-minpack.lm", "r-cran-nloptr", "r-cran-minqa",
+             "octave", "octave-optim", "libdlib19.1", "libalglib3.19")
+    command = ["dpkg-query", "-W", "-f", "${Package} ${Version}\n", *names]
+    asked = subprocess.run(command, capture_output=True, text=True)
+    return dict(line.split() for line in asked.stdout.splitlines())
+
+
+def is_installed(method):
+    try:
+        in_child(lambda: method.run(inputs.solved(), None).code)
+    except Lost as lost:
+        print(f"{method.name} is left out: {lost}", file=sys.stderr)
+        return False
+    return True
+
+
+def row_of(method):
+    runs, row = Runs(method), {}
+    for name, column in COLUMNS.items():
+        try:
+            holds, words = column(runs)
+        except Lost as lost:
+            is_wrong = column in (trial_without_value, scales) and not str(lost).startswith("not run")
+            holds, words = (False if is_wrong else None), str(lost)
+        mark = "–" if holds is None else "✓" if holds else "✗"
+        row[name] = {"mark": mark, "figures": words}
+        print(method.name, "|", name, "|", row[name]["mark"], words, file=sys.stderr)
+    return row
+
+
+def measure(file, names):
+    wanted = [each for each in methods.ALL if not names or each.name in names]
+    path = pathlib.Path(file)
+    known = json.loads(path.read_text())["methods"] if names and path.exists() else {}
+    measured = {each.name: row_of(each) for each in wanted if is_installed(each)}
+    rows = {each.name: (known | measured)[each.name] for each in methods.ALL if each.name in known | measured}
+    rules = {name: " ".join(column.__doc__.split()) for name, column in COLUMNS.items()}
+    table = {"schema": "isoline.conduct/1", "origin": "raw", "date": str(datetime.date.today()),
+             "packages": versions(), "rules": rules, "methods": rows}
+    path.write_text(json.dumps(table, indent=1, ensure_ascii=False) + "\n")
+
+
+def page(file, page):
+    table = json.loads(pathlib.Path(file).read_text())
+    lines = [f"Measured on {table['date']} with {', '.join(' '.join(each) for each in table['packages'].items())}.", ""]
+    lines += ["| column | what is measured | ✓ | what to do at ✗ | ✓, ✗, – |", "|---|---|---|---|---|"]
+    for name, rule in table["rules"].items():
+        measured, holds, advice = re.split(r"\. ✓: |\. ✗: ", rule)
+        marks = [row[name]["mark"] for row in table["methods"].values()]
+        counts = ", ".join(str(marks.count(mark)) for mark in "✓✗–")
+        lines.append(f"| {name} | {measured} | {holds} | {advice} | {counts} |")
+    lines += ["", f"| method | {' | '.join(table['rules'])} |", "|---|" + "---|" * len(table["rules"])]
+    for method, row in table["methods"].items():
+        cells = [f"{row[name]['mark']} {row[name]['figures']}" for name in table["rules"]]
+        lines.append(f"| {method} | {' | '.join(cells)} |")
+    begin, end = "<!-- conduct -->", "<!-- end of conduct -->"
+    text = pathlib.Path(page).read_text()
+    before, after = text.split(begin)[0], text.split(end)[1]
+    pathlib.Path(page).write_text(f"{before}{begin}\n" + "\n".join(lines) + f"\n{end}{after}")
+
+
+def print_csv(file):
+    table = json.loads(pathlib.Path(file).read_text())
+    out = csv.writer(sys.stdout)
+    out.writerow(["method", "column", "mark", "figures"])
+    for method, row in table["methods"].items():
+        out.writerows([method, name, cell["mark"], cell["figures"]] for name, cell in row.items())
+
+
+if __name__ == "__main__":
+    verb, file, *more = sys.argv[1:]
+    {"measure": lambda: measure(file, more), "page": lambda: page(file, *more), "csv": lambda: print_csv(file)}[verb]()

@@ -1,0 +1,129 @@
+// Methods of dlib and ALGLIB by their defaults. Values come by lines on standard input; each is one
+// call of the callback. flags: -ldlib -lblas -lalglib
+#include <dlib/optimization.h>
+#include <libalglib/optimization.h>
+
+#include <iostream>
+#include <sstream>
+#include <string>
+#include <vector>
+
+using Vector = std::vector<double>;
+using Point = dlib::matrix<double, 0, 1>;
+using alglib::real_1d_array;
+
+struct {
+  std::size_t n, m, limit;
+  bool has_bounds;
+  Vector x, lower, upper;
+} given;
+
+Vector read() {
+  std::string line;
+  std::getline(std::cin, line);
+  std::istringstream words(line);
+  Vector numbers;
+  for (std::string word; words >> word;) numbers.push_back(std::strtod(word.c_str(), nullptr));
+  return numbers;
+}
+
+Vector ask(const char* verb, const double* x) {
+  std::printf("%s", verb);
+  for (std::size_t i = 0; i < given.n; ++i) std::printf(" %.17g", x[i]);
+  std::puts("");
+  std::fflush(stdout);
+  return read();
+}
+
+void finish(bool success, const std::string& own, const std::string& code, const double* x) {
+  ask(("done " + std::to_string(success) + " " + own + " " + code).c_str(), x);
+}
+
+void residual(const real_1d_array& x, real_1d_array& r, void*) {
+  const Vector found = ask("residual", &x[0]);
+  std::copy(found.begin(), found.end(), &r[0]);
+}
+void slope(const real_1d_array& x, double& value, real_1d_array& g, void*) {
+  const Vector found = ask("gradient", &x[0]);
+  std::copy(found.begin(), found.end(), &g[0]);
+  value = ask("value", &x[0])[0];
+}
+
+template <class Report>
+void finish(const Report& report, const std::string& own, const real_1d_array& x) {
+  finish(report.terminationtype > 0, own, "type_" + std::to_string(report.terminationtype), &x[0]);
+}
+
+void run_alglib(const std::string& method) {
+  real_1d_array x, lower, upper;
+  x.setcontent(given.n, given.x.data());
+  lower.setcontent(given.n, given.lower.data());
+  upper.setcontent(given.n, given.upper.data());
+  if (method == "minlm") {
+    alglib::minlmstate state;
+    alglib::minlmreport report;
+    minlmcreatev(given.m, x, 1e-4, state);
+    if (given.has_bounds) minlmsetbc(state, lower, upper);
+    minlmoptimize(state, residual);
+    minlmresults(state, x, report);
+    finish(report, std::to_string(report.nfunc), x);
+  } else if (method == "minlbfgs") {
+    alglib::minlbfgsstate state;
+    alglib::minlbfgsreport report;
+    minlbfgscreate(given.n, x, state);
+    minlbfgsoptimize(state, slope);
+    minlbfgsresults(state, x, report);
+    finish(report, std::to_string(report.nfev), x);
+  } else {
+    alglib::minbleicstate state;
+    alglib::minbleicreport report;
+    minbleiccreate(x, state);
+    if (given.has_bounds) minbleicsetbc(state, lower, upper);
+    minbleicoptimize(state, slope);
+    minbleicresults(state, x, report);
+    finish(report, std::to_string(report.nfev), x);
+  }
+}
+
+void run_dlib(const std::string& method) {
+  const long n = static_cast<long>(given.n);
+  Point x(n), lower(n), upper(n);
+  for (long i = 0; i < n; ++i)
+    x(i) = given.x[i], lower(i) = given.lower[i], upper(i) = given.upper[i];
+  const auto value = [](const Point& at) { return ask("value", &at(0))[0]; };
+  const auto gradient = [](const Point& at) {
+    const Vector found = ask("gradient", &at(0));
+    return Point(dlib::mat(found));
+  };
+  try {
+    if (method == "lbfgs") {
+      dlib::find_min(dlib::lbfgs_search_strategy(10), dlib::objective_delta_stop_strategy(1e-9),
+                     value, gradient, x, -1e300);
+    } else {
+      constexpr double kFar = 1e3;  // it takes finite bounds alone
+      if (!given.has_bounds) lower = x - kFar, upper = x + kFar;
+      const long most = given.limit > 0 ? static_cast<long>(given.limit) : 100000;
+      dlib::find_min_bobyqa(value, x, 2 * n + 1, lower, upper, 0.1, 1e-8, most);
+    }
+    finish(true, "none", "returned", &x(0));
+  } catch (const dlib::bobyqa_failure&) {
+    finish(false, "none", "bobyqa_failure", &x(0));
+  }
+}
+
+int main(int, char** words) {
+  const std::string package = words[1], method = words[2];
+  const Vector begun = read();
+  given = {std::size_t(begun[0]),
+           std::size_t(begun[1]),
+           std::size_t(begun[2]),
+           begun[3] == 1,
+           {},
+           {},
+           {}};
+  const auto part = [&](std::size_t i) {
+    return Vector(&begun[4 + i * given.n], &begun[4 + i * given.n] + given.n);
+  };
+  given.x = part(0), given.lower = part(1), given.upper = part(2);
+  package == "dlib" ? run_dlib(method) : run_alglib(method);
+}

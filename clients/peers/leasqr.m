@@ -1,0 +1,14 @@
+% leasqr of Octave's package optim, by lines of text: python3 -m lines octave-cli -qf leasqr.m
+% On Debian: apt install octave-optim
+1;
+function numbers = ask(request, x = [])
+  printf("isoline %s%s\n", request, sprintf(" %.17g", x));
+  fflush(stdout);
+  numbers = sscanf(input("", "s"), "%f");  % fgetl waits for the next line, too
+end
+pkg load optim
+begun = ask("optimizer name=octave-leasqr least_squares failed=1e100");
+n = begun(1); m = begun(2);
+[y, x, converged, iterations] = leasqr((1:m)', zeros(m, 1), begun(3:n + 2), @(t, x) ask("residual", x), 1e-10, 10000);
+ask(sprintf("claim converged=%d iterations=%d", converged, iterations));
+ask("finish", x);

@@ -1,0 +1,187 @@
+"""The columns of the raw table of conduct: methods that are wrong on purpose, and one whose cells are known."""
+
+import contextlib
+import io
+import json
+import pathlib
+import sys
+import tempfile
+import unittest
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+FOLDER = ROOT / "clients" / "peers" / "conduct"
+sys.path.insert(0, str(FOLDER))
+
+try:
+    import numpy
+
+    import conduct
+    import methods
+except ImportError as error:
+    print(f"this test needs NumPy: {error}", file=sys.stderr)
+    sys.exit(77)
+
+TABLE = ROOT / "clients" / "peers" / "conduct" / "conduct.json"
+PAGE = ROOT / "docs" / "conduct.md"
+
+
+def right(p, limit, _=None):
+    """Gauss-Newton with halved steps, which keeps bounds, its limit and its best point."""
+    low, high = p.bounds or (numpy.full(p.n, -numpy.inf), numpy.full(p.n, numpy.inf))
+    x, calls, most = p.start, 1, limit or 500
+    r = p.residual(x)
+    while calls < most:
+        J = p.jacobian(x)
+        slope = J.T @ r
+        free = ~(((x <= low) & (slope > 0)) | ((x >= high) & (slope < 0)))
+        step = numpy.zeros(p.n)
+        step[free] = numpy.linalg.lstsq(J[:, free], -r, rcond=None)[0]
+        if (abs(step) <= 1e-7 * numpy.maximum(abs(x), 1e-6)).all():
+            return methods.Outcome(x, True, "solved", calls)
+        share = 1.0
+        while calls < most:
+            ahead = numpy.clip(x + share * step, low, high)
+            there = p.residual(ahead)
+            calls += 1
+            if there @ there < r @ r:
+                x, r = ahead, there
+                break
+            share /= 2
+            if share < 1e-12:
+                return methods.Outcome(x, False, "no step", calls)
+    return methods.Outcome(x, False, "limit", calls)
+
+
+def counts_too_few(p, limit, _=None):
+    found = right(p, limit)
+    found.own -= 1
+    return found
+
+
+def exceeds_its_limit(p, limit, _=None):
+    return right(p, limit and limit + 3)
+
+
+def returns_another_point(p, limit, _=None):
+    found = right(p, limit)
+    found.x = found.x * (1 + 1e-9)
+    return found
+
+
+def works_at_the_solution(p, limit, _=None):
+    for _ in range(40):
+        p.residual(p.start)
+    found = right(p, limit)
+    found.own += 40
+    return found
+
+
+def ends_without_a_value(p, limit, _=None):
+    if p.n > 1:
+        return right(p, limit)
+    p.residual(numpy.array([-6.0]))
+    return methods.Outcome(numpy.array([-6.0]), True, "solved", 1)
+
+
+def claims_at_once(p, limit, _=None):
+    p.residual(p.start)
+    return methods.Outcome(p.start, True, "solved", 1)
+
+
+def leaves_bounds(p, limit, _=None):
+    if p.bounds:
+        p.residual(p.bounds[1] + 1e-8)
+    return right(p, limit)
+
+
+def depends_on_scale(p, limit, _=None):
+    if p.start[1:2].tolist() == [1e6]:
+        p.residual(p.start), p.residual(p.start), p.residual(p.start)
+    return right(p, limit)
+
+
+def pays_for_bounds(p, limit, _=None):
+    return (works_at_the_solution if p.bounds else right)(p, limit)
+
+
+runs_before = []
+
+
+def remembers(p, limit, _=None):
+    if runs_before:
+        p.residual(p.start)
+    runs_before.append(1)
+    return right(p, limit)
+
+
+def talks(p, limit, _=None):
+    print("iteration 1")
+    return right(p, limit)
+
+
+WRONG = {
+    "own counter": counts_too_few, "beyond a budget": exceeds_its_limit, "returned point": returns_another_point,
+    "started at the solution": works_at_the_solution, "trial without a value": ends_without_a_value,
+    "claims success": claims_at_once, "outside the bounds": leaves_bounds, "scales": depends_on_scale,
+    "loose bound": pays_for_bounds, "second run": remembers, "text": talks,
+}
+
+
+def row(run):
+    method = methods.Method("ours", "none", run, "residuals", keeps_bounds=True)
+    with contextlib.redirect_stderr(io.StringIO()):
+        return conduct.row_of(method)
+
+
+class Conduct(unittest.TestCase):
+    def test_a_method_that_is_right_has_no_cross(self):
+        self.assertEqual({name: cell for name, cell in row(right).items() if cell["mark"] == "✗"}, {})
+
+    def test_each_column_sees_a_method_that_is_wrong_there(self):
+        self.assertEqual(WRONG.keys(), conduct.COLUMNS.keys())
+        for name, run in WRONG.items():
+            self.assertEqual(row(run)[name]["mark"], "✗", name)
+
+    def test_a_run_that_does_not_end_is_named(self):
+        def endless(p, limit, _=None):
+            while True:
+                p.residual(p.start)
+
+        cell = row(endless)["trial without a value"]
+        self.assertEqual((cell["mark"], cell["figures"]), ("✗", "without end"))
+
+    def test_a_process_that_crashes_leaves_its_cell_open(self):
+        cells = row(lambda *_: conduct.os.abort())
+        self.assertEqual({each["mark"] for each in cells.values()} - {"–", "✓"}, set())
+        self.assertEqual(cells["own counter"]["figures"], "not run: crashed")
+
+    def test_what_is_published_is_what_scipy_does(self):
+        table = json.loads(TABLE.read_text())
+        name = "SciPy least_squares trf"
+        method = next(each for each in methods.ALL if each.name == name)
+        try:
+            import scipy
+        except ImportError:
+            self.skipTest("SciPy is not installed")
+        if not table["packages"]["python3-scipy"].startswith(scipy.__version__):
+            self.skipTest(f"the table is of SciPy {table['packages']['python3-scipy']}")
+        with contextlib.redirect_stderr(io.StringIO()):
+            cells = conduct.row_of(method)
+        for column, cell in table["methods"][name].items():
+            self.assertEqual(cells[column]["mark"], cell["mark"], column)
+
+    def test_the_page_shows_the_published_table(self):
+        with tempfile.NamedTemporaryFile("w", suffix=".md") as copy:
+            copy.write(PAGE.read_text())
+            copy.flush()
+            conduct.page(TABLE, copy.name)
+            self.assertEqual(pathlib.Path(copy.name).read_text(), PAGE.read_text())
+
+    def test_the_table_is_as_large_as_promised(self):
+        table = json.loads(TABLE.read_text())
+        self.assertGreaterEqual(len(table["methods"]), 20)
+        self.assertGreaterEqual(len({name.split()[0] for name in table["methods"]}), 8)
+
+
+if __name__ == "__main__":
+    unittest.main()
