@@ -1,0 +1,362 @@
+"""isoline.fit as a person calls it, with the built program. fit_test.py ISOLINE CLIENTS
+
+Expected values are those of lmfit 1.1.0 (leastsq with ftol = xtol = 1e-15, conf_interval), or certified by NIST."""
+
+import json
+import math
+import os
+import signal
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+import unittest
+import xml.etree.ElementTree
+
+os.environ["ISOLINE"], CLIENTS = os.path.abspath(sys.argv[1]), sys.argv[2]
+del sys.argv[1:3]
+sys.path.insert(0, CLIENTS)
+try:
+    import numpy
+except ImportError:
+    print("isoline.fit requires NumPy, which this Python does not have")
+    sys.exit(77)
+import isoline  # noqa: E402
+import isoline_fit  # noqa: E402
+
+try:
+    import pandas
+except ImportError:
+    pandas = None
+
+MISRA_X = [77.6, 114.9, 141.1, 190.8, 239.9, 289, 332.8, 378.4, 434.8, 477.3, 536.8, 593.1, 689.1, 760]
+MISRA_Y = [10.07, 14.73, 17.94, 23.93, 29.61, 35.18, 40.02, 44.82, 50.76, 55.05, 61.01, 66.4, 75.47, 81.78]
+PPM = [0.02, 0.02, 0.06, 0.06, 0.11, 0.11, 0.22, 0.22, 0.56, 0.56, 1.10, 1.10]
+HOURS = [0, 0.25, 0.57, 1.12, 2.02, 3.82, 5.1, 7.03, 9.05, 12.12, 24.37]
+VOLTS = [-0.2057, -0.1291, -0.0588, 0.0057, 0.0646, 0.1185, 0.1678, 0.2132, 0.2545, 0.2924, 0.3269, 0.3585, 0.3873,
+         0.4137, 0.4373, 0.4590, 0.4784, 0.4960, 0.5119, 0.5265, 0.5398, 0.5521, 0.5633, 0.5736, 0.5833, 0.5900]
+
+
+def misra(b):  # NIST, Misra1a
+    return [b[0] * (1 - math.exp(-b[1] * x)) for x in MISRA_X]
+
+
+def puromycin(x):  # Treloar (1974), in Bates, Watts (1988)
+    return [x[0] * c / (x[1] + c) for c in PPM]
+
+
+def theophylline(x):  # Boeckmann, Sheiner, Beal (1994), subject 1
+    ka, clearance, volume, lag = x
+    k, after = clearance / volume, [max(t - lag, 0.0) for t in HOURS]
+    return [4.02 * ka / volume * (math.exp(-k * t) - math.exp(-ka * t)) / (ka - k) for t in after]
+
+
+def solar_cell(x):  # Easwarakhanthan et al. (1986)
+    photo, saturation, ideality, series, shunt = x
+    thermal, y = ideality * 8.617333262e-5 * 306.15, []
+    for volt in VOLTS:
+        current = photo + abs(volt) / shunt
+        for _ in range(300):
+            drop = volt + current * series
+            diode = saturation * math.exp(drop / thermal)
+            move = (photo - diode + saturation - drop / shunt - current) / (1 + diode * series / thermal + series / shunt)
+            current += move
+            if abs(move) < 1e-13:
+                break
+        y.append(current)
+    return y
+
+
+def boarding_school(x):  # British Medical Journal, 4 March 1978: boys in bed on each day, by a model of an epidemic
+    beta, gamma, infected = x
+    s, y = [763 - infected, infected], []
+    rates = lambda s: (-beta * s[0] * s[1] / 763, beta * s[0] * s[1] / 763 - gamma * s[1])
+    for step in range(280):
+        a = rates(s)
+        b = rates([p + 0.025 * q for p, q in zip(s, a)])
+        c = rates([p + 0.025 * q for p, q in zip(s, b)])
+        d = rates([p + 0.05 * q for p, q in zip(s, c)])
+        s = [s[i] + 0.05 / 6 * (a[i] + 2 * b[i] + 2 * c[i] + d[i]) for i in (0, 1)]
+        if step % 20 == 19:
+            y.append(s[1])
+    return y
+
+
+# forward, data, arguments of fit, x, sd, correlations of the first with the others, profile intervals
+CALIBRATIONS = {
+    "misra1a": (misra, MISRA_Y, {"x0": [500, 1e-4]}, [238.94212918, 5.5015643181e-4], [2.7070075241, 7.2668688436e-6],
+                [-0.9988], [[233.195, 245.017], [0.000534318, 0.00056603]]),
+    "puromycin": (puromycin, [76, 47, 97, 107, 123, 139, 159, 152, 191, 201, 207, 200], {"x0": [100, 1]},
+                  [212.683743, 0.0641212817], [6.9472, 0.008281], [0.7651], [[197.302, 229.289], [0.0469203, 0.0861569]]),
+    "theophylline": (theophylline, [0.74, 2.84, 6.57, 10.5, 9.66, 8.58, 8.36, 7.47, 6.89, 5.94, 3.28],
+                     {"x0": [0.7, 0.1, 1, 0.05], "bounds": ([0, 1e-3, 1e-2, 0], [math.inf] * 3 + [1])},
+                     [2.66515375, 0.0194208159, 0.377394258, 0.140826957], [0.57666, 0.0018811, 0.016105, 0.038689],
+                     [-0.3542, 0.5868, 0.755], [[1.7186, 4.21882], [0.015105, 0.0240289], [0.341779, 0.415461], [0.0233032, 0.204948]]),
+    "solar-cell": (solar_cell, [0.7640, 0.7620, 0.7605, 0.7605, 0.7600, 0.7590, 0.7570, 0.7570, 0.7555, 0.7540, 0.7505, 0.7465,
+                                0.7385, 0.7280, 0.7065, 0.6755, 0.6320, 0.5730, 0.4990, 0.4130, 0.3165, 0.2120, 0.1035, -0.0100,
+                                -0.1230, -0.2100],
+                   {"x0": [0.8, 1e-6, 1.5, 0.05, 100], "bounds": ([0, 0, 0.1, 0, 0.1], [1, math.inf, 5, 0.5, math.inf]), "log": ["x2"]},
+                   [0.76078797, 3.1068459e-07, 1.4772693, 0.036546945, 52.889789], [0.00032171, 3.3472e-08, 0.010802, 0.00049257, 3.9512],
+                   [-0.1214, -0.1195, 0.0824, -0.6401],
+                   [[0.760119, 0.761457], [2.47369e-07, 3.88299e-07], [1.45477, 1.49997], [0.035516, 0.0375758], [45.7746, 62.6607]]),
+}
+BOYS = [3, 8, 26, 76, 225, 298, 258, 233, 189, 128, 68, 29, 14, 4]
+
+
+class Fits(unittest.TestCase):
+    def setUp(self):
+        self.folder = self.enterContext(tempfile.TemporaryDirectory())
+
+    def fit(self, *arguments, **more):
+        return isoline.fit(*arguments, **{"out": self.folder + "/results", "progress": False, **more})
+
+    def assertNear(self, found, expected, relative):
+        self.assertEqual(len(found), len(expected))
+        for a, b in zip(found, expected):
+            self.assertLessEqual(abs(a - b), relative * abs(b), (list(found), list(expected)))
+
+    def test_agrees_with_other_programs(self):
+        for name, (forward, data, given, x, sd, correlations, intervals) in CALIBRATIONS.items():
+            with self.subTest(name):
+                result = self.fit(forward, data, **given)
+                self.assertEqual((result.status, result.message), ("converged", ""))
+                self.assertLessEqual(max(abs(a - b) / s for a, b, s in zip(result.x, x, sd)), 0.01)
+                self.assertNear(result.sd, sd, 0.01)
+                for found, expected in zip(result.correlation[0][1:], correlations):
+                    self.assertLessEqual(abs(found - expected), 0.01)
+                profile = result.profile()
+                self.assertEqual(profile.messages, [])
+                for found, (low, high) in zip(profile.interval, intervals):
+                    miss = max(abs(found[0] - low), abs(found[1] - high))
+                    self.assertLessEqual(miss, 0.02 * (high - low) / 2, list(found))
+
+    def test_holds_an_unknown_at_its_bound(self):
+        result = self.fit(boarding_school, BOYS, [1, 0.2, 5], bounds=([0, 0, 1], [10, 5, 100]), names=["beta", "gamma", "infected"])
+        self.assertNear(result.x, [1.66922622, 0.4434502, 1], 1e-6)
+        self.assertNear(result.sd[:2], [0.02571, 0.01557], 0.01)  # of SciPy, with infected = 1; else 0.104 and 0.0197
+        self.assertTrue(math.isnan(result.sd[2]))
+        self.assertEqual(result.degrees_of_freedom, 12)
+        self.assertIn("infected", result.message)
+        profile = result.profile()
+        self.assertEqual(profile.interval[2][0], 1)
+        self.assertIn("infected", profile.messages[0])
+        # the roots of S = S_min (1 + t²/ν), with S minimized within the bounds by SciPy 1.10.1 (TRF)
+        ends = [1.54863, 1.72494, 0.411735, 0.478913, 1, 1.73308]
+        self.assertNear([each for row in profile.interval for each in row], ends, 0.001)
+
+    def test_needs_no_file_for_a_closure_and_makes_no_call_twice(self):
+        calls = []
+
+        def forward(x):
+            calls.append(threading.current_thread())
+            return misra(x)
+
+        first = self.fit(forward, MISRA_Y, [500, 1e-4])
+        self.assertEqual(set(calls), {threading.main_thread()})
+        self.assertGreaterEqual(len(calls), first.work)
+        calls.clear()
+        second = self.fit(forward, MISRA_Y, [500, 1e-4])
+        self.assertEqual((len(calls), list(second.x)), (2, list(first.x)))  # at x0 and at x
+        self.fit(forward, [y + 1 for y in MISRA_Y], [500, 1e-4])
+        self.assertGreater(len(calls), 20)
+
+    def test_raises_what_forward_raises_at_the_start(self):
+        with self.assertRaises(ZeroDivisionError):
+            self.fit(lambda x: [1 / 0, 1], [1, 2], [0])
+
+    def test_survives_failed_calls(self):
+        def forward(x):
+            if x[1] > 0.3 and x[0] < 99:
+                raise RuntimeError("no mesh")
+            return puromycin(x)
+
+        _, data, given, x, sd, *_ = CALIBRATIONS["puromycin"]
+        self.assertNear(self.fit(forward, data, **given).x, x, 1e-6)
+
+    def test_has_no_uncertainty_without_a_fit(self):
+        flat = self.fit(lambda x: misra(x[:2]), MISRA_Y, [500, 1e-4, 1], names=["a", "b", "idle"])
+        few = self.fit(misra, MISRA_Y, [500, 1e-4], methods="nlopt-neldermead", work=20)
+        contradicted = self.fit(misra, MISRA_Y, [500, 1e-4], sigma=0.01)
+        for result, word in ((flat, "idle"), (few, "budget"), (contradicted, "sigma")):
+            self.assertEqual((result.sd, result.interval, result.correlation), (None, None, None))
+            self.assertIn(word, result.message)
+            with self.assertRaises(isoline.Refused):
+                result.profile()
+        self.assertLess(contradicted.p, 1e-3)
+        self.assertAlmostEqual(self.fit(misra, MISRA_Y, [500, 1e-4], sigma=0.1).p, 0.41, delta=0.005)
+
+    def test_knows_fixed_and_tied_unknowns_and_priors(self):
+        line = lambda x: [x[0] + x[1] * t for t in (0, 1, 2, 3)]
+        data = [1.1, 2.9, 5.2, 6.8]
+        fixed = self.fit(line, data, {"a": 0, "b": 1}, fixed={"a": 1})
+        self.assertNear(fixed.x, [1, 27.7 / 14], 1e-9)  # Σ t (y − 1) / Σ t²
+        self.assertTrue(math.isnan(fixed.sd[0]))
+        tied = self.fit(line, data, {"a": 0, "b": 1}, tied={"a": "b / 2"})
+        slope = sum((t + 0.5) * y for t, y in enumerate(data)) / 21  # Σ (t + ½)² = 21
+        self.assertNear(tied.x, [slope / 2, slope], 1e-9)
+        self.assertAlmostEqual(tied.sd[0], tied.sd[1] / 2, delta=1e-6)
+        # the normal equations: sums of 1/σ² [1 t; t t²], with 1/sd² of the prior added to that of b
+        prior = self.fit(line, data, {"a": 0, "b": 1}, sigma=0.5, prior={"b": (1, 0.1)})
+        weight = 4.0
+        a11, a12, a22 = 4 * weight, 6 * weight, 14 * weight + 100
+        b1, b2 = weight * sum(data), weight * sum(t * y for t, y in enumerate(data)) + 100
+        determinant = a11 * a22 - a12**2
+        self.assertNear(prior.x, [(a22 * b1 - a12 * b2) / determinant, (a11 * b2 - a12 * b1) / determinant], 1e-8)
+        with self.assertRaises(isoline.Refused):
+            self.fit(line, data, {"a": 0, "b": 1}, prior={"b": (1, 0.1)})
+
+    def test_names_the_minima_of_several_starts(self):
+        result = self.fit(lambda x: [x[0] ** 2 - 4, 0.5 * (x[0] - 2)], [0, 0], [-1], bounds=(-3, 3), starts=5)
+        self.assertEqual(sum(count for count, _, _ in result.basins), 5)
+        self.assertEqual(len(result.basins), 2)
+        self.assertAlmostEqual(result.x[0], 2, delta=1e-6)
+        self.assertLess(result.basins[1][2][0], -1.5)
+        with self.assertRaises(isoline.Refused):
+            self.fit(misra, MISRA_Y, [500, 1e-4], starts=2)
+
+    def test_says_what_limits_a_profile(self):
+        t = [1, 2, 3, 4, 5, 6]
+        bent = [0.98, 2.0, 2.93, 3.98, 4.85, 5.85]  # nearly a line, which any large value of half gives
+        result = self.fit(lambda x: [x[0] * s / (1 + s / max(x[1], 1e-9)) for s in t], bent, [1, 50], names=["slope", "half"],
+                          bounds=(0, math.inf))
+        profile = result.profile(["half"])
+        self.assertEqual(list(profile.names), ["half"])
+        self.assertEqual(profile.interval[0][1], math.inf)
+        self.assertNear(profile.interval[0][:1], [69.28], 0.01)
+        self.assertIn("half", profile.messages[0])
+
+        def forward(x):
+            if x[0] > 2.68:
+                raise RuntimeError("no mesh")
+            return [x[0] * s for s in t]
+
+        profile = self.fit(forward, [2.5, 5.3, 7.4, 11, 13.1, 16.2], [1], names=["slope"]).profile()
+        self.assertNear(profile.interval[0], [2.5668, 2.68], 1e-3)
+        self.assertIn("forward fails at slope", profile.messages[0])
+
+    def test_makes_several_calls_at_once(self):
+        running, most = [], []
+
+        def forward(x):
+            running.append(1)
+            most.append(len(running))
+            time.sleep(0.05)
+            running.pop()
+            return theophylline(x)
+
+        _, data, given, x, sd, *_ = CALIBRATIONS["theophylline"]
+        result = self.fit(forward, data, **given, workers=3)
+        self.assertLessEqual(max(abs(a - b) / s for a, b, s in zip(result.x, x, sd)), 0.01)
+        self.assertGreater(max(most), 1)
+        self.assertLessEqual(max(most), 3)
+
+    def test_shows_itself_in_a_notebook(self):
+        result = self.fit(misra, MISRA_Y, [500, 1e-4], names=["a<b", "c"], units=["psi", ""])
+        result.profile()
+        page = xml.etree.ElementTree.fromstring(f"<div>{result._repr_html_()}</div>")
+        self.assertEqual([each.tag for each in page].count("table"), 3)
+        self.assertIn("a<b", "".join(page.itertext()))
+        self.assertIn("238.94", result.table())
+
+    def test_refuses_arguments_with_their_names(self):
+        for word, arguments in (("names", {"names": ["a"]}), ("q", {"fixed": ["q"]}), ("bounds", {"bounds": ([0, 0], [1, 1])}),
+                                ("nosuch", {"methods": "nosuch"}), ("newton", {"methods": "newton"}), ("sigma", {"sigma": [1, 2]}),
+                                ("log", {"log": ["x2"], "x0": [500, -1]})):
+            with self.assertRaisesRegex(isoline.Refused, word):
+                self.fit(misra, MISRA_Y, **{"x0": [500, 1e-4], **arguments})
+        with self.assertRaisesRegex(isoline.Refused, "14"):
+            self.fit(misra, MISRA_Y[1:], [500, 1e-4])
+
+    def test_an_interrupted_fit_goes_on(self):
+        script = self.folder + "/slow.py"
+        with open(script, "w") as file:
+            file.write("import isoline, sys, time\nsys.path.insert(0, sys.argv[1])\ncalls = []\n"
+                       "def forward(x):\n    calls.append(1)\n    time.sleep(0.11)\n    print('call', flush=True)\n"
+                       f"    return [x[0] * c / (x[1] + c) for c in {PPM}]\n"
+                       f"isoline.fit(forward, {CALIBRATIONS['puromycin'][1]}, [100, 1], out='results')\nprint('made', len(calls))\n")
+        words = [sys.executable, script, CLIENTS]
+        environment = dict(os.environ, PYTHONPATH=CLIENTS, TMPDIR=self.folder)
+        with subprocess.Popen(words, cwd=self.folder, env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as run:
+            for _ in range(25):
+                run.stdout.readline()
+            run.send_signal(signal.SIGINT)
+            _, errors = run.communicate(timeout=60)
+        self.assertIn("KeyboardInterrupt", errors)
+        self.assertEqual([each for each in os.listdir(self.folder) if each.startswith("isoline-")], [])
+        ran = subprocess.run(words, cwd=self.folder, env=environment, capture_output=True, text=True, timeout=120)
+        self.assertEqual(ran.returncode, 0, ran.stderr)
+        made = int(ran.stdout.split()[-1])
+        with open(next(f"{self.folder}/results/runs/{each}" for each in os.listdir(self.folder + "/results/runs"))) as file:
+            self.assertLess(made, json.load(file)["summary"]["work"] - 10)
+
+
+class Tables(unittest.TestCase):
+    def setUp(self):
+        self.path = self.enterContext(tempfile.TemporaryDirectory()) + "/data.csv"
+
+    def read(self, text, **more):
+        with open(self.path, "w") as file:
+            file.write(text)
+        return isoline.read_data(self.path, **more)
+
+    def test_reads_columns_by_the_names_of_the_header(self):
+        data = self.read("t,y,sigma\n1,2,0.1\n3,4e0,0.2\n")
+        self.assertEqual((data.x, list(data["t"]), list(data.y), list(data.sigma)), ("t", [1, 3], [2, 4], [0.1, 0.2]))
+        data = self.read("t;u;e\n1;2;0.1\n", y="u", sigma="e")
+        self.assertEqual((list(data.y), list(data.sigma)), ([2], [0.1]))
+        self.assertIsNone(self.read("t,y\n1,2\n").sigma)
+
+    def test_refuses_missing_values_by_their_line(self):
+        for text, word in (("t,y\n1,2\n2,\n", "line 3, column y"), ("t,y\n1,NA\n", "line 2, column y"), ("t,y\n1,2\n\n3\n", "line 4"),
+                           ("t,y\nnan,2\n", "line 2, column t"), ("t,z\n1,2\n", "'y'"), ("y,y\n1,2\n", "no name twice")):
+            with self.assertRaisesRegex(isoline.Refused, word):
+                self.read(text)
+        with self.assertRaisesRegex(isoline.Refused, "data"):
+            isoline.fit(misra, [1, 2, math.nan], [1, 2])
+
+    @unittest.skipUnless(pandas, "pandas is not installed")
+    def test_reads_frames(self):
+        frame = pandas.DataFrame({"t": [1, 2], "y": [3.0, 4]})
+        self.assertEqual(list(isoline.read_data(frame).y), [3, 4])
+        frame.loc[1, "y"] = None
+        with self.assertRaisesRegex(isoline.Refused, "row 1, column y"):
+            isoline.read_data(frame)
+
+    def test_prints_what_its_page_shows(self):
+        with open(os.path.join(CLIENTS, "../../docs/bring-a-simulator.md"), encoding="utf-8") as file:
+            page = file.read()
+        folder = os.path.dirname(self.path)
+        with open(folder + "/fit.py", "w", encoding="utf-8") as file:
+            file.write("# fit.py\n" + page.split("```python\n# fit.py\n")[1].split("```")[0])
+        with open(folder + "/misra1a.csv", "w") as file:
+            file.write("x,y\n" + "".join(f"{x},{y}\n" for x, y in zip(MISRA_X, MISRA_Y)))
+        ran = subprocess.run([sys.executable, "fit.py"], cwd=folder, env=dict(os.environ, PYTHONPATH=CLIENTS, PYTHONUTF8="1"),
+                             capture_output=True, text=True, encoding="utf-8", timeout=60)
+        self.assertEqual(ran.returncode, 0, ran.stderr)
+        shown = page.splitlines()
+        for line in ran.stdout.splitlines()[1:]:  # the first one has the calls
+            self.assertTrue(line in shown, line)
+
+    def test_fits_a_file(self):
+        with open(self.path, "w") as file:
+            file.write("x,y\n" + "".join(f"{x},{y}\n" for x, y in zip(MISRA_X, MISRA_Y)))
+        data = isoline.read_data(self.path)
+        result = isoline.fit(lambda b: [b[0] * (1 - math.exp(-b[1] * x)) for x in data["x"]], data, [500, 1e-4],
+                             out=os.path.dirname(self.path) + "/results", progress=False)
+        self.assertAlmostEqual(result.x[0], 238.94212918, delta=1e-4)
+        self.assertIsInstance(result.x, numpy.ndarray)
+
+
+class Distributions(unittest.TestCase):
+    def test_have_the_values_of_tables(self):  # Abramowitz, Stegun (1964), tables 26.8 and 26.10, with more digits by SciPy
+        for degrees, t in ((1, 12.706204736), (2, 4.3026527297), (7, 2.3646242516), (12, 2.1788128297),
+                           (500, 1.9647198374), (10**5, 1.9599877075)):
+            self.assertAlmostEqual(isoline_fit.t_quantile(degrees), t, delta=1e-7)
+        for value, degrees, tail in ((3.841458821, 1, 0.05), (18.307038053, 10, 0.05), (29.588298445, 10, 0.001),
+                                     (1074.679445, 1000, 0.050000008361)):
+            self.assertAlmostEqual(isoline_fit.chi_square_tail(value, degrees), tail, delta=1e-8)
+
+
+if __name__ == "__main__":
+    unittest.main()
