@@ -8,6 +8,7 @@
 
 #include "core/results/statistics.h"
 #include "core/seeds.h"
+#include "reports/sections/contrasts.h"
 #include "reports/sections/sections.h"
 #include "reports/sections/words.h"
 
@@ -497,7 +498,10 @@ Table losses_table(const Comparison& c) {
 
 Section standings_section(const Comparison& c) {
   Section section = worded_section("standings", tau_name(c));
+  Table contrasts = contrast_table(c);
+  if (!contrasts.rows.empty()) section.readings.push_back({"", contrasts.reading});
   for (std::string& sentence : verdict(c)) section.readings.push_back({"", std::move(sentence)});
+  if (!contrasts.rows.empty()) section.tables.push_back(std::move(contrasts));
   if (!c.order.settings.empty()) section.tables.push_back(ranking_table(c));
   if (!c.sanity.settings.empty()) section.tables.push_back(sanity_table(c));
   for (Table table : {c.decision ? linear_table(c) : Table{}, losses_table(c), ill_posed_table(c)})

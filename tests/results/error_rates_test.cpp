@@ -11,9 +11,11 @@
 #include <cstdlib>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <tuple>
 
 #include "core/draws.h"
 #include "core/json.h"
+#include "core/results/contrasts.h"
 #include "core/results/decisions.h"
 #include "core/results/statistics.h"
 
@@ -317,6 +319,81 @@ TEST(ErrorRates, WhatIsCalledDetectableIsFoundInFourFifthsOfSamples) {
       EXPECT_GE(share, 0.75 - 4 * 0.4 / std::sqrt(samples)) << n << ", " << kind;
       EXPECT_LE(share, 0.92 + 4 * 0.27 / std::sqrt(samples)) << n << ", " << kind;
     }
+}
+
+// --- contrasts that were named beforehand
+
+// Differences of scores of mean 0: symmetric, or a method that fails on a share of the problems and
+// is ahead on the others.
+Real drawn_null(Real failing, Draws& random) {
+  if (failing == 0) return std::clamp(0.25 * random.normal(), -1.0, 1.0);
+  constexpr Real kLost = 0.9, kNoise = 0.02;
+  const Real mean = random.uniform() < failing ? -kLost : failing / (1 - failing) * kLost;
+  return mean + kNoise * random.normal();
+}
+
+TEST(ErrorRates, AContrastFindsADifferenceOfMeanZeroInAtMostSixOfAHundredDataSets) {
+  const std::size_t samples = is_long() ? 20000 : 1500;
+  for (const Real failing : {0.0, 0.1, 0.25})
+    for (const std::size_t families : {7U, 12U, 16U, 24U}) {
+      std::size_t found = 0;
+      for (std::size_t sample = 0; sample < samples; ++sample) {
+        Draws random(sample, "contrast", std::to_string(failing), families);
+        std::vector<Real> differences;
+        for (std::size_t g = 0; g < families; ++g)
+          differences.push_back(drawn_null(failing, random));
+        const Outcome outcome = contrast_of(differences).outcome;
+        found += outcome == Outcome::better || outcome == Outcome::worse;
+      }
+      const Real share = Real(found) / Real(samples);
+      EXPECT_LE(share, 0.06) << failing << ", " << families << " families";
+      if (is_long())
+        std::printf("contrast, %.0f %% fail, n = %zu: %.4f\n", 100 * failing, families, share);
+    }
+}
+
+// Expected by an independent simulation of the same interval: 98, 46, 87, 94 and 34 in a hundred.
+TEST(ErrorRates, AContrastFindsKnownFactorsOfWorkAsOftenAsStated) {
+  for (const auto& [families, factor, power] : {std::tuple{12U, 8.0, 0.98},
+                                                {12U, 4.0, 0.46},
+                                                {16U, 4.0, 0.87},
+                                                {24U, 3.0, 0.94},
+                                                {24U, 2.0, 0.34}})
+    EXPECT_NEAR(contrast_power(factor, families), power, 0.05) << families << ", " << factor;
+  EXPECT_LT(contrast_power(8, 7), 0.2);
+  EXPECT_EQ(detectable_factor(16), 4);
+}
+
+// A thousand solves against 1,001 are no lead, however often they repeat.
+TEST(Contrasts, WithinTenPercentOfWorkAreEqualOrUndecided) {
+  const Real least = std::log2(1.001) / 6;
+  EXPECT_EQ(contrast_of(std::vector<Real>(16, least)).outcome, Outcome::undecided);
+  EXPECT_EQ(contrast_of(std::vector<Real>(20000, least)).outcome, Outcome::equal);
+  EXPECT_EQ(contrast_of(std::vector<Real>(16, 0.5)).outcome, Outcome::better);
+  EXPECT_EQ(contrast_of(std::vector<Real>(16, -0.5)).outcome, Outcome::worse);
+}
+
+// By hand, n = 2 + 2: mean 0.25, s = √((2·0.25² + 1.25² + 0.75²)/3) = 0.86603, t(3) = 3.18245.
+TEST(Contrasts, AreTIntervalsWithTwoPseudoFamilies) {
+  const Contrast two = contrast_of({0.5, 0.5});
+  EXPECT_NEAR(two.mean, 0.25, 1e-12);
+  EXPECT_NEAR(two.interval.high - two.mean, 3.18245 * 0.86603 / 2, 1e-4);  // digits given
+}
+
+TEST(Contrasts, AreTestedUntilOneFails) {
+  const std::vector<Real> clear(16, 0.5), none(16, 0);
+  const std::vector<Contrast> all = contrasts_in_order({clear, none, clear});
+  EXPECT_TRUE(all[0].is_tested);
+  EXPECT_TRUE(all[1].is_tested);
+  EXPECT_FALSE(all[2].is_tested);
+}
+
+// Clopper, Pearson (1934): 0 of 10 has the upper bound 1 − 0.025^(1/10).
+TEST(Contrasts, SharesHaveExactBounds) {
+  EXPECT_EQ(exact_share(0, 10).low, 0);
+  EXPECT_NEAR(exact_share(0, 10).high, 1 - std::pow(0.025, 0.1), 1e-9);  // halvings
+  EXPECT_NEAR(exact_share(3, 10).low, 0.06673951, 1e-7);                 // scipy 1.10, beta.ppf
+  EXPECT_NEAR(exact_share(3, 10).high, 0.65245285, 1e-7);
 }
 
 }  // namespace

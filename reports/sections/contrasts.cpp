@@ -1,0 +1,164 @@
+// Contrasts named in a suite's file, tested on its nonlinear problems that are judged by x.
+#include "reports/sections/contrasts.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "core/json.h"
+#include "core/results/contrasts.h"
+#include "reports/sections/sections.h"
+#include "reports/sections/words.h"
+
+namespace isoline::reports {
+
+const std::map<std::string, std::string_view>& suites_of_tree();  // benchmarks/suites
+
+namespace {
+
+using Pair = std::array<std::string, 2>;  // names of methods
+
+// Those of the suites "contest@1" that the folders were planned by.
+std::vector<Pair> named_contrasts(const Study& study) {
+  std::vector<Pair> all;
+  for (const std::string& label : study.plan.suites) {
+    const auto suite = suites_of_tree().find(label.substr(0, label.find('@')));
+    if (suite == suites_of_tree().end()) continue;
+    const Json json = parse_json(std::string(suite->second), suite->first);
+    for (const Json& pair : json.value("contrasts", Json::array()))
+      all.push_back({pair.at(0).get<std::string>(), pair.at(1).get<std::string>()});
+  }
+  return all;
+}
+
+std::optional<std::size_t> row_of(const Comparison& c, const std::string& method) {
+  for (std::size_t s = 0; s < c.optimizers.size(); ++s)
+    if (c.optimizers[s].method == method && c.optimizers[s].privileges.empty()) return s;
+  return std::nullopt;
+}
+
+// The nonlinear problems with exact data that are judged by x.
+std::vector<std::size_t> settings_of(const Comparison& c) {
+  std::vector<std::size_t> all;
+  for (std::size_t p = 0; p < c.problems.size(); ++p) {
+    const ProblemAxis& problem = c.problems[p];
+    if (problem.aim == Aim::x && problem.noise == 0 && !problem.is_learned &&
+        !problem.is_linear() && !problem.is_ill_posed())
+      all.push_back(p);
+  }
+  return all;
+}
+
+// Scores of these methods among each other, per family: [family][method], means over settings.
+std::vector<std::vector<Real>> family_scores(const Comparison& c,
+                                             const std::vector<std::size_t>& settings,
+                                             const std::vector<std::size_t>& methods) {
+  std::map<std::string, std::pair<std::vector<Real>, Real>> families;  // sums, settings
+  for (const std::size_t p : settings) {
+    std::vector<std::optional<Real>> costs;
+    for (const std::size_t s : methods)
+      costs.emplace_back(c.cell(p, s).median(Measure::work, c.yardstick.tightest().rung));
+    auto& [sums, count] = families[c.problems[p].family()];
+    sums.resize(methods.size(), 0);
+    count += 1;
+    const auto ratios = cost_ratios(costs);
+    for (std::size_t i = 0; i < methods.size(); ++i) sums[i] += score_of(*ratios[i], kProfileEnd);
+  }
+  std::vector<std::vector<Real>> scores;
+  for (auto& [family, sum] : families) {
+    for (Real& each : sum.first) each /= sum.second;
+    scores.push_back(std::move(sum.first));
+  }
+  return scores;
+}
+
+std::string failures_text(const Comparison& c, const std::vector<std::size_t>& settings,
+                          std::size_t method) {
+  std::size_t runs = 0, failed = 0;
+  const std::size_t rung = c.yardstick.tightest().rung;
+  for (const std::size_t p : settings)
+    for (const std::size_t row : c.cell(p, method).runs) {
+      ++runs;
+      failed += c.runs[row].targets.size() <= rung;
+    }
+  if (runs == 0) return "";
+  const Interval bounds = exact_share(failed, runs);
+  return fmt::format("{}/{} ({}–{})", failed, runs, percent(bounds.low), percent(bounds.high));
+}
+
+// Work of the first over that of the second: 64^(−difference).
+std::string factor_text(Real difference) {
+  return fmt::format("{:.2g}", std::pow(kProfileEnd, -difference));
+}
+
+}  // namespace
+
+Table contrast_table(const Comparison& c) {
+  Table table = worded_table("contrasts", tau_name(c));
+  const std::vector<Pair> pairs = named_contrasts(*c.study);
+  const std::vector<std::size_t> settings = settings_of(c);
+  if (pairs.empty() || settings.empty()) return table;
+  std::vector<std::size_t> methods;
+  std::vector<std::array<std::size_t, 2>> places;  // in `methods`
+  std::size_t missing = 0;
+  for (const Pair& pair : pairs) {
+    std::array<std::size_t, 2> place{};
+    for (std::size_t side : {0, 1}) {
+      const auto row = row_of(c, pair[side]);
+      if (!row) {
+        ++missing;
+        continue;
+      }
+      const auto at = std::ranges::find(methods, *row);
+      place[side] = static_cast<std::size_t>(at - methods.begin());
+      if (at == methods.end()) methods.push_back(*row);
+    }
+    places.push_back(place);
+  }
+  for (const std::size_t p : settings)
+    for (const std::size_t s : methods)
+      missing += c.cell(p, s).planned == 0 ? 1 : c.cell(p, s).missing();
+  if (missing > 0) {
+    table.rows.push_back({words("contrasts.incomplete-row"), "", "", "", "", ""});
+    table.reading = words("contrasts.incomplete", missing);
+    return table;
+  }
+  const auto scores = family_scores(c, settings, methods);
+  std::vector<std::vector<Real>> differences;
+  for (const auto& [first, second] : places) {
+    differences.emplace_back();
+    for (const std::vector<Real>& row : scores)
+      differences.back().push_back(row[first] - row[second]);
+  }
+  constexpr std::array<const char*, 4> kOutcomes = {"contrasts.better", "contrasts.worse",
+                                                    "contrasts.equal", "contrasts.undecided"};
+  const std::vector<results::Contrast> all = contrasts_in_order(differences);
+  std::vector<std::string> sentences;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const results::Contrast& contrast = all[i];
+    const std::string outcome =
+        words(kOutcomes[static_cast<std::size_t>(contrast.outcome)], pairs[i][0], pairs[i][1]);
+    table.rows.push_back(
+        {fmt::format("{} against {}", pairs[i][0], pairs[i][1]),
+         {fmt::format("{:+.2f} ({:+.2f} to {:+.2f})", contrast.mean, contrast.interval.low,
+                      contrast.interval.high),
+          {{"difference", contrast.mean},
+           {"low", contrast.interval.low},
+           {"high", contrast.interval.high}}},
+         fmt::format("{} ({} to {})", factor_text(contrast.mean),
+                     factor_text(contrast.interval.high), factor_text(contrast.interval.low)),
+         failures_text(c, settings, methods[places[i][0]]),
+         failures_text(c, settings, methods[places[i][1]]),
+         contrast.is_tested ? outcome : words("contrasts.untested")});
+    if (contrast.is_tested) sentences.push_back(outcome);
+  }
+  const Real factor = detectable_factor(scores.size());
+  table.reading =
+      words("contrasts.reading", joined(sentences, "; "), scores.size(),
+            factor < kNever ? words("contrasts.power", factor) : words("contrasts.no-power"));
+  return table;
+}
+
+}  // namespace isoline::reports
