@@ -5,6 +5,7 @@ find_package(fmt 9 REQUIRED)
 find_package(CLI11 2.1 REQUIRED)
 find_package(NLopt 2.7 REQUIRED)
 find_package(Threads REQUIRED)
+find_package(ZLIB 1.2 REQUIRED)
 find_package(OpenMP REQUIRED COMPONENTS CXX)
 
 # isoline_library(target names header version): an imported target for a library without a package.

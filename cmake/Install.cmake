@@ -12,8 +12,9 @@ set_target_properties(isoline_cli PROPERTIES EXPORT_NAME cli)  # its headers are
 install(TARGETS isoline_cli EXPORT IsolineTargets)
 install(DIRECTORY clients/python DESTINATION share/isoline COMPONENT program FILES_MATCHING
         PATTERN "*.py")
+install(DIRECTORY clients/peers DESTINATION share/isoline COMPONENT program PATTERN __pycache__ EXCLUDE)
 install(DIRECTORY benchmarks/published DESTINATION share/isoline COMPONENT program FILES_MATCHING
-        PATTERN "*.json")
+        PATTERN "*.json" PATTERN unfinished EXCLUDE)
 install(DIRECTORY docs DESTINATION share/doc/isoline COMPONENT program)
 install(FILES README.md CHANGELOG.md DESTINATION share/doc/isoline COMPONENT program)
 include(cmake/Package.cmake)

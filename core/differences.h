@@ -2,7 +2,10 @@
 #pragma once
 
 #include <array>
+#include <cmath>
+#include <cstddef>
 #include <functional>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -43,6 +46,11 @@ Vector line_inside(const Vector& start, const Vector& sizes, const Vector* lower
 // that, inward, with two calls of second order. `up`, `down`: the room for t and −t. The second is
 // 0 where one call is enough; both are 0 where there is no room.
 std::array<Real, 2> difference_offsets(Real h, bool is_central, Real up, Real down);
+
+// The room for t and −t along an unknown, or along a direction; infinite where there is no bound.
+struct Room {
+  Real up = std::numeric_limits<Real>::infinity(), down = up;
+};
 // dy/dt at 0 from y there and at the offsets; `second` is not used where its offset is 0.
 template <class Array>
 auto difference_quotient(const std::array<Real, 2>& at, const Array& y0, const Array& first,
@@ -50,6 +58,28 @@ auto difference_quotient(const std::array<Real, 2>& at, const Array& y0, const A
   const auto [a, b] = at;
   if (b == 0) return Array((first - y0) / a);
   return Array((b * b * (first - y0) - a * a * (second - y0)) / (a * b * (b - a)));
+}
+
+// dy/dt at 0 by calls y(t) at these offsets, of which y(t) may round t. Where no call has a value,
+// the other side is tried if there is room; without any, 0.
+template <class Array>
+Array quotient_of_calls(const std::array<Real, 2>& offsets, const Room& room, const Array& y0,
+                        const auto& y) {
+  std::array<Real, 2> at{};
+  std::array<Array, 2> values;
+  std::size_t count = 0;
+  const auto take = [&](Real t) {
+    values[count] = y(t);
+    at[count] = t;
+    count += values[count].allFinite();
+  };
+  for (const Real t : offsets)
+    if (t != 0) take(t);
+  const Real back = -offsets[0];
+  if (count == 0 && back != 0 && std::abs(back) <= (back > 0 ? room.up : room.down)) take(back);
+  if (count == 0) return Array::Zero(y0.rows(), y0.cols());
+  if (count == 1) at[1] = 0;
+  return difference_quotient<Array>(at, y0, values[0], values[1]);
 }
 
 // "x3", or the unknown's own name. `names`: (n), or empty.

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cctype>
 #include <cmath>
 #include <limits>
@@ -45,6 +46,20 @@ std::string json_text(const Json& value, int indent) {
   return value.dump(indent, ' ', false, Json::error_handler_t::replace);
 }
 
+// In place of the library's own words: where it stopped, and at which character.
+static std::string place_of_error(const std::string& text, std::size_t byte) {
+  if (byte > text.size()) return "it ends too early";
+  const std::size_t at = std::max<std::size_t>(byte, 1) - 1;
+  const auto line =
+      1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n');
+  const std::size_t begin = at == 0 ? std::string::npos : text.rfind('\n', at - 1);
+  const std::size_t column = begin == std::string::npos ? at + 1 : at - begin;
+  const auto found = static_cast<unsigned char>(text[at]);
+  const std::string shown = std::isprint(found) != 0 ? fmt::format("'{}'", text[at])
+                                                     : fmt::format("the byte 0x{:02x}", found);
+  return fmt::format("unexpected {} in line {}, column {}", shown, line, column);
+}
+
 Json parse_json(const std::string& text, const std::string& origin) {
   // Trees are copied, compared and written by recursion: each level takes of the stack.
   constexpr int kMostNesting = 200;
@@ -62,9 +77,10 @@ Json parse_json(const std::string& text, const std::string& origin) {
   require(std::isprint(byte) != 0 || byte == 0xEF, [&] { return origin + " is binary, not JSON"; });
   try {
     return Json::parse(text, is_kept);
-  } catch (const Json::exception& error) {       // also of numbers that are out of range
-    const std::string_view what = error.what();  // "[the library's own name of it] what is wrong"
-    throw UsageError(fmt::format("{} is not JSON: {}", origin, what.substr(what.find(' ') + 1)));
+  } catch (const Json::parse_error& error) {
+    throw UsageError(fmt::format("{} is not JSON: {}", origin, place_of_error(text, error.byte)));
+  } catch (const Json::exception&) {
+    throw UsageError(origin + " is not JSON: it has a number that a double cannot hold");
   }
 }
 

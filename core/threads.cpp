@@ -2,6 +2,7 @@
 #include "core/threads.h"
 
 #include <omp.h>
+#include <sched.h>
 #include <strings.h>
 #include <unistd.h>
 
@@ -10,12 +11,17 @@
 #include <array>
 #include <atomic>
 #include <cstdint>
+#include <cstdio>
 #include <cstdlib>
 #include <exception>
 #include <mutex>
+#include <string>
 #include <string_view>
 #include <thread>
 #include <utility>
+#include <vector>
+
+#include "core/text.h"
 
 #ifdef __x86_64__
 #include <cpuid.h>
@@ -104,6 +110,8 @@ std::string setting(const char* variable) {
 
 std::vector<Setting> wanted_environment() {
   std::vector<Setting> wanted{{"OPENBLAS_NUM_THREADS", "1"}, {"OMP_NUM_THREADS", "1"}};
+  // Threads that wait actively for the next of many short tasks take the time of those that work.
+  if (setting("OMP_WAIT_POLICY").empty()) wanted.emplace_back("OMP_WAIT_POLICY", "passive");
   if (kIsPortable) {  // the same kernels on every machine
     wanted.emplace_back(kKernel, "Haswell");
     wanted.emplace_back("ONEDNN_MAX_CPU_ISA", "AVX2");
@@ -117,6 +125,38 @@ std::vector<Setting> wanted_environment() {
   return wanted;
 }
 
+// libgomp pins the process that loads it to one place, and all that this process starts with it.
+// Its places together are the processors that it found, or that were asked for.
+bool unpin() {
+  std::string set;
+  for (const char* variable : {"OMP_PROC_BIND", "OMP_PLACES", "GOMP_CPU_AFFINITY"}) {
+    const std::string value = setting(variable);
+    if (!value.empty() && strcasecmp(value.c_str(), "false") != 0) set.append(" ").append(variable);
+    unsetenv(variable);
+  }
+  if (set.empty()) return false;
+  cpu_set_t all;
+  CPU_ZERO(&all);
+  for (int place = 0; place < omp_get_num_places(); ++place) {
+    std::vector<int> processors(static_cast<std::size_t>(omp_get_place_num_procs(place)));
+    omp_get_place_proc_ids(place, processors.data());
+    for (const int one : processors) CPU_SET(static_cast<std::size_t>(one), &all);
+  }
+  if (CPU_COUNT(&all) > 0) sched_setaffinity(0, sizeof all, &all);
+  say(stderr, "isoline: ignores" + set +
+                  ", which would put all cells on one core; taskset limits the processors of a "
+                  "run\n");
+  return true;
+}
+
+// OpenBLAS ignores the name of a kernel that it does not know.
+void warn_of_kernel() {
+  const std::string asked = setting(kKernel), used = openblas_get_corename();
+  if (!asked.empty() && strcasecmp(asked.c_str(), used.c_str()) != 0)
+    say(stderr, "isoline: OPENBLAS_CORETYPE=" + asked +
+                    " has no effect: OpenBLAS uses its kernel " + used + "\n");
+}
+
 }  // namespace
 
 const Processor& processor() {
@@ -126,12 +166,13 @@ const Processor& processor() {
 
 void prepare_libraries(char** arguments) {
   Eigen::setCpuCacheSizes(kCacheSizes.l1, kCacheSizes.l2, kCacheSizes.l3);
-  bool is_set = true;
+  bool is_set = !unpin();
   for (const auto& [variable, value] : wanted_environment()) {
     is_set = is_set && setting(variable) == value;
     setenv(variable, value.c_str(), 1);
   }
   if (!is_set) execv("/proc/self/exe", arguments);  // on failure we go on, with idle threads
+  warn_of_kernel();
 }
 
 LibraryKernel library_kernel() {

@@ -144,7 +144,9 @@ struct Trace {
     double residual_norm;
     double best[kUnknowns], returned[kUnknowns];
     bool is_bounded = false;
-    double lower[kUnknowns], upper[kUnknowns];  // infinite where there is no bound
+    double lower[kUnknowns], upper[kUnknowns];  // of x, infinite where there is no bound
+    bool is_scaled = false;
+    double scale[kUnknowns];  // where it is: x = scale · θ, within the bounds
     static constexpr int kNames = 16 * 1024;
     char names[kNames] = "";  // of the unknowns: NAME, tab, UNIT, a line each; empty: x1, x2, …
   };

@@ -4,6 +4,8 @@
 // projection C = I − 1 1ᵀ/k, all products are those of N with C before or after it.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <memory>
 #include <utility>
 
@@ -36,7 +38,7 @@ class MeanMatched final : public Network {
   }
   void pushforward(VectorRef v, BatchOut Jv, Workspace& w) const override {
     network_->pushforward(v, Jv, w.as<Own>().inner);
-    for (Index b = 0; b < Jv.cols(); ++b) Jv.col(b).array() -= Jv.col(b).mean();
+    for (Index b = 0; b < Jv.cols(); ++b) Jv.col(b).array() -= mean(Jv, b);
   }
   void pullback(BatchRef u, VectorOut JTu, Workspace& w) const override {
     auto& own = w.as<Own>();
@@ -84,12 +86,28 @@ class MeanMatched final : public Network {
     Matrix dy_dx;  // (m, k·B)
   };
 
+  // In the order in which Eigen sums an aligned column, whatever the address: equal samples have
+  // equal bits at every place of a batch.
+  static Real mean(BatchRef columns, Index b) {
+    const Real* const v = columns.col(b).data();
+    const Index k = columns.rows();
+    std::array<Real, 8> lanes{};
+    Index i = 0;
+    for (; i + 8 <= k; i += 8)
+      for (std::size_t j = 0; j < 8; ++j) lanes[j] += v[i + static_cast<Index>(j)];
+    for (std::size_t j = 0; j < 4; ++j) lanes[j] += lanes[j + 4];
+    for (; i + 4 <= k; i += 4)
+      for (std::size_t j = 0; j < 4; ++j) lanes[j] += v[i + static_cast<Index>(j)];
+    Real sum = (lanes[0] + lanes[2]) + (lanes[1] + lanes[3]);
+    for (; i < k; ++i) sum += v[i];
+    return sum / static_cast<Real>(k);
+  }
   static void match(BatchRef in, BatchOut x) {
-    for (Index b = 0; b < x.cols(); ++b) x.col(b).array() += in.col(b).mean() - x.col(b).mean();
+    for (Index b = 0; b < x.cols(); ++b) x.col(b).array() += mean(in, b) - mean(x, b);
   }
   static const Matrix& centred(BatchRef u, Matrix& out) {
     out = u;
-    for (Index b = 0; b < out.cols(); ++b) out.col(b).array() -= u.col(b).mean();
+    for (Index b = 0; b < out.cols(); ++b) out.col(b).array() -= mean(u, b);
     return out;
   }
 

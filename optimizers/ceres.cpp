@@ -64,12 +64,14 @@ struct SharedBlocks final : ceres::EvaluationCallback {
       : evaluation(shared), theta(parameters) {}
   void PrepareForEvaluation(bool with_jacobian, bool) override {
     is_evaluated = evaluation.at(theta.data(), [&](Linearization& at) {
+      const Real unit = evaluation.f.residual_unit();
       at.residual(residual);
+      residual *= unit;
       if (!with_jacobian) return;
       if (evaluation.f.is_sparse()) {
         values = at.sparse_jacobian().data();
       } else {
-        dense = at.jacobian() / std::sqrt(static_cast<Real>(evaluation.f.samples()));
+        dense = unit * at.jacobian() / std::sqrt(static_cast<Real>(evaluation.f.samples()));
         values = dense.data();
       }
     });
@@ -115,9 +117,11 @@ struct LossFunction final : ceres::FirstOrderFunction {
   bool Evaluate(const double* theta, double* loss, double* gradient) const override {
     slope.setZero();
     const bool is_known = evaluation.at(theta, [&](Linearization& at) {
-      *loss = at.loss();
+      const Real unit = evaluation.f.residual_unit();
+      *loss = unit * unit * at.loss();
       if (!gradient) return;
       at.gradient(slope);
+      slope *= unit * unit;
       Map<Vector>(gradient, slope.size()) = slope;
     });
     return is_known && is_finite(slope);

@@ -164,7 +164,12 @@ struct DfoGn {
       if (point == from) continue;
       s.theta = center;
       s.theta[j++] += distance;
-      put(s, point, evaluate(f, s));
+      Real value = evaluate(f, s);
+      if (!std::isfinite(value)) {  // the other side of the axis may have a value
+        s.theta[j - 1] = center[j - 1] - distance;
+        value = evaluate(f, s);
+      }
+      put(s, point, value);
     }
   }
 

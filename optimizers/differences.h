@@ -41,7 +41,9 @@ class DifferenceJacobian {
     Matrix points(n, is_central ? 2 * n : n);
     Index calls = 0;
     for (Index j = 0; j < n; ++j) {
-      offsets.push_back(offsets_of(f, theta, j, step * size_of(theta, j), is_central));
+      const Room room = room_of(f, theta, j);
+      const Real h = step * size_of(theta, j);
+      offsets.push_back(difference_offsets(h, is_central, room.up, room.down));
       for (const Real offset : offsets.back()) {
         if (offset == 0) continue;
         points.col(calls) = theta;
@@ -52,9 +54,13 @@ class DifferenceJacobian {
     for (Index j = 0; j < n; ++j)
       J_.col(j) = column(f, theta, j, offsets[static_cast<std::size_t>(j)]);
     constexpr Real kLarger = 30;  // an unknown that does not show is tried once more
-    for (Index j = 0; j < n; ++j)
-      if (const Real h = step * size_of(theta, j); !shows(j, h))
-        J_.col(j) = column(f, theta, j, offsets_of(f, theta, j, kLarger * h, is_central));
+    for (Index j = 0; j < n; ++j) {
+      const Real h = step * size_of(theta, j);
+      if (shows(j, h)) continue;
+      const Room room = room_of(f, theta, j);
+      J_.col(j) =
+          column(f, theta, j, difference_offsets(kLarger * h, is_central, room.up, room.down));
+    }
     theta_ = theta;
     is_fresh_ = true;
     at.set_jacobian(J_);
@@ -81,12 +87,10 @@ class DifferenceJacobian {
   Real size_of(const Vector& theta, Index j) const {
     return std::max(std::abs(theta[j]), sizes_[j]);
   }
-  static std::array<Real, 2> offsets_of(Meter& f, const Vector& theta, Index j, Real h,
-                                        bool is_central) {
-    constexpr Real kNone = std::numeric_limits<Real>::infinity();
+  static Room room_of(const Meter& f, const Vector& theta, Index j) {
     const Bounds* const bounds = f.bounds();
-    return difference_offsets(h, is_central, bounds ? bounds->upper[j] - theta[j] : kNone,
-                              bounds ? theta[j] - bounds->lower[j] : kNone);
+    if (bounds == nullptr) return {};
+    return {.up = bounds->upper[j] - theta[j], .down = theta[j] - bounds->lower[j]};
   }
   // Whether the column is more than noise.
   bool shows(Index j, Real h) const { return J_.col(j).norm() * h > 2 * noise_ * y_.norm(); }
@@ -108,19 +112,16 @@ class DifferenceJacobian {
     const Real level = noise_of_values(y).norm() / at.y().norm();
     noise_ = std::max(std::isfinite(level) ? level : 0, std::numeric_limits<Real>::epsilon());
   }
-  Vector column(Meter& f, const Vector& theta, Index j, std::array<Real, 2> offsets) {
-    if (offsets[0] == 0) return Vector::Zero(y_.size());  // an unknown that its bounds fix
-    std::array<Vector, 2> y;
+  Vector column(Meter& f, const Vector& theta, Index j, const std::array<Real, 2>& offsets) {
     moved_ = theta;
-    for (std::size_t i = 0; i < 2 && offsets[i] != 0; ++i) {
-      moved_[j] = theta[j] + offsets[i];
-      offsets[i] = moved_[j] - theta[j];  // what rounding leaves of it
+    return quotient_of_calls(offsets, room_of(f, theta, j), y_, [&](Real& t) -> Vector {
+      moved_[j] = theta[j] + t;
+      t = moved_[j] - theta[j];  // what rounding leaves of it
       f.linearize(moved_, other_);
-      y[i] = other_.y().reshaped();
-    }
-    if (offsets[1] == 0) y[1] = y[0];
-    return difference_quotient<Vector>(offsets, y_, y[0], y[1]);
+      return other_.y().reshaped();
+    });
   }
+
   Matrix J_;                      // (m, n)
   Vector theta_, moved_, sizes_;  // (n)
   Vector y_;                      // (m), at θ

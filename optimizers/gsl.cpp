@@ -48,12 +48,24 @@ gsl_multifit_nlinear_parameters parameters_of(const GslOptions& o) {
 
 int answer(bool is_running) { return is_running ? GSL_SUCCESS : GSL_EBADFUNC; }
 
+// Its elements may lie apart, as those of a row do.
+Vector vector_of(const gsl_vector& values) {
+  return Eigen::Map<const Vector, 0, Eigen::InnerStride<>>(
+      values.data, static_cast<Index>(values.size),
+      Eigen::InnerStride<>(static_cast<Index>(values.stride)));
+}
 int residual_call(const gsl_vector* theta, void* calls, gsl_vector* r) {
-  return answer(static_cast<ResidualCalls*>(calls)->residual(theta->data, r->data));
+  const Vector at = vector_of(*theta);
+  Vector value(static_cast<Index>(r->size));
+  const bool is_running = static_cast<ResidualCalls*>(calls)->residual(at.data(), value.data());
+  Eigen::Map<Vector, 0, Eigen::InnerStride<>>(
+      r->data, value.size(), Eigen::InnerStride<>(static_cast<Index>(r->stride))) = value;
+  return answer(is_running);
 }
 int jacobian_call(const gsl_vector* theta, void* calls, gsl_matrix* J) {
+  const Vector at = vector_of(*theta);
   return answer(static_cast<ResidualCalls*>(calls)->jacobian(
-      theta->data, [&](const Vector&, const Matrix& value) {
+      at.data(), [&](const Vector&, const Matrix& value) {
         using RowMajor = Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
         Eigen::Map<RowMajor, 0, Eigen::OuterStride<>>(
             J->data, value.rows(), value.cols(), Eigen::OuterStride<>(static_cast<Index>(J->tda))) =
@@ -95,7 +107,7 @@ class Gsl final : public Optimizer {
       if (!calls.accept()) break;
       gsl_multifit_nlinear_test(options_.xtol, options_.gtol, 0, &test, workspace.get());
     }
-    theta = Eigen::Map<const Vector>(workspace->x->data, theta.size());
+    theta = vector_of(*workspace->x);
     const bool is_own_test = end == GSL_SUCCESS && test != 0;
     constexpr const char* kTests[] = {"stopped", "xtol", "gtol"};
     return calls.end(theta, is_own_test ? kTests[test] : gsl_strerror(end),
@@ -109,24 +121,26 @@ class Gsl final : public Optimizer {
 }  // namespace
 
 void register_gsl(OptimizerRegistry& registry) {
-  registry.add({.name = "gsl-multifit",
-                .title = "Trust regions (GSL multifit_nlinear)",
-                .family = Family::gsl,
-                .kind = Kind::least_squares,
-                .formula = "θ ← θ − (JᵀJ + μD²)⁻¹ Jᵀ r,  or min ‖r + J d‖² over ‖D d‖ ≤ Δ",
-                .source = "GSL 2.7; Moré (1978), Nielsen (1999), Transtrum, Sethna (2012)",
-                .note = "Geodesic acceleration costs one additional forward solve per step.",
-                .needs = {Oracle::forward, Oracle::jacobian},
-                .is_input_scale_invariant = true,
-                .needs_same_samples = true,
-                .most_unknowns = 4096,
-                .most_rank = 1024,
-                .options = option_table<GslOptions>(),
-                .in_all = false,  // a peer for certified data
-                .objection = too_few_residuals,
-                .make = [](const OptionValues& options, const OptimizerRegistry&) {
-                  return std::make_unique<Gsl>(read_options<GslOptions>(options));
-                }});
+  registry.add(
+      {.name = "gsl-multifit",
+       .title = "Trust regions (GSL multifit_nlinear)",
+       .family = Family::gsl,
+       .kind = Kind::least_squares,
+       .formula = "θ ← θ − (JᵀJ + μD²)⁻¹ Jᵀ r,  or min ‖r + J d‖² over ‖D d‖ ≤ Δ",
+       .source = "GSL 2.7; Moré (1978), Nielsen (1999), Transtrum, Sethna (2012)",
+       .note = std::string("Geodesic acceleration costs one additional forward solve per step. ") +
+               kFailedNote,
+       .needs = {Oracle::forward, Oracle::jacobian},
+       .is_input_scale_invariant = true,
+       .needs_same_samples = true,
+       .most_unknowns = 4096,
+       .most_rank = 1024,
+       .options = option_table<GslOptions>(),
+       .in_all = false,  // a peer for certified data
+       .objection = too_few_residuals,
+       .make = [](const OptionValues& options, const OptimizerRegistry&) {
+         return std::make_unique<Gsl>(read_options<GslOptions>(options));
+       }});
 }
 
 }  // namespace isoline::optimizers

@@ -8,9 +8,13 @@
 // 1/α = max(m/(2 mean Φ), √(m/(2 var Φ))), which does not depend on the noise level of the data.
 // uki: the ensemble are sigma points around m; Huang, Schneider, Stuart (2022), J. Comput. Phys.
 // 463, with Σ_ω = C₀ and Σ_ν = 2 Σ_η. Σ_η is here a share of the mean square of r at m.
+// A member whose evaluation fails is left out of the means and is drawn again from the others; of
+// uki, the pair of points ±j is left out. Where too few are left, the ensemble shrinks to its last
+// member with a value, the best of its step.
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <vector>
 
 #include "core/archive.h"
 #include "core/array.h"
@@ -37,10 +41,12 @@ struct Ensemble {
     Matrix members, residuals;  // (n, J), (m, J)
     std::int64_t steps = 0;
     Linearization at;
-    Vector theta, r, mean, mean_r;
+    Vector theta, r, mean, mean_r, misfits;
+    Vector best;                        // (n), of the last step in which enough members had a value
     Matrix deviations, observed, data;  // Θ, G, (m, J) data of the members
+    std::vector<Index> alive;           // the members whose evaluation succeeded
   };
-  static void persist(State& s, Archive& archive) { archive(s.members, s.steps); }
+  static void persist(State& s, Archive& archive) { archive(s.members, s.steps, s.best); }
 
   State init(Meter& f, const Vector& theta) const {
     const Index n = theta.size(), J = members > 0 ? members : 2 * (n + 1);
@@ -55,18 +61,19 @@ struct Ensemble {
   }
 
   Status step(Meter& f, Vector& theta, State& s) const {
-    const Index J = s.members.cols();
-    const auto m = static_cast<Real>(f.residuals());
-    s.residuals.resize(f.residuals(), J);
-    Vector misfits(J);
-    f.announce(s.members);
-    for (Index j = 0; j < J; ++j) {
-      s.theta = s.members.col(j);
-      residual_at(f, s.theta, s.at, s.r);
-      s.residuals.col(j) = s.r;
-      misfits[j] = 0.5 * s.r.squaredNorm();
+    if (!evaluate(f, s)) {
+      if (s.best.size() > 0) theta = s.best;
+      s.members = (0.5 * (s.members.colwise() - theta)).colwise() + theta;
+      f.reject_step();
+      return Status::running;
     }
-    if (!is_finite(misfits)) return Status::diverged;
+    Index least = 0;
+    s.misfits.minCoeff(&least);
+    s.best = s.members.col(s.alive[static_cast<std::size_t>(least)]);
+    const Index planned = s.members.cols(), J = s.residuals.cols();
+    if (J < planned) s.members = s.members(Eigen::all, s.alive).eval();
+    const auto m = static_cast<Real>(f.residuals());
+    const Vector& misfits = s.misfits;
     const Real root = std::sqrt(static_cast<Real>(J - 1)), mean = misfits.mean();
     const Real variance = (misfits.array() - mean).matrix().squaredNorm() / (root * root);
     const Real inverse = std::max(m / (2 * mean), std::sqrt(m / (2 * variance)));
@@ -76,9 +83,42 @@ struct Ensemble {
     s.deviations = (s.members.colwise() - s.mean) / root;
     s.observed = (s.residuals.colwise() - s.mean_r) / root;
     const bool is_updated = is_square_root ? transform(s, 1 / inverse) : perturb(s, 1 / inverse);
+    if (J < planned) draw_again(s, planned);
     ++s.steps;
     theta = s.members.rowwise().mean();
     return is_updated && is_finite(theta) ? Status::running : Status::stalled;
+  }
+
+  // The residuals of the members whose evaluation succeeds; false if fewer than two do.
+  static bool evaluate(Meter& f, State& s) {
+    const Index J = s.members.cols();
+    s.residuals.resize(f.residuals(), J);
+    s.misfits.resize(J);
+    s.alive.clear();
+    f.announce(s.members);
+    for (Index j = 0; j < J; ++j) {
+      s.theta = s.members.col(j);
+      residual_at(f, s.theta, s.at, s.r);
+      if (!is_finite(s.r)) continue;
+      const auto place = static_cast<Index>(s.alive.size());
+      s.residuals.col(place) = s.r;
+      s.misfits[place] = 0.5 * s.r.squaredNorm();
+      s.alive.push_back(j);
+    }
+    const auto left = static_cast<Index>(s.alive.size());
+    s.residuals.conservativeResize(Eigen::NoChange, left);
+    s.misfits.conservativeResize(left);
+    return s.alive.size() > 1;
+  }
+  // In the place of members that were left out: normal, by the mean and covariance of the others.
+  static void draw_again(State& s, Index J) {
+    const Index left = s.members.cols();
+    const Vector mean = s.members.rowwise().mean();
+    const Matrix deviations = (s.members.colwise() - mean) / std::sqrt(static_cast<Real>(left - 1));
+    RandomStream stream(0, "kalman-inversion", "again", static_cast<std::uint64_t>(s.steps));
+    s.members.conservativeResize(Eigen::NoChange, J);
+    for (Index j = left; j < J; ++j)
+      s.members.col(j) = mean + deviations * stream.normal_vector(left);
   }
 
   static bool perturb(State& s, Real alpha) {
@@ -127,11 +167,12 @@ struct Unscented {
     Matrix C;      // (n, n)
     Linearization at;
     Vector theta, r, center;
+    Vector last;  // (n), m of the last step whose evaluation succeeded
     SymmetricEigen eigen;
     Matrix points;                      // (n, 2n + 1), m and the others
     Matrix root, deviations, observed;  // √Ĉ (n, n), Θ (n, 2n), G (m, 2n)
   };
-  static void persist(State& s, Archive& archive) { archive(s.prior, s.mean, s.C); }
+  static void persist(State& s, Archive& archive) { archive(s.prior, s.mean, s.C, s.last); }
 
   State init(Meter&, const Vector& theta) const {
     State s;
@@ -167,7 +208,20 @@ struct Unscented {
       s.deviations.col(j) = weight * side_of(j) * s.root.col(j % n);
       s.observed.col(j) = weight * (s.r - s.center);
     }
-    if (!is_finite(s.center) || !is_finite(s.observed)) return Status::diverged;
+    if (!is_finite(s.center)) {  // back to the last mean that had a value, with a smaller C
+      if (s.last.size() == 0) return Status::diverged;
+      s.mean = 0.5 * (s.mean + s.last);
+      s.C = (s.C - Matrix(s.prior.asDiagonal())) / 4;
+      theta = s.mean;
+      f.reject_step();
+      return Status::running;
+    }
+    s.last = s.mean;
+    for (Index j = 0; j < n; ++j)
+      if (!s.observed.col(j).allFinite() || !s.observed.col(j + n).allFinite()) {
+        s.observed.col(j).setZero();
+        s.observed.col(j + n).setZero();
+      }
     const Real nu = 2 * noise * noise * s.center.squaredNorm() / static_cast<Real>(s.center.size());
     if (nu == 0) return Status::converged;
     if (!symmetric_eigen(s.observed.transpose() * s.observed, s.eigen)) return Status::stalled;

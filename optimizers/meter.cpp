@@ -9,7 +9,6 @@
 
 #include "core/decompose.h"
 #include "core/errors.h"
-#include "core/foreign/call_log.h"
 #include "core/frames.h"
 #include "core/status.h"
 #include "optimizers/differences.h"
@@ -50,6 +49,17 @@ std::string names_text(const Problem& problem) {
 }
 
 }  // namespace
+
+void InARow::add_outcome(const FailedEvaluations& all) {
+  failed = all.total == std::exchange(known, all.total) ? 0 : failed + 1;
+  const std::int64_t most =
+      all.most_in_a_row > 0 ? all.most_in_a_row : std::max<std::int64_t>(100, 10 * x.size());
+  if (failed < most) return;
+  const bool is_kept = all.kept > 0 && all.kept == all.total;
+  throw std::runtime_error(fmt::format("{} evaluations in a row failed{}{}", failed,
+                                       is_kept ? "; the last: " : "",
+                                       is_kept ? all.reason[all.kept - 1] : ""));
+}
 
 Meter::Meter(const Problem& problem, const Budget& budget, OracleSet granted, Trace& trace)
     : problem_(problem),
@@ -103,6 +113,7 @@ void Meter::linearize(VectorRef theta, Linearization& at) {
   at.problem_ = &problem_;
   at.has_jacobian_ = at.has_hessian_ = at.has_sparse_ = false;
   problem_.forward(theta, *samples_, at.point_);
+  in_a_row_.add_outcome(trace_.failures);
   see(at.point_.loss, theta);
   disturb(at.point_);
   if (problem_.is_learned() && !has_seen_batch_) note_batch(at.point_);
@@ -133,6 +144,7 @@ const Matrix& Meter::truth() {
 Real Meter::loss(VectorRef theta) {
   charge_forward(theta);
   problem_.forward(theta, *samples_, point_);
+  in_a_row_.add_outcome(trace_.failures);
   see(point_.loss, theta);
   disturb(point_);
   return point_.loss;
@@ -150,6 +162,11 @@ void Meter::exhaust() {
 
 // A point that was paid for when it was judged is not paid for twice.
 void Meter::charge_forward(VectorRef theta) {
+  in_a_row_.known = trace_.failures.total;  // also those of the harness's own evaluations
+  if (!problem_.is_learned() && !problem_.jitter()) {
+    in_a_row_.add(theta);
+    if (in_a_row_.is_of_one_x()) exhaust();
+  }
   const bool is_paid =
       is_prepaid_ && theta.size() == judged_theta_.size() && theta == judged_theta_;
   const bool is_announced =
@@ -306,7 +323,8 @@ void Meter::persist(Archive& archive) {
           target_loss_, target_x_error_, targets_met_, stall_loss_, stall_iteration_, status_,
           batch_loss_, batch_x_error_, judged_.loss, judged_theta_, paid_loss_, is_prepaid_,
           previous_, wall, processor, refined_, known_theta_, known_J_, known_noise_,
-          start_gradient_);
+          start_gradient_, origin_, in_a_row_.x, in_a_row_.repeats, in_a_row_.failed,
+          in_a_row_.known);
   const bool are_spectra_wanted =
       trace_.spectra.are_wanted;        // the caller decides this, not the file
   archive.raw(&trace_, sizeof trace_);  // plain data; no reader waits for its atomics
@@ -378,6 +396,13 @@ Vector Meter::finish(VectorRef theta, Status verdict) {
   watch_.pause();
   if (trace_.last.iteration != iteration_ || judged_theta_ != theta || !judged_.batch)
     look_at(theta);
+  knows_exact_ = false;
+  leave_failed_point(verdict);
+  if (in_a_row_.is_of_one_x() && verdict == Status::budget) {
+    verdict = Status::stalled;
+    set_text(trace_.message,
+             fmt::format("the method evaluated one x {} times in a row", InARow::kMostRepeats));
+  }
   if (verdict == Status::running) verdict = Status::converged;
   if (is_target_met()) verdict = Status::target;
   if (is_at_noise()) verdict = Status::discrepancy;
@@ -387,6 +412,7 @@ Vector Meter::finish(VectorRef theta, Status verdict) {
       verdict = Status::unconfirmed;
       if (trace_.message[0] == '\0') set_text(trace_.message, why);
     }
+  if (verdict != Status::unconfirmed) keep_uncertainty();
   count_into(trace_.last);  // a library may have made many calls since its last iteration
   trace_.last.wall_seconds = watch_.seconds();
   trace_.last.processor_seconds = watch_.processor_seconds();
@@ -394,25 +420,32 @@ Vector Meter::finish(VectorRef theta, Status verdict) {
   if (points > 0 && trace_.point[points - 1].iteration == iteration_) trace_.points = points - 1;
   keep_point();
   keep_spectrum(true);
-  keep_uncertainty();
   keep_returned();
   if (problem_.is_learned() && !problem_.field()) show();
   trace_.status = verdict;
   return judged_theta_;
 }
 
-// J at the returned point: that of the method, that of the problem, or by central differences,
-// which count as calls of the run do. False where the budget has none left for them.
+// No run ends at a point whose evaluation failed while it has one with a value.
+void Meter::leave_failed_point(Status& verdict) {
+  if (std::isfinite(judged_.loss) || trace_.failures.total == 0 || !trace_.answer.has_best) return;
+  look_at(Eigen::Map<const Vector>(trace_.answer.best, trace_.answer.unknowns));
+  if (verdict == Status::diverged || verdict == Status::running) verdict = Status::stalled;
+}
+
+// J at the returned point: the exact one of the problem, that of the method, or by central
+// differences, which count as calls of the run do. False where the budget has none left for them.
 bool Meter::know_jacobian_at_end() {
-  if (are_same(known_theta_, judged_theta_)) return true;
   const problems::Products has = problem_.products();
   const bool offers_it = problem_.offers().contains(Oracle::jacobian);
+  if (offers_it && !has.are_differences && !knows_exact_) {
+    problem_.jacobian(known_J_, judged_);
+    known_theta_ = judged_theta_;
+    known_noise_ = std::numeric_limits<Real>::epsilon();
+    return knows_exact_ = true;
+  }
+  if (are_same(known_theta_, judged_theta_)) return true;
   try {
-    if (offers_it && !has.are_differences) {
-      problem_.jacobian(known_J_, judged_);
-      known_theta_ = judged_theta_;
-      return true;
-    }
     const std::int64_t price =
         prices_[static_cast<std::size_t>(offers_it ? Oracle::jacobian : Oracle::forward)];
     const std::int64_t calls = offers_it ? 1 : 2 * problem_.unknowns();
@@ -460,10 +493,7 @@ std::string Meter::doubt() {
                        .size_of_y = judged_.y.norm(),
                        .noise = known_noise_,
                        .has_exact_jacobian = !is_by_method && !problem_.products().are_differences};
-  if (const Bounds* bounds = problem_.bounds())
-    for (Index i = 0; i < n; ++i)
-      at.is_held[static_cast<std::size_t>(i)] =
-          bounds->is_active(judged_theta_, slope, i) || bounds->lower[i] == bounds->upper[i];
+  for (Index i = 0; i < n; ++i) at.is_held[static_cast<std::size_t>(i)] = is_held(i, slope);
   std::string why = doubt_of(at);
   constexpr Real kRounding = 1e-12;  // with what a steep y makes of it
   if (!why.empty() || !is_by_method || known_noise_ > kRounding) return why;
@@ -490,10 +520,7 @@ bool Meter::look_at(VectorRef theta) {
 // The loss and related values at θ, evaluated by the harness; they count for no oracle.
 void Meter::measure(VectorRef theta) {
   is_prepaid_ = is_prepaid_ && judged_theta_ == theta;
-  {
-    const Recalling recalling;
-    problem_.forward(theta, judging(), judged_);
-  }
+  problem_.forward(theta, judging(), judged_);
   judged_theta_ = theta;  // only where it could be
   TracePoint& last = trace_.last;
   last.iteration = iteration_;
@@ -564,7 +591,10 @@ void Meter::keep_point() {
   if (index >= Trace::kPoints) return;
   trace_.point[index] = trace_.last;
   if (trace_.path_inputs > 0) {
-    std::copy_n(judged_.x().data(), judged_.x().size(), trace_.path_x[index]);
+    const Matrix x = problem_.own_units().scales.size() > 0
+                         ? Matrix(problem_.in_own_units(judged_theta_))
+                         : judged_.x();
+    std::copy_n(x.data(), x.size(), trace_.path_x[index]);
     std::copy_n(judged_.y.data(), judged_.y.size(), trace_.path_y[index]);
   }
   if (const auto& field = problem_.field()) {
@@ -625,7 +655,10 @@ void Meter::keep_spectrum(bool is_last) {
 void Meter::describe_unknowns() {
   Trace::Answer& kept = trace_.answer;
   kept.names[names_text(problem_).copy(kept.names, Trace::Answer::kNames - 1)] = '\0';
-  const problems::Bounds* const bounds = problem_.bounds();
+  const problems::OwnUnits& own = problem_.own_units();
+  kept.is_scaled = own.scales.size() > 0;
+  std::ranges::copy(own.scales, kept.scale);
+  const problems::Bounds* const bounds = own.bounds ? &*own.bounds : problem_.bounds();
   kept.is_bounded = bounds != nullptr;
   if (bounds == nullptr) return;
   std::ranges::copy(bounds->lower, kept.lower);
@@ -640,19 +673,32 @@ void Meter::keep_returned() {
   kept.has_returned = true;
 }
 
-// At the returned point, where x is the unknown. By the singular values of A = J D⁻¹, D the norms
+// At the returned point, where x is the unknown; those that a bound holds are constants, and have
+// none. By the singular values of A = J D⁻¹, D the norms
 // of J's columns: (JᵀJ)⁻¹ = D⁻¹ V Σ⁻² Vᵀ D⁻¹, without the squares of their condition number. Where
 // J does not have full rank, x has no such covariance.
 void Meter::keep_uncertainty() {
   Trace::Uncertainty& kept = trace_.uncertainty;
-  const Index m = problem_.residuals(), n = problem_.unknowns();
+  const Index m = problem_.residuals(), all = problem_.unknowns();
   if (!problem_.is_least_squares() || problem_.is_learned() || !problem_.has_identity_network() ||
-      problem_.samples() != 1 || m <= n || n > Trace::Uncertainty::kUnknowns ||
-      !problem_.offers().contains(Oracle::jacobian) || !std::isfinite(judged_.loss))
+      problem_.samples() != 1 || m <= all || all > Trace::Uncertainty::kUnknowns ||
+      !std::isfinite(judged_.loss))
     return;
-  Matrix J;  // (m, n)
-  problem_.jacobian(J, judged_);
-  const Vector D = J.colwise().norm();  // (n)
+  const bool is_known = are_same(known_theta_, judged_theta_);
+  if (!problem_.offers().contains(Oracle::jacobian) && !is_known) return;
+  if (!know_jacobian_at_end()) {
+    if (trace_.message[0] == '\0')
+      set_text(trace_.message, "no calls were left for standard deviations");
+    return;
+  }
+  const Vector slope = known_J_.transpose() * (judged_.y - problem_.target()).reshaped();
+  std::vector<Index> free;
+  for (Index i = 0; i < all; ++i)
+    if (!is_held(i, slope)) free.push_back(i);
+  const auto n = static_cast<Index>(free.size());
+  if (n == 0) return;
+  const Matrix J = known_J_(Eigen::all, free);  // (m, n)
+  const Vector D = J.colwise().norm();          // (n)
   Svd svd;
   if (!is_finite(J) || !(D.minCoeff() > 0) || !thin_svd(J * D.cwiseInverse().asDiagonal(), svd))
     return;
@@ -666,15 +712,35 @@ void Meter::keep_uncertainty() {
   kept.variance = (judged_.y - problem_.target()).squaredNorm() / static_cast<Real>(m - n);
   kept.condition = sigma[0] / sigma[n - 1];
   const Matrix correlation = root * root.transpose();
-  for (Index i = 0; i < n; ++i) {
-    kept.x[i] = judged_.x()(i, 0);
-    kept.deviation[i] = std::sqrt(kept.variance) * lengths[i] / D[i];
-    for (Index j = 0; j < n; ++j) {
-      const Index low = std::max(i, j), right = std::min(i, j);
-      kept.correlation[i][j] = i == j ? 1 : correlation(low, right);
-    }
+  const Vector x = problem_.in_own_units(judged_theta_);
+  const Vector& scales = problem_.own_units().scales;
+  for (Index i = 0; i < all; ++i) {
+    kept.x[i] = x[i];
+    kept.deviation[i] = std::nan("");
+    for (Index j = 0; j < all; ++j) kept.correlation[i][j] = i == j ? 1 : std::nan("");
   }
-  kept.unknowns = static_cast<int>(n);
+  for (Index k = 0; k < n; ++k) {
+    const Index i = free[static_cast<std::size_t>(k)];
+    const Real scale = scales.size() > 0 ? scales[i] : 1;
+    kept.deviation[i] = scale * std::sqrt(kept.variance) * lengths[k] / D[k];
+    for (Index l = 0; l < n; ++l)
+      if (k != l)
+        kept.correlation[i][free[static_cast<std::size_t>(l)]] =
+            correlation(std::max(k, l), std::min(k, l));
+  }
+  kept.unknowns = static_cast<int>(all);
+}
+
+Real Meter::residual_unit() const {
+  const Real length = std::sqrt(2 * trace_.start_loss);
+  const bool is_scaled = problem_.own_units().scales.size() > 0 && length > 0;
+  return is_scaled && std::isfinite(length) ? std::exp2(-std::round(std::log2(length))) : 1;
+}
+
+bool Meter::is_held(Index i, VectorRef slope) const {
+  const Bounds* const bounds = problem_.bounds();
+  return bounds != nullptr &&
+         (bounds->is_active(judged_theta_, slope, i) || bounds->lower[i] == bounds->upper[i]);
 }
 
 const Problem& Linearization::ask(Oracle oracle) {

@@ -12,6 +12,7 @@
 #include "core/archive.h"
 #include "core/array.h"
 #include "core/clock.h"
+#include "core/failures.h"
 #include "core/status.h"
 #include "core/trace.h"
 #include "problems/problem.h"
@@ -48,6 +49,23 @@ using problems::Bounds;
 using problems::Inverse;
 using problems::Point;
 using problems::Problem;
+
+// A method that asks for one x without end is stopped, and one whose evaluations all fail.
+struct InARow {
+  static constexpr int kMostRepeats = 1000;
+
+  Vector x;  // (n), the last one evaluated
+  int repeats = 0;
+  std::int64_t failed = 0, known = 0;  // of all failures, those before the last evaluation
+
+  bool is_of_one_x() const { return repeats >= kMostRepeats; }
+  void add(VectorRef theta) {
+    const bool is_same = theta.size() == x.size() && theta == x;
+    repeats = is_same ? repeats + 1 : 0;
+    if (!is_same) x = theta;
+  }
+  void add_outcome(const FailedEvaluations& all);  // std::runtime_error where too many have failed
+};
 
 class Meter;
 
@@ -169,6 +187,9 @@ class Meter {
     return is_out_of_work() || iteration_ >= budget_.iterations || is_out_of_time();
   }
   Status status() const { return status_; }
+  // By which adapters multiply residuals for libraries with absolute tolerances: a power of 2,
+  // about 1/‖r‖ at the start where unknowns are scaled; else 1.
+  Real residual_unit() const;
   void reject_step() { ++trace_.rejected_steps; }
   // A method's own J (m·B, n) at θ, by differences, and the relative noise of y that it measured.
   void know_jacobian(VectorRef theta, const Matrix& J, Real noise) {
@@ -176,6 +197,10 @@ class Meter {
     known_J_ = J;
     known_noise_ = noise;
   }
+  // The loss of the last point that the method has paid for. An adapter that keeps it with the
+  // point can recall it before the point is judged; another loss changes nothing.
+  Real paid_loss() const { return paid_loss_; }
+  void recall_paid_loss(Real loss) { paid_loss_ = loss; }
   void claim(std::string_view words);  // a library's statement about its own success
   // Quantities of the method, which the trace stores at the same iterations as those of the
   // problem. A method names them once, at its start, and reports them each time they change.
@@ -192,6 +217,10 @@ class Meter {
   Vector finish(VectorRef theta, Status verdict);
   void leave_gradients_out() { measures_gradients_ = false; }  // of what is judged
   const Problem& problem() const { return problem_; }
+  const Vector& judged() const { return judged_theta_; }  // (n), the last θ that was looked at
+  const FailedEvaluations& failures() const { return trace_.failures; }
+  // (n), where the last step began in which no evaluation failed; a part of the state of the run.
+  Vector& origin() { return origin_; }
 
  private:
   friend class Linearization;
@@ -245,8 +274,9 @@ class Meter {
   bool is_spectrum_due(bool is_last) const;
   void keep_spectrum(bool is_last);
   void keep_uncertainty();
-  void show();        // the result of training
-  void prepare();     // samples and limits
+  bool is_held(Index i, VectorRef slope) const;  // by its bounds, at the returned point
+  void show();                                   // the result of training
+  void prepare();                                // samples and limits
   void set_scales();  // by which this run's targets are measured; after the start's loss
   Real target_at(Real tau) const { return trace_.minimum + tau * trace_.scale; }  // nan where none
   const Batch& judging() const { return problem_.is_learned() ? validation_ : problem_.batch(); }
@@ -254,6 +284,7 @@ class Meter {
   void refine(VectorRef theta);
   void note_batch(const Point& at);
   Status judge(VectorRef theta);
+  void leave_failed_point(Status& verdict);
   bool has_stalled();
   // By the last point that was judged.
   bool is_target_met() const {
@@ -275,7 +306,9 @@ class Meter {
   OracleCounts counts_{};
   OracleCounts prices_;
   std::int64_t work_ = 0, iteration_ = 0, next_kept_ = 0;
-  std::uint64_t disturbed_ = 0;   // calls
+  std::uint64_t disturbed_ = 0;  // calls
+  InARow in_a_row_;
+  Vector origin_;                 // (n)
   Rounds spared_{};               // work less rounds
   Matrix announced_;              // (n, count)
   Index next_announced_ = 0;      // column
@@ -302,8 +335,9 @@ class Meter {
   bool is_prepaid_ = false;    // a forward at judged_theta_
   Vector accepted_;            // (n), the last θ that was judged and is paid for
   bool measures_gradients_ = true;
-  Vector known_theta_;  // (n)
-  Matrix known_J_;      // (m·B, n) there
+  Vector known_theta_;        // (n)
+  Matrix known_J_;            // (m·B, n) there
+  bool knows_exact_ = false;  // known_J_ is the problem's own, at the returned point
   Real known_noise_ = std::numeric_limits<Real>::epsilon();
   Real start_gradient_ = 0;                 // ‖∇L‖
   const problems::Refinement* refinement_;  // nullptr: none

@@ -80,6 +80,7 @@ struct Search {
     if (!out) return loss_scale * take(f.loss(theta));
     f.linearize(theta, at);
     at.gradient(gradient);
+    if (!is_finite(gradient)) gradient.setZero();  // the evaluation failed
     Map<Vector>(out, gradient.size()) = loss_scale * gradient;
     return loss_scale * take(at.loss());
   }
@@ -140,7 +141,9 @@ class Nlopt final : public Optimizer {
     const Handle handle = make_handle(algorithm_, theta.size(), options_.memory);
     set_initial_step(handle.get(), theta, options_.initial_step, options_.first_step);
     if (const Bounds* bounds = f.bounds()) set_bounds(handle.get(), theta, *bounds);
-    Search search{f, handle.get(), options_.loss_scale, {}, theta, Vector(theta.size()), theta};
+    const Real unit = f.residual_unit();
+    Search search{
+        f, handle.get(), options_.loss_scale * unit * unit, {}, theta, Vector(theta.size()), theta};
     const nlopt_result result = minimize(search, theta);
     f.claim(nlopt_result_to_string(result));
     theta = search.best;

@@ -6,6 +6,7 @@
 #include <exception>
 #include <stdexcept>
 
+#include "core/floating_point.h"
 #include "core/foreign/isoline.h"
 #include "core/foreign/plugin_library.h"
 #include "optimizers/optimizer.h"
@@ -156,6 +157,7 @@ class PluginMethod final : public Optimizer {
     questions_ = std::make_unique<Questions>(f, component_);
     if (table().start == nullptr) return;
     refresh(f);
+    const KeptFloatingPoint around;
     const int told = table().start(instance_->self(), questions_.get(), theta.data());
     throw_what_was_kept();
     if (told != 0) throw std::runtime_error(component_.words() + ": start() failed");
@@ -163,6 +165,7 @@ class PluginMethod final : public Optimizer {
 
   Status step(Meter& f, Vector& theta) override {
     refresh(f);
+    const KeptFloatingPoint around;
     const int told = table().step(instance_->self(), questions_.get(), theta.data());
     throw_what_was_kept();
     questions_->require_within_bounds(theta);

@@ -6,6 +6,8 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <string_view>
+#include <unordered_map>
 
 #include "core/foreign/handshake.h"
 #include "optimizers/optimizer.h"
@@ -82,6 +84,16 @@ class Service {
     }
     return {room_.data(), f_.unknowns()};
   }
+  static std::size_t hash_of(const Vector& theta) {
+    return std::hash<std::string_view>()({reinterpret_cast<const char*>(theta.data()),
+                                          sizeof(Real) * static_cast<std::size_t>(theta.size())});
+  }
+  // A point that the program has evaluated is not charged for again where it is judged.
+  void take_theta() {
+    theta_ = given_theta();
+    if (const auto known = paid_.find(hash_of(theta_)); known != paid_.end())
+      f_.recall_paid_loss(known->second);
+  }
   auto behind_theta(Index count) const { return room_.segment(f_.unknowns(), count); }
   void reply(Verb verb, std::span<const Real> numbers) { line_.send(verb, kDone, numbers); }
 
@@ -93,6 +105,7 @@ class Service {
     if (is_same) return point_;
     point_theta_ = given_theta();
     f_.linearize(point_theta_, point_);
+    paid_[hash_of(point_theta_)] = f_.paid_loss();
     if (!said_.reports && point_.loss() < best_loss_) {  // what is better counts as an iteration
       best_loss_ = point_.loss();
       theta_ = point_theta_;
@@ -122,7 +135,7 @@ class Service {
         return answer_pullback();
       case Verb::report:
         expect(head, n);
-        theta_ = given_theta();
+        take_theta();
         f_.iterate(theta_);
         return reply(verb, {});
       default:
@@ -177,7 +190,7 @@ class Service {
   }
   Status finish(const FrameHead& head) {
     expect(head, f_.unknowns());
-    theta_ = given_theta();
+    take_theta();
     reply(Verb::finish, {});
     return Status::converged;
   }
@@ -191,6 +204,7 @@ class Service {
   Real scale_;
   Vector point_theta_;  // (n), where `point_` is; empty: nowhere yet
   Linearization point_;
+  std::unordered_map<std::size_t, Real> paid_;  // losses, by the bits of θ
   Real best_loss_ = std::numeric_limits<Real>::infinity();
   Vector gradient_, residual_;
   Matrix scaled_;

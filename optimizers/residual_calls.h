@@ -1,5 +1,6 @@
 // The common part of adapters to least-squares libraries: r = (y − y*)/√B and its Jacobian at the
-// points of a library, its iterates and rejected steps, and the end of its run.
+// points of a library, its iterates and rejected steps, and the end of its run. A library is given
+// finite numbers alone: large residuals where an evaluation fails, which it rejects.
 #pragma once
 
 #include <cmath>
@@ -12,6 +13,11 @@
 
 namespace isoline::optimizers {
 
+// In each component of r. Its square fits, and sums of squares.
+inline constexpr Real kFailedResidual = 1e100;
+inline constexpr const char* kFailedNote =
+    "Where an evaluation fails, the library is given residuals of 1e100.";
+
 class ResidualCalls {
  public:
   ResidualCalls(Meter& f, const Vector& start) : f_(f), last_(start) {}
@@ -21,19 +27,36 @@ class ResidualCalls {
   bool residual(const double* theta, double* r) noexcept {
     if (has_trial_) f_.reject_step();
     has_trial_ = true;
-    return evaluate(theta, r);
-  }
-  // At a point of a difference quotient. Each call counts, also at the point of the last one.
-  bool evaluate(const double* theta, double* r) noexcept {
+    repeats_ = is_known(theta) ? repeats_ + 1 : 0;
     has_point_ = false;
-    return at(theta, [&] { Eigen::Map<Vector>(r, residual_.size()) = residual_; });
+    return at(theta, [&] { give(r); });
+  }
+  // At a point of a difference quotient around the last iterate. Each call counts, also at the
+  // point of the last one. Where it fails, r is extrapolated from the other side; if that fails,
+  // too, the quotient is 0.
+  bool evaluate(const double* theta, double* r) noexcept {
+    if (has_point_ && theta_ == last_) base_ = residual_;
+    has_point_ = false;
+    if (!at(theta, [&] { give(r); })) return false;
+    if (!has_failed_ || base_.size() != residual_.size()) return true;
+    const Vector mirrored = 2 * last_ - theta_;
+    return at(mirrored.data(), [&] {
+      Eigen::Map<Vector>(r, base_.size()) = has_failed_ ? base_ : Vector(2 * base_ - residual_);
+    });
   }
   // Passes r (m·B) and ∂r/∂θ (m·B, n) to `read`; a point of the last residual is not evaluated
   // again.
   template <class Read>
   bool jacobian(const double* theta, Read read) noexcept {
     return accept() && at(theta, [&] {
-             scaled_ = point_.jacobian() / std::sqrt(static_cast<Real>(f_.samples()));
+             scaled_ = f_.residual_unit() * point_.jacobian() /
+                       std::sqrt(static_cast<Real>(f_.samples()));
+             lacks_columns_ = false;
+             for (Index j = 0; j < scaled_.cols(); ++j) {  // of differences, of which a call failed
+               if (scaled_.col(j).allFinite()) continue;
+               scaled_.col(j).setZero();
+               lacks_columns_ = true;
+             }
              read(residual_, scaled_);
            });
   }
@@ -58,30 +81,46 @@ class ResidualCalls {
       return false;
     }
   }
-  bool is_over() const { return error_ || f_.is_spent() || f_.status() != Status::running; }
+  bool is_over() const {
+    return error_ || repeats_ >= kMostRepeats || f_.is_spent() || f_.status() != Status::running;
+  }
 
   // After the library's loop: its point, and what it states about its own success.
   Status end(Vector& theta, std::string_view words, Status by_its_test) {
-    if (!is_over() && is_finite(theta) && theta != last_) report(theta);
+    const bool was_stopped = is_over();  // by us, which the library does not know
+    if (!was_stopped && is_finite(theta) && theta != last_ && !(has_failed_ && theta == theta_))
+      report(theta);
     if (std::exchange(has_trial_, false)) f_.reject_step();
     if (error_) std::rethrow_exception(error_);
     theta = last_;
-    f_.claim(words);
+    f_.claim(was_stopped ? "stopped" : words);
     if (f_.status() != Status::running) return f_.status();
-    return f_.is_spent() ? Status::budget : by_its_test;
+    if (repeats_ >= kMostRepeats) return Status::stalled;
+    if (f_.is_spent()) return Status::budget;
+    return lacks_columns_ && by_its_test == Status::converged ? Status::stalled : by_its_test;
   }
 
  private:
+  static constexpr int kMostRepeats = 1000;  // of one x, which another call does not change
+
+  bool is_known(const double* theta) const {
+    return has_point_ && theta_ == Eigen::Map<const Vector>(theta, last_.size());
+  }
+  void give(double* r) const {
+    Eigen::Map<Vector> given(r, residual_.size());
+    has_failed_ ? given.setConstant(kFailedResidual) : given = residual_;
+  }
   template <class Read>
   bool at(const double* theta, Read read) noexcept {
     if (is_over()) return false;
     try {
-      const Eigen::Map<const Vector> wanted(theta, last_.size());
-      if (!has_point_ || theta_ != wanted) {
+      if (!is_known(theta)) {
         has_point_ = false;
-        theta_ = wanted;
+        theta_ = Eigen::Map<const Vector>(theta, last_.size());
         f_.linearize(theta_, point_);
         point_.residual(residual_);
+        residual_ *= f_.residual_unit();
+        has_failed_ = !is_finite(residual_);
         has_point_ = true;
       }
       read();
@@ -98,7 +137,11 @@ class ResidualCalls {
   Vector theta_, residual_;  // (n), (m·B) at `point_`
   Linearization point_;
   Matrix scaled_;  // (m·B, n)
+  Vector base_;    // (m·B), r at last_, for difference quotients
   bool has_point_ = false, has_trial_ = false;
+  bool has_failed_ = false;     // the evaluation of `point_`
+  bool lacks_columns_ = false;  // of the last Jacobian
+  int repeats_ = 0;
   std::exception_ptr error_;
 };
 

@@ -9,19 +9,23 @@
 #include <fmt/format.h>
 
 #include <Eigen/LU>
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <memory>
-#include <sstream>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/decompose.h"
 #include "core/files.h"
+#include "core/numbers.h"
 #include "core/shell.h"
+#include "core/text.h"
 #include "problems/jet.h"
 #include "problems/problem.h"
 
@@ -188,43 +192,64 @@ std::string text_of(const std::filesystem::path& path) {
   return text;
 }
 
+// The numbers of a file, one after the other.
 struct Numbers {
-  std::istringstream in;
+  std::string_view rest;
   const std::string& file;
-  std::int64_t count = 0;
+  std::int64_t count = 0, line = 1;
 
-  template <class T>
-  T next() {
-    T value{};
-    ++count;
-    require(bool(in >> value),
-            [&] { return fmt::format("{}: number {} is missing or not a number", file, count); });
-    return value;
+  bool is_used_up() {
+    const std::size_t skipped = std::min(rest.find_first_not_of(" \t\r\n"), rest.size());
+    line += std::ranges::count(rest.substr(0, skipped), '\n');
+    rest.remove_prefix(skipped);
+    return rest.empty();
   }
-  int index(int below) {
-    const int value = next<int>();
-    require(value >= 0 && value < below, [&] {
-      return fmt::format("{}: number {} is {}, not an index below {}", file, count, value, below);
+  Real next() {
+    ++count;
+    const bool is_over = is_used_up();
+    const std::string_view word = rest.substr(0, rest.find_first_of(" \t\r\n"));
+    const std::optional<Real> value = number_in(word);
+    require(!is_over && value && std::isfinite(*value), [&] {
+      return is_over ? fmt::format("{}: it ends at line {} before number {}", file, line, count)
+                     : fmt::format("{}: line {}: number {} is '{}', not a finite number", file,
+                                   line, count, cut(word, 40));
     });
-    return value;
+    rest.remove_prefix(word.size());
+    return *value;
+  }
+  int index(int below, const char* what) {
+    const Real value = next();
+    require(value >= 0 && value < below && value == std::floor(value), [&] {
+      return fmt::format("{}: line {}: {} is {}, not a whole number from 0 to {}", file, line, what,
+                         value, below - 1);
+    });
+    return static_cast<int>(value);
   }
 };
 
 Scene scene_of(const std::string& file) {
   constexpr int kMost = 50'000'000;  // of cameras, points and observations: above all files
-  Numbers numbers{std::istringstream(text_of(path_of(file))), file};
+  const std::string text = text_of(path_of(file));
+  Numbers numbers{without_byte_order_mark(text), file};
   Scene scene;
-  scene.cameras = numbers.index(kMost);
-  scene.points = numbers.index(kMost);
-  const int observations = numbers.index(kMost);
+  scene.cameras = numbers.index(kMost, "the number of cameras");
+  scene.points = numbers.index(kMost, "the number of points");
+  const int observations = numbers.index(kMost, "the number of observations");
   scene.target.resize(Index{2} * observations, 1);
   for (int i = 0; i < observations; ++i) {
-    const int camera = numbers.index(scene.cameras), point = numbers.index(scene.points);
+    const int camera = numbers.index(scene.cameras, "the index of a camera");
+    const int point = numbers.index(scene.points, "the index of a point");
     scene.seen.push_back({camera, point});
-    for (int row = 0; row < 2; ++row) scene.target(Index{2} * i + row, 0) = numbers.next<Real>();
+    for (int row = 0; row < 2; ++row) scene.target(Index{2} * i + row, 0) = numbers.next();
   }
   scene.start.resize(Index{kCamera} * scene.cameras + Index{kPoint} * scene.points);
-  for (Real& each : scene.start) each = numbers.next<Real>();
+  for (Real& each : scene.start) each = numbers.next();
+  require(numbers.is_used_up(), [&] {
+    return fmt::format(
+        "{}: line {}: more numbers follow than its header names: {} cameras, {} points and {} "
+        "observations take {} numbers",
+        file, numbers.line, scene.cameras, scene.points, observations, numbers.count);
+  });
   return scene;
 }
 

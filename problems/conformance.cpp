@@ -15,7 +15,7 @@
 #include "core/decompose.h"
 #include "core/differences.h"
 #include "core/failures.h"
-#include "core/foreign/call_log.h"
+#include "core/foreign/evaluations.h"
 #include "core/workspace.h"
 #include "problems/differences.h"
 
@@ -120,6 +120,7 @@ class Examination {
   }
 
   void repeatability() {
+    const Afresh afresh;
     const Point again = point_at(theta_);
     add("forward gives the same bits twice",
         same_bits(again.y, at_.y) && again.loss == at_.loss ? 0 : 1, 0,
@@ -137,6 +138,7 @@ class Examination {
     const Matrix Jv = pushes ? push(v, at_) : Matrix();
     const Matrix JTu = pulls ? Matrix(pull(u, at_)) : Matrix();
     start();
+    const Afresh afresh;
     Point again = point_at(theta_);
     bool same = same_bits(again.y, at_.y);
     if (pushes) same = same && same_bits(push(v, again), Jv);
@@ -371,17 +373,17 @@ class Examination {
     Matrix J(problem_.residuals(), problem_.unknowns());
     const Vector sizes = sizes_.cwiseMax(theta_.cwiseAbs());
     const Bounds* const bounds = problem_.bounds();
-    constexpr Real kNone = std::numeric_limits<Real>::infinity();
+    const Vector y0 = at_.y.reshaped();
     for (Index j = 0; j < J.cols(); ++j) {
-      const std::array<Real, 2> at = difference_offsets(
-          forward_step(noise_) * sizes[j], false, bounds ? bounds->upper[j] - theta_[j] : kNone,
-          bounds ? theta_[j] - bounds->lower[j] : kNone);
-      J.col(j).setZero();
-      if (at[0] == 0) continue;
-      Vector moved = theta_;
-      moved[j] += at[0];
-      const Vector y = point_at(moved).y.reshaped(), y0 = at_.y.reshaped();
-      J.col(j) = difference_quotient<Vector>(at, y0, y, y);
+      const Room room =
+          bounds ? Room{bounds->upper[j] - theta_[j], theta_[j] - bounds->lower[j]} : Room{};
+      const Real h = forward_step(noise_) * sizes[j];
+      J.col(j) = quotient_of_calls(difference_offsets(h, false, room.up, room.down), room, y0,
+                                   [&](Real t) -> Vector {
+                                     Vector moved = theta_;
+                                     moved[j] += t;
+                                     return point_at(moved).y.reshaped();
+                                   });
     }
     return J;
   }

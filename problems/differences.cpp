@@ -73,11 +73,9 @@ class Differenced final : public Physics {
   // Along v by a step relative to the size of each unknown.
   void pushforward(BatchRef v, BatchOut Jv, Workspace& w) const override {
     Inside& own = w.as<Inside>();
-    const std::array<Real, 2> at = offsets_along(own, v);
-    if (at[0] == 0) return Jv.setZero(), void();  // unknowns that their bounds fix
-    const Matrix first = moved(own, v, at[0]);
-    const Matrix second = at[1] == 0 ? first : moved(own, v, at[1]);
-    Jv = difference_quotient<Matrix>(at, own.y, first, second);
+    Room room;
+    const std::array<Real, 2> at = offsets_along(own, v, room);
+    Jv = quotient_of_calls(at, room, own.y, [&](Real t) { return value(own, own.w.x + t * v); });
   }
   void pullback(BatchRef u, BatchOut JTu, Workspace& w) const override {
     const Index k = inputs(), batch = u.cols();
@@ -99,22 +97,21 @@ class Differenced final : public Physics {
 
  private:
   // Inside the bounds, for all samples.
-  std::array<Real, 2> offsets_along(const Inside& own, BatchRef v) const {
+  std::array<Real, 2> offsets_along(const Inside& own, BatchRef v, Room& room) const {
     measure_noise(own);
     const Matrix& x = own.w.x;
     const Vector sizes = x.rowwise().lpNorm<Eigen::Infinity>().cwiseMax(sizes_);
     const Real length = (v.array().colwise() / sizes.array()).abs().maxCoeff();
     const Real step = is_central_ ? central_step(noise_) : forward_step(noise_);
-    Real up = std::numeric_limits<Real>::infinity(), down = up;
     for (Index b = 0; bounds_ && b < x.cols(); ++b)
       for (Index i = 0; i < x.rows(); ++i) {
         if (v(i, b) == 0) continue;
         const Real to_upper = (bounds_->upper[i] - x(i, b)) / std::abs(v(i, b));
         const Real to_lower = (x(i, b) - bounds_->lower[i]) / std::abs(v(i, b));
-        up = std::min(up, v(i, b) > 0 ? to_upper : to_lower);
-        down = std::min(down, v(i, b) > 0 ? to_lower : to_upper);
+        room.up = std::min(room.up, v(i, b) > 0 ? to_upper : to_lower);
+        room.down = std::min(room.down, v(i, b) > 0 ? to_lower : to_upper);
       }
-    return difference_offsets(step / (length > 0 ? length : 1), is_central_, up, down);
+    return difference_offsets(step / (length > 0 ? length : 1), is_central_, room.up, room.down);
   }
   // All forwards of J, in the order in which jacobian() asks for them.
   void begin_differences(const Inside& own) const {
@@ -123,13 +120,12 @@ class Differenced final : public Physics {
     Index calls = 0;
     for (Index i = 0; i < k; ++i) {
       const Matrix v = Matrix::Identity(k, k).col(i);
-      for (const Real h : offsets_along(own, v))
+      Room room;
+      for (const Real h : offsets_along(own, v, room))
         if (h != 0) points.col(calls++) = own.w.x + h * v;
     }
     inside_->begin_forwards(points.leftCols(calls));
   }
-  // P(x + h v)
-  Matrix moved(Inside& own, BatchRef v, Real h) const { return value(own, own.w.x + h * v); }
   Matrix value(Inside& own, const Matrix& x) const {
     Matrix y(outputs(), x.cols());
     own.moved.x = x;

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "core/decompose.h"
+#include "core/differences.h"
 #include "core/errors.h"
 #include "core/failures.h"
 #include "problems/differences.h"
@@ -21,8 +22,9 @@ namespace {
 
 // x = S Q z.
 struct Map {
-  Vector scales;    // of S, (k); empty: all 1
-  Matrix rotation;  // Q, (k, k); empty: identity
+  Vector scales;              // of S, (k); empty: all 1
+  Matrix rotation;            // Q, (k, k); empty: identity
+  std::optional<Bounds> box;  // that rounding must not leave
 
   bool is_identity() const { return scales.size() == 0 && rotation.size() == 0; }
   Matrix to_x(BatchRef z) const {
@@ -30,6 +32,7 @@ struct Map {
     if (scales.size() > 0) x.array().colwise() *= scales.array();
     return x;
   }
+  Matrix point(BatchRef z) const { return box ? Matrix(box->nearest(to_x(z))) : to_x(z); }
   Matrix transposed(BatchRef x) const {
     Matrix z = x;
     if (scales.size() > 0) z.array().colwise() *= scales.array();
@@ -137,12 +140,12 @@ class Featured final : public Physics {
 
   void begin_forwards(BatchRef z) const override {
     Matrix x(z.rows(), z.cols());
-    for (Index b = 0; b < z.cols(); ++b) x.col(b) = map_.to_x(z.col(b));  // to the last bit
+    for (Index b = 0; b < z.cols(); ++b) x.col(b) = map_.point(z.col(b));  // to the last bit
     inside_->begin_forwards(x);
   }
   void forward(BatchRef z, BatchRef c, BatchOut y, Workspace& w) const override {
     Workspace& in = w.as<Inside>().w;
-    in.x = map_.to_x(z);
+    in.x = map_.point(z);
     in.context = c;
     in.saved_is_current = false;
     inside_->forward(in.x, c, y.topRows(m()), in);
@@ -483,6 +486,28 @@ Problem with_other_data(Problem plain, const Features& features, const Draw& dra
   return featured;
 }
 
+// One scale per unknown: |x₀|; where that is 0 the width of its bounds; else 1/‖∂y/∂xᵢ‖ at x₀.
+Vector scales_of_unknowns(const Problem& problem) {
+  const Vector& start = problem.start();
+  Vector scales = start.cwiseAbs();
+  Point at;
+  for (Index i = 0; i < start.size(); ++i) {
+    if (scales[i] > 0) continue;
+    if (problem.bounds()) scales[i] = problem.bounds()->upper[i] - problem.bounds()->lower[i];
+    if (scales[i] > 0 && std::isfinite(scales[i])) continue;
+    if (at.batch == nullptr) problem.forward(start, at);
+    const Real step = 1e-3 * sizes_of_unknowns(start)[i];
+    const bool is_at_top = problem.bounds() && problem.bounds()->upper[i] < step;
+    Vector x = start;
+    x[i] = is_at_top ? -step : step;
+    Point moved;
+    problem.forward(x, moved);
+    const Real change = (moved.y - at.y).norm() / step;
+    scales[i] = change > 0 && std::isfinite(change) ? 1 / change : 1000 * step;
+  }
+  return scales;
+}
+
 }  // namespace
 
 Problem with_features(Problem plain, const OptionValues& options, const Draw& draw,
@@ -498,6 +523,23 @@ Problem with_features(Problem plain, const OptionValues& options, const Draw& dr
   ProblemParts parts = std::move(featured).parts();
   if (features.jitter > 0) parts.jitter = {features.jitter, draw.stream("jitter")};
   if (features.derivatives != "exact") replace_derivatives(parts, features.derivatives);
+  return Problem(std::move(parts));
+}
+
+Problem with_scaled_unknowns(Problem plain) {
+  const bool declares_scales = plain.start_scale() == StartScale::own || plain.bounds();
+  if (!declares_scales || !plain.has_identity_network() || plain.samples() != 1 || plain.field())
+    return plain;
+  Map map{.scales = scales_of_unknowns(plain)};
+  const Real x_scale = plain.x_scale(plain.batch());
+  ProblemParts parts = std::move(plain).parts();
+  parts.own_units = {.scales = map.scales, .bounds = parts.bounds};
+  map.box = parts.bounds;
+  parts.x_scale = x_scale;
+  const auto names = parts.names, units = parts.units;
+  wrap(parts, std::move(map), {}, Features{});
+  parts.names = names;
+  parts.units = units;
   return Problem(std::move(parts));
 }
 

@@ -68,4 +68,9 @@ OptionTable feature_table(const OptionTable& own);
 Problem with_features(Problem plain, const OptionValues& features, const Draw& draw,
                       const std::optional<Matrix>& target = {});
 
+// A direct problem that declares a scale for each unknown or bounds, as methods see it: θᵢ = xᵢ/sᵢ
+// with sᵢ = |xᵢ| at the start; where that is 0 the width of its bounds, if finite; else 1/‖∂y/∂xᵢ‖
+// there, by one call. Others are returned as they are.
+Problem with_scaled_unknowns(Problem plain);
+
 }  // namespace isoline::problems

@@ -7,6 +7,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "core/floating_point.h"
 #include "core/foreign/isoline.h"
 #include "core/foreign/plugin_library.h"
 #include "problems/problem.h"
@@ -81,6 +82,7 @@ class PluginPhysics final : public ByJacobian {
 
   void forward(BatchRef x, BatchRef, BatchOut y, Workspace& w) const override {
     w.saved.resize(2);
+    const KeptFloatingPoint around;
     w.saved[1].resize(static_cast<Index>(sizes_.kept), x.cols());
     for (Index b = 0; b < x.cols(); ++b)
       judge(table().forward(self(), x.col(b).data(), y.col(b).data(), w.saved[1].col(b).data()),
@@ -89,6 +91,7 @@ class PluginPhysics final : public ByJacobian {
 
   void pushforward(BatchRef v, BatchOut Jv, Workspace& w) const override {
     if (!instance_.of().can(ISOLINE_PUSHFORWARD)) return ByJacobian::pushforward(v, Jv, w);
+    const KeptFloatingPoint around;
     for (Index b = 0; b < v.cols(); ++b)
       judge(table().pushforward(self(), w.x.col(b).data(), kept(w, b), v.col(b).data(),
                                 Jv.col(b).data()),
@@ -97,6 +100,7 @@ class PluginPhysics final : public ByJacobian {
 
   void pullback(BatchRef u, BatchOut JTu, Workspace& w) const override {
     if (!instance_.of().can(ISOLINE_PULLBACK)) return ByJacobian::pullback(u, JTu, w);
+    const KeptFloatingPoint around;
     for (Index b = 0; b < u.cols(); ++b)
       judge(table().pullback(self(), w.x.col(b).data(), kept(w, b), u.col(b).data(),
                              JTu.col(b).data()),
@@ -109,6 +113,7 @@ class PluginPhysics final : public ByJacobian {
 
   Success local_inverse(BatchRef y, BatchRef x0, BatchRef, BatchOut x) const override {
     Success success(y.cols());
+    const KeptFloatingPoint around;
     for (Index b = 0; b < y.cols(); ++b)
       success[b] = table().inverse(self(), y.col(b).data(), x0.col(b).data(), x.col(b).data()) == 0;
     return success;
@@ -120,6 +125,7 @@ class PluginPhysics final : public ByJacobian {
   const double* kept(const Workspace& w, Index b) const { return w.saved[1].col(b).data(); }
 
   void form_jacobian(Matrix& J, Workspace& w) const override {
+    const KeptFloatingPoint around;
     for (Index b = 0; b < w.x.cols(); ++b) {
       BatchOut of_sample = J.middleCols(b * inputs(), inputs());
       judge(table().jacobian(self(), w.x.col(b).data(), kept(w, b), of_sample.data()), of_sample);

@@ -1,6 +1,8 @@
 // The inverse problem: network, physics and loss chained, forward and back.
 #include "problems/problem.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -37,8 +39,11 @@ Problem::Problem(ProblemParts parts) : parts_(std::move(parts)) {
     require(!parts_.network && bounds->lower.size() == parts_.start.drawn.size() &&
                 bounds->upper.size() == parts_.start.drawn.size(),
             "bounds must be those of all unknowns of a direct problem");
-    require((bounds->lower.array() <= bounds->upper.array()).all(),
-            "a lower bound must not be above the upper one");
+    for (Index i = 0; i < bounds->lower.size(); ++i)
+      require(bounds->lower[i] <= bounds->upper[i], [&] {
+        return fmt::format("the lower bound {} of x{} is above its upper bound {}",
+                           bounds->lower[i], i + 1, bounds->upper[i]);
+      });
     for (Vector* start : {&parts_.start.drawn, &parts_.start.standard})
       *start = bounds->nearest(*start);
   }
@@ -119,6 +124,13 @@ Real Problem::loss_scale(const Batch& batch) const {
 
 // ‖x*‖, as the distance of x = 0 from the nearest solution; where 0 is one, that of the standard
 // start.
+Vector Problem::in_own_units(VectorRef theta) const {
+  const OwnUnits& own = parts_.own_units;
+  if (own.scales.size() == 0) return theta;
+  const Vector x = theta.cwiseProduct(own.scales);
+  return own.bounds ? own.bounds->nearest(x) : x;
+}
+
 Real Problem::x_scale(const Batch& batch) const {
   if (parts_.x_scale) return *parts_.x_scale;
   const Real of_nothing = x_error(Matrix::Zero(inputs(), batch.samples()), batch);

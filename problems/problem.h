@@ -87,6 +87,13 @@ struct Bounds {
   }
 };
 
+// Scales, (n), of the unknowns of a problem whose methods see x divided by them, and its bounds on
+// x. Empty: θ = x.
+struct OwnUnits {
+  Vector scales;
+  std::optional<Bounds> bounds;
+};
+
 // Noise of the calls: y ← y* + (1 + σz)(y − y*) for each residual, z ~ N(0, 1) by the number of
 // the call. What is judged has none.
 struct Jitter {
@@ -120,6 +127,7 @@ struct ProblemParts {
   std::optional<Bounds> bounds;       // on θ = x of a direct problem
   // Names and units of the unknowns of a direct problem, (n); empty: x1, x2, … without units.
   std::vector<std::string> names = {}, units = {};
+  OwnUnits own_units = {};
   // Distance from x to the nearest solution, the mean over samples, where solutions are known.
   std::function<Real(BatchRef x, const Batch& batch)> x_error;
   std::optional<Real> x_scale;  // ‖x*‖, for targets in x; found by Problem::x_scale where empty
@@ -174,6 +182,8 @@ class Problem {
   const std::vector<std::string>& names() const { return parts_.names; }  // (n), or empty
   const std::vector<std::string>& units() const { return parts_.units; }  // (n), or empty
   const Bounds* bounds() const { return parts_.bounds ? &*parts_.bounds : nullptr; }
+  const OwnUnits& own_units() const { return parts_.own_units; }
+  Vector in_own_units(VectorRef theta) const;  // x
   const auto& window() const { return parts_.window; }
   const auto& y_window() const { return parts_.y_window; }
   const std::string& contour_spacing() const { return parts_.contour_spacing; }

@@ -9,7 +9,7 @@
 #include "core/array.h"
 #include "core/clock.h"
 #include "core/failures.h"
-#include "core/foreign/call_log.h"
+#include "core/foreign/evaluations.h"
 #include "core/foreign/handshake.h"
 #include "core/foreign/workers.h"
 #include "problems/differences.h"
@@ -32,42 +32,56 @@ constexpr Real kNaN = std::numeric_limits<Real>::quiet_NaN();
 // point.
 class Session {
  public:
-  Session(const SimulatorOptions& given, std::uint64_t seed, OptionValues declared)
-      : failures_allowed_(given.failures),
-        has_several_(given.workers > 1),
-        workers_(given, seed, std::move(declared)),
+  Session(const SimulatorOptions& given, std::uint64_t seed, const OptionValues& declared)
+      : has_several_(given.workers > 1),
+        has_call_time_(given.call_time > 0),
+        workers_(given, seed, declared),
+        key_(given.command, declared, seed),
+        failures_allowed_(given.failures > 0 ? given.failures
+                                             : std::max<Index>(100, 10 * said().inputs)),
         announced_point_(take_point()) {}
 
   const ProblemHandshake& said() const { return workers_.said(); }
   int starts() const { return workers_.starts(); }
 
   // Why the call failed; empty if it did not. LineError where too many of its kind have in a row.
-  // From the log of calls, if it has this one; else from a program, after `prepare(start)`: that of
-  // the first program, or kNowhere where another one may answer, and no program knows the point.
-  std::string call(Verb verb, std::uint32_t number, std::span<const std::span<const Real>> numbers,
-                   std::span<Real> answer, const auto& prepare) {
-    const bool is_announced = verb == Verb::linearize && workers_.is_next(numbers[0]);
-    CallLog* const log = call_log().get();
-    if (log != nullptr) {
-      if (Recalling::is_on() && verb == Verb::linearize && !is_announced)
-        if (const auto why = log->recall(numbers, answer)) return *why;
-      if (const auto why = log->replay(verb, number, numbers, answer)) {
-        if (is_announced) workers_.skip();
+  // From the store of evaluations, if it has this one; else from a program, after `prepare(start)`:
+  // that of the first program, or kNowhere where another one may answer, and no program knows the
+  // point. `x` is the point of a product.
+  std::string call(Verb verb, std::uint32_t number, std::span<const Real> sent,
+                   std::span<Real> answer, const auto& prepare, std::span<const Real> x = {}) {
+    const std::array<std::span<const Real>, 2> request = {x, sent};
+    return call(verb, number, std::span(&sent, 1), request, answer, prepare);
+  }
+  std::string call(Verb verb, std::uint32_t number, std::span<const std::span<const Real>> sent,
+                   Evaluations::Numbers request, std::span<Real> answer, const auto& prepare) {
+    Evaluations& store = evaluations();
+    if (!Afresh::is_on())
+      if (const auto why = store.find(key_, verb, request, answer, workers_.most_seconds())) {
         count_failure(verb, *why);
+        has_answered_ = has_answered_ || why->empty();
         return *why;
       }
-    }
+    const bool is_announced = verb == Verb::linearize && workers_.is_next(sent[0]);
     prepare(is_announced ? kNowhere : starts());
     const std::int64_t begin = monotonic_nanoseconds();
+    is_late_ = false;
     const std::string why = is_announced ? answered(verb, [&] { workers_.take(answer); })
-                                         : ask_program(verb, number, numbers, answer);
-    if (log != nullptr)
-      log->append(verb, number, numbers, answer, why,
-                  1e-9 * static_cast<double>(monotonic_nanoseconds() - begin));
+                                         : ask_program(verb, number, sent, answer);
+    const bool is_repeated = Afresh::is_on() && store.has(key_, verb, request);
+    if (!is_repeated)
+      store.keep(key_, verb, request, answer, why,
+                 1e-9 * static_cast<double>(monotonic_nanoseconds() - begin), is_late_);
+    CallReport& report = call_report();
+    ++report.made;
+    if (Afresh::is_on() && verb == Verb::linearize) {
+      ++report.afresh;
+      if (!why.empty()) ++report.afresh_failed;
+    }
     return why;
   }
 
-  // The call to the first program, without the log.
+  // The call to the first program, without the store.
   std::string ask_program(Verb verb, std::uint32_t number,
                           std::span<const std::span<const Real>> numbers, std::span<Real> answer) {
     const std::string why = answered(verb, [&] { workers_.ask(verb, number, numbers, answer); });
@@ -75,8 +89,18 @@ class Session {
     return why;
   }
 
+  // Without those that the store has.
   void announce(BatchRef x) {
-    if (has_several_) workers_.announce(x, announced_point_);
+    if (!has_several_) return;
+    Matrix left(x.rows(), x.cols());
+    Index count = 0;
+    for (Index b = 0; b < x.cols(); ++b) {
+      left.col(count) = x.col(b);
+      const std::array<std::span<const Real>, 2> request = {
+          std::span<const Real>(), {left.col(count).data(), static_cast<std::size_t>(x.rows())}};
+      if (Afresh::is_on() || !evaluations().has(key_, Verb::linearize, request)) ++count;
+    }
+    workers_.announce(left.leftCols(count), announced_point_);
   }
 
   std::uint32_t take_point() {
@@ -94,13 +118,21 @@ class Session {
     try {
       ask();
       count_failure(verb, "");
+      has_answered_ = true;
       return "";
     } catch (const FailedCall& error) {
+      is_late_ = dynamic_cast<const LateProgram*>(&error) != nullptr;
+      if (is_late_ && !(has_answered_ && has_call_time_))
+        throw LineError(fmt::format(
+            "{}; process[…,call-time=SECONDS] sets another limit, and lets such calls fail where "
+            "the program answers others",
+            error.what()));
       count_failure(verb, error.what());
       return error.reason.empty() ? "the program names no reason" : error.reason;
     }
   }
   void count_failure(Verb verb, const std::string& why) {  // empty: none
+    if (failure_sink() != nullptr) failure_sink()->most_in_a_row = failures_allowed_;
     Index& in_a_row = failures_.at(static_cast<std::size_t>(verb));
     in_a_row = why.empty() ? 0 : in_a_row + 1;
     if (in_a_row < failures_allowed_) return;
@@ -108,9 +140,11 @@ class Session {
         in_a_row == 1 ? why : fmt::format("{} calls in a row failed; the last: {}", in_a_row, why));
   }
 
-  Index failures_allowed_;
-  bool has_several_;
+  bool has_several_, has_call_time_, has_answered_ = false;
+  bool is_late_ = false;  // the last call
   Workers workers_;
+  EvaluationKey key_;
+  Index failures_allowed_;
   std::array<Index, static_cast<std::size_t>(Verb::x_error) + 1> failures_{};  // in a row, by verb
   std::uint32_t points_ = 0;
   std::vector<std::uint32_t> free_points_;
@@ -124,7 +158,7 @@ struct OwnPoint final : Scratch {
   }
   std::shared_ptr<Session> session;
   std::uint32_t number = 0;
-  int start = 0;            // of the program that knows the point; 0: the log answered
+  int start = 0;            // of the program that knows the point; 0: the store answered
   bool has_failed = false;  // the forward pass
   Matrix in, out, within;
 };
@@ -197,7 +231,7 @@ class ProcessPhysics final : public ByJacobian {
     Vector answer(x.size() + y.cols());     // x, then one success flag per sample
     const std::array<std::span<const Real>, 2> given = {numbers_of(targets), numbers_of(starts)};
     const std::span<Real> numbers(answer.data(), static_cast<std::size_t>(answer.size()));
-    if (!session_->call(Verb::inverse, 0, given, numbers, [](int) {}).empty())
+    if (!session_->call(Verb::inverse, 0, given, given, numbers, [](int) {}).empty())
       return Success::Constant(y.cols(), false);
     x = answer.head(x.size()).reshaped(x.rows(), x.cols());
     return answer.tail(y.cols()).array() == 1;
@@ -236,8 +270,8 @@ class ProcessPhysics final : public ByJacobian {
       else if (point.start != session_->starts())
         remember(point, w);
     };
-    const std::string why =
-        session_->call(verb, point.number, std::span(&numbers, 1), {to, count}, prepare);
+    const std::span<const Real> x = is_forward ? std::span<const Real>() : point_x(point, w);
+    const std::string why = session_->call(verb, point.number, numbers, {to, count}, prepare, x);
     if (is_forward) point.has_failed = !why.empty();
     if (!why.empty()) {
       add_failure(numbers_of(bounds_ ? point.within : w.x),
@@ -250,9 +284,13 @@ class ProcessPhysics final : public ByJacobian {
       add_failure(numbers_of(bounds_ ? point.within : w.x), "y is not finite");
   }
 
+  std::span<const Real> point_x(const OwnPoint& point, const Workspace& w) const {
+    return numbers_of(bounds_ ? point.within : w.x);
+  }
+
   // The forward pass again, in a program that was started since.
   void remember(OwnPoint& point, const Workspace& w) const {
-    const std::span<const Real> x = numbers_of(bounds_ ? point.within : w.x);
+    const std::span<const Real> x = point_x(point, w);
     Vector y(outputs_ * w.x.cols());
     point.start = session_->starts();
     session_->ask_program(Verb::linearize, point.number, std::span(&x, 1),
@@ -294,7 +332,7 @@ ProblemParts process_parts(const ProblemHandshake& said, const std::shared_ptr<S
       Real error = 0;
       const std::span<const Real> numbers = numbers_of(whole);
       const std::string why =
-          session->call(Verb::x_error, 0, std::span(&numbers, 1), std::span(&error, 1), [](int) {});
+          session->call(Verb::x_error, 0, numbers, std::span(&error, 1), [](int) {});
       return why.empty() ? error : kNaN;
     };
   if (!said.truth.empty()) parts.truth = vector_of(said.truth);

@@ -9,6 +9,7 @@
 #include <optional>
 #include <unordered_map>
 
+#include "benchmarks/cli/left_out.h"
 #include "benchmarks/cli/planned_run.h"
 #include "benchmarks/cli/terminal.h"
 #include "benchmarks/plan/suite.h"
@@ -224,7 +225,15 @@ bool add_predicted(const std::vector<PredictedCell>& predicted, Cells& cells) {
 }
 
 void add_records(const std::vector<fs::path>& folders, Cells& cells, const Listener& listener) {
-  for (RecordOutline& seen : record_outlines(folders, listener)) {
+  std::vector<RecordOutline> outlines = record_outlines(folders, listener);
+  std::size_t files = 0;
+  std::vector<std::string> names;
+  for (const fs::path& folder : folders) {
+    names.push_back(folder.string());
+    for (const std::string& name : names_in(folder / "runs")) files += name.ends_with(".json");
+  }
+  if (outlines.size() < files) study_of(names);  // which names those that cannot be read
+  for (RecordOutline& seen : outlines) {
     if (seen.status == Status::interrupted) continue;
     Known& cell = cells[seen.cell];
     if (!cell.latest || cell.latest->started < seen.started) cell.latest = std::move(seen);

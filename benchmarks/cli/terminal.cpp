@@ -15,6 +15,7 @@
 #include "benchmarks/plan/claim_cells.h"
 #include "benchmarks/run/progress.h"
 #include "benchmarks/run/runner.h"
+#include "core/foreign/foreign.h"
 #include "core/shell.h"
 #include "core/text.h"
 #include "reports/sections/words.h"
@@ -54,9 +55,9 @@ std::string debugging_advice(const Crash& crash, const fs::path& folder) {
       printable(core_pattern()));
 }
 
-}  // namespace
-
-void run_program(std::vector<std::string> command, const char* package, const fs::path& output) {
+// The exit status of another program, which has ended.
+int status_of_program(std::vector<std::string> command, const char* package,
+                      const fs::path& output) {
   std::vector<char*> words;
   for (std::string& word : command) words.push_back(word.data());
   words.push_back(nullptr);
@@ -77,9 +78,22 @@ void run_program(std::vector<std::string> command, const char* package, const fs
   });
   int status = 0;
   while (waitpid(child, &status, 0) < 0 && errno == EINTR) continue;
+  return status;
+}
+
+}  // namespace
+
+void run_program(std::vector<std::string> command, const char* package, const fs::path& output) {
+  const int status = status_of_program(command, package, output);
   require(WIFEXITED(status) && WEXITSTATUS(status) == 0, [&] {
     return fmt::format("the program {} failed: {}", command[0], fmt::join(command, " "));
   });
+}
+
+int run_script(const std::string& name, std::vector<std::string> arguments) {
+  arguments.insert(arguments.begin(), {"python3", (client_folder("python") / name).string()});
+  const int status = status_of_program(std::move(arguments), "python3", {});
+  return WIFEXITED(status) && WEXITSTATUS(status) == 0 ? kGood : kUsage;
 }
 
 Listener progress_on_terminal(const char* what) {
@@ -115,6 +129,9 @@ void print_outcome(const Outcome& outcome, const std::filesystem::path& folder, 
     say(stderr, fmt::format("{} of {} reused, although another build computed them\n",
                             outcome.reused_from_other_builds,
                             reports::counted(std::size_t(outcome.reused), "cell")));
+  for (const std::string& problem : outcome.solved_at_start)
+    say(stderr,
+        fmt::format("the start of {} solves it, so that its runs compare nothing\n", problem));
   if (quiet) return;
   if (outcome.continued > 0)
     say(stderr, fmt::format("{} continued from the end of a run with a smaller budget\n",

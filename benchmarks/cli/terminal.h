@@ -31,6 +31,9 @@ int exit_code_of(const Outcome& outcome);
 void run_program(std::vector<std::string> command, const char* package,
                  const std::filesystem::path& output = {});
 
+// Runs a script of clients/python; its exit code. The script names Python packages that it lacks.
+int run_script(const std::string& name, std::vector<std::string> arguments);
+
 // Writes a report of a study in every format, with the claims that its runs decide, and prints the
 // main table unless quiet.
 struct Reporting {

@@ -345,6 +345,13 @@ Component complete_optimizer(const Catalog& catalog, const Spec& spec) {
   return complete_optimizer(catalog, spec.name, options_of(spec));
 }
 
+Problem make_for_methods(const Catalog& catalog, const Component& problem, std::uint64_t seed) {
+  const OptionValue* const scales = problem.options.find("scale-unknowns");
+  Problem made = make_problem(catalog, problem, seed);
+  return scales && *scales == OptionValue(true) ? problems::with_scaled_unknowns(std::move(made))
+                                                : std::move(made);
+}
+
 Problem make_problem(const Catalog& catalog, const Component& problem, std::uint64_t seed) {
   Problem made = made_without_best(catalog, problem, seed);
   const std::optional<Real> best = BestLosses::known().find(problem, seed);

@@ -58,6 +58,8 @@ OptimizerEntry entry_of(const Catalog& catalog, const std::string& optimizer,
 
 // With the best loss known for f_L, where it declares none.
 Problem make_problem(const Catalog& catalog, const Component& problem, std::uint64_t seed);
+// As a run has it: of a program with scale-unknowns, its unknowns divided by their scales.
+Problem make_for_methods(const Catalog& catalog, const Component& problem, std::uint64_t seed);
 bool declares_minimum(const Catalog& catalog, const Component& problem, std::uint64_t seed);
 
 // The files of the tree, by name without ".json".

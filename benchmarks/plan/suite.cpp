@@ -4,12 +4,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <type_traits>
 #include <unordered_set>
 
 #include "benchmarks/plan/catalog.h"
+#include "core/foreign/foreign.h"
 #include "core/json.h"
 #include "core/records/json_view.h"
 #include "core/spec.h"
@@ -96,6 +99,29 @@ std::vector<std::string> parts_of(std::string text) {
   return parts;
 }
 
+// The scripts of clients/peers whose packages are installed, by the list that one of them prints.
+const std::vector<std::string>& peer_specs() {
+  static const std::vector<std::string> all = [] {
+    const std::string script = (client_folder("peers") / "peers.py").string();
+    std::vector<std::string> specs;
+    std::string line;
+    FILE* const list = popen(fmt::format("python3 '{}'", script).c_str(), "r");
+    for (int each = 0; list != nullptr && (each = std::fgetc(list)) != EOF;) {
+      if (each != '\n') {
+        line += static_cast<char>(each);
+        continue;
+      }
+      specs.push_back(std::move(line));
+      line.clear();
+    }
+    require(list != nullptr && pclose(list) == 0 && !specs.empty(), [&] {
+      return fmt::format("'@peers' needs a package that `python3 {} packages` names", script);
+    });
+    return specs;
+  }();
+  return all;
+}
+
 // The names in a block, with selectors replaced by the names that they match.
 template <class Registered>
 std::vector<std::string> named_specs(const Registered& registry,
@@ -109,6 +135,8 @@ std::vector<std::string> named_specs(const Registered& registry,
         continue;
       }
       const std::size_t before = specs.size();
+      if (std::is_same_v<Registered, OptimizerRegistry> && text == "@peers")
+        specs.insert(specs.end(), peer_specs().begin(), peer_specs().end());
       for (const auto& [name, entry] : registry)
         if (entry.in_all && is_selected(entry, text) &&
             std::ranges::find(excepted, name) == excepted.end())

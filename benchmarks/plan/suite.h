@@ -60,7 +60,8 @@ std::vector<Request> expand(const Catalog& catalog, const Suite& suite, const Ra
                             std::uint64_t most = kMostCells);
 
 // "*" for all, "@family" for the optimizers of a family; "@matrix-free", "@factorizing" (a dense
-// factorization of size n) and "@derivative-free" by what a step costs.
+// factorization of size n) and "@derivative-free" by what a step costs; "@peers" for the scripts of
+// clients/peers that run here, only in a list of optimizers.
 bool is_selected(const OptimizerEntry& entry, const std::string& selector);
 
 // The cells whose problem and optimizer match one of the names: specs, whose options a component

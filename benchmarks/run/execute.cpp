@@ -21,7 +21,6 @@
 #include "core/errors.h"
 #include "core/failures.h"
 #include "core/files.h"
-#include "core/foreign/call_log.h"
 #include "core/foreign/handshake.h"
 #include "core/foreign/line.h"
 #include "core/frames.h"
@@ -57,7 +56,7 @@ void note_failures(Trace& trace) {
 
 void run(const Catalog& catalog, const Request& request, Trace& trace, Checkpoint& checkpoint,
          Vector* returned, int perturbation) {
-  const Problem problem = make_problem(catalog, request.problem, request.seed);
+  const Problem problem = make_for_methods(catalog, request.problem, request.seed);
   const OptimizerEntry& entry = catalog.optimizers.at(request.optimizer.name);
   const std::string reason = why_inapplicable(entry, request.optimizer.options, problem);
   if (!reason.empty()) throw NotApplicable(reason);
@@ -171,6 +170,10 @@ std::optional<AnswerPoints> answer_of(const Trace& trace) {
   AnswerPoints answer{.unknowns = kept.unknowns};
   const auto add = [&](const char* name, const double* values) {
     std::vector<Real> x(values, values + kept.unknowns);
+    for (std::size_t i = 0; kept.is_scaled && i < x.size(); ++i) {
+      x[i] *= kept.scale[i];
+      if (kept.is_bounded) x[i] = std::max(kept.lower[i], std::min(x[i], kept.upper[i]));
+    }
     if (!std::ranges::all_of(x, [](Real value) { return std::isfinite(value); })) return;
     answer.points.emplace_back(name);
     answer.x.push_back(std::move(x));
@@ -190,6 +193,7 @@ std::optional<AnswerPoints> answer_of(const Trace& trace) {
     answer.units.push_back(line.substr(std::min(tab + 1, line.size())));
   }
   if (std::ranges::all_of(answer.units, &std::string::empty)) answer.units.clear();
+  if (kept.is_scaled) answer.scales.assign(kept.scale, kept.scale + kept.unknowns);
   const std::vector<Real>& x = answer.x.back();  // of least loss
   for (int i = 0; kept.is_bounded && i < kept.unknowns; ++i) {
     const Real value = x[static_cast<std::size_t>(i)];
@@ -332,13 +336,6 @@ Checkpoint::Checkpoint(std::filesystem::path path, std::string identity, double 
   std::signal(SIGTERM, [](int) { stop_requested = 1; });
 }
 
-void Checkpoint::log_calls(bool all) {
-  if (path_.empty()) return;
-  const auto path = std::filesystem::path(path_).replace_extension(".calls");
-  call_log() = std::make_unique<CallLog>(path, path.stem().string(), all);
-  if (std::filesystem::exists(path)) path_.clear();
-}
-
 bool Checkpoint::restore(Optimizer& method, Meter& meter, Vector& theta) {
   const std::string of_end = heading_of(ends_.stem.filename().string());
   if (!restore_from(path_, identity_, method, meter, theta) &&
@@ -443,6 +440,57 @@ Vector perturbed_start(Vector start, const Request& request, int number) {
   return start;
 }
 
+namespace {
+
+// Retreats from points whose evaluation fails, where a method cannot go on: it starts again halfway
+// back to the last point with a value, until one has a value.
+class Retreat {
+ public:
+  // `origin`: where the last step began in which no evaluation failed.
+  Retreat(const FailedEvaluations& failures, const Vector& start, Vector& origin)
+      : failures_(failures), origin_(origin), seen_(failures.total) {
+    if (origin_.size() != start.size()) origin_ = start;
+  }
+
+  // After a step from `before`. True if the method must start again at θ.
+  bool is_due(const Vector& before, Vector& theta, Status& verdict) {
+    const bool has_failed = has_new_failures(), was_failed = std::exchange(is_at_failed_, false);
+    if (!has_failed && !was_failed) {
+      origin_ = before;
+      return false;
+    }
+    const bool is_lost = !theta.allFinite() || verdict == Status::diverged;
+    if (!is_lost && !(was_failed && verdict != Status::running)) return false;
+    theta = 0.5 * (origin_ + before);
+    verdict = Status::running;
+    if (theta != before && theta != origin_) return true;
+    theta = origin_;  // at the edge of what fails, where each step fails
+    verdict = Status::stalled;
+    return false;
+  }
+  // After an iteration that ended at θ. A method that evaluates other points alone may go on from a
+  // failed one. The harness does not judge each θ: `seen` is the last that it did.
+  Status excused(const Vector& theta, const Vector& seen, Status judged) {
+    const bool has_failed = has_new_failures() || (failed_.size() > 0 && seen == failed_);
+    const bool is_excused = has_failed && judged == Status::diverged && theta.allFinite();
+    if (is_excused) failed_ = seen;
+    is_at_failed_ = is_excused && theta == seen;
+    return is_excused ? Status::running : judged;
+  }
+  bool is_at_failed() const { return is_at_failed_; }
+
+ private:
+  bool has_new_failures() { return std::exchange(seen_, failures_.total) < failures_.total; }
+
+  const FailedEvaluations& failures_;
+  Vector& origin_;  // (n)
+  Vector failed_;   // (n), the last point that the harness judged in vain
+  std::int64_t seen_;
+  bool is_at_failed_ = false;
+};
+
+}  // namespace
+
 Vector drive(Optimizer& method, Meter& meter, Vector theta, Checkpoint& checkpoint) {
   Status verdict = Status::running;
   Vector before;  // (n), where the step began
@@ -452,6 +500,7 @@ Vector drive(Optimizer& method, Meter& meter, Vector theta, Checkpoint& checkpoi
       verdict = meter.begin(theta);
       if (verdict == Status::running) method.start(meter, theta);
     }
+    Retreat retreat(meter.failures(), theta, meter.origin());
     while (verdict == Status::running) {
       before = theta;
       verdict = method.step(meter, theta);
@@ -460,9 +509,14 @@ Vector drive(Optimizer& method, Meter& meter, Vector theta, Checkpoint& checkpoi
             "the method changed the number of unknowns from {} to {}, which a step must not do",
             meter.unknowns(), theta.size()));
       if (method.reports_iterations()) break;
-      const Status judged = meter.iterate(theta);
+      const bool starts_again = retreat.is_due(before, theta, verdict);
+      const Status status = meter.iterate(theta);
+      const Status judged = retreat.excused(theta, meter.judged(), status);
       if (judged != Status::running) verdict = judged;
-      if (verdict == Status::running && checkpoint.save_if_due(method, meter, theta)) return theta;
+      if (verdict == Status::running && starts_again) method.start(meter, theta);
+      if (verdict == Status::running && !retreat.is_at_failed() &&
+          checkpoint.save_if_due(method, meter, theta))
+        return theta;
     }
   } catch (const optimizers::BudgetSpent&) {  // during a step
     theta = before;

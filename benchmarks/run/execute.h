@@ -37,9 +37,6 @@ class Checkpoint {
   // overwritten.
   bool restore(Optimizer& method, Meter& meter, Vector& theta);
   void continue_from(EndStates ends) { ends_ = std::move(ends); }
-  // Logs the calls to an external problem: all, or where they are slow. A run that has such a file
-  // begins again, and the file answers.
-  void log_calls(bool all);
   // Whose end is kept; both outlive this.
   void watch(const Trace& trace, const Budget& budget) { trace_ = &trace, budget_ = &budget; }
   // Writes the state if the last time is long enough ago, or if the process is to stop: then

@@ -21,11 +21,13 @@
 #include <cstring>
 #include <fstream>
 #include <new>
+#include <sstream>
 #include <stdexcept>
 #include <string_view>
 #include <utility>
 #include <vector>
 
+#include "benchmarks/run/calls.h"
 #include "core/clock.h"
 #include "core/errors.h"
 #include "core/files.h"
@@ -34,6 +36,15 @@
 #include "core/threads.h"
 
 namespace isoline::benchmarks {
+
+std::vector<std::string> remarks_in(const std::string& output) {
+  std::vector<std::string> remarks;
+  std::istringstream lines(output);
+  for (std::string line; std::getline(lines, line);)
+    if (line.starts_with(kRemark)) remarks.push_back(line);
+  return remarks;
+}
+
 namespace {
 
 double seconds_between(std::int64_t begin, std::int64_t end) {
@@ -478,8 +489,11 @@ IsolatedText isolated_text(const std::function<std::string(Trace&)>& work, doubl
                            std::int64_t memory_bytes,
                            const std::function<void(const Trace&)>& waiting) {
   constexpr std::size_t kMost = std::size_t{1} << 30;
-  constexpr double kIdleSeconds = 60;
-  const double idle_seconds = std::min(seconds, kIdleSeconds);
+  constexpr double kIdleSeconds = 60, kForeignIdleSeconds = 600;
+  const bool has_calls = seconds >= kForeignSeconds;
+  const double idle_seconds = seconds > kForeignSeconds ? seconds
+                              : has_calls               ? kForeignIdleSeconds
+                                                        : std::min(seconds, kIdleSeconds);
   const Answer answer;
   Worker worker;
   try {
@@ -495,7 +509,7 @@ IsolatedText isolated_text(const std::function<std::string(Trace&)>& work, doubl
         {.startup_seconds = seconds,
          .hard_seconds = seconds,
          .idle_seconds = idle_seconds,
-         .waits_for_others = seconds >= kForeignSeconds,
+         .waits_for_others = false,
          .memory_bytes = memory_bytes},
         1);
   } catch (const std::runtime_error& error) {  // of the system, out of processes or of files
@@ -509,15 +523,20 @@ IsolatedText isolated_text(const std::function<std::string(Trace&)>& work, doubl
     waiting(worker.trace());
     worker.wait(kLookMilliseconds);
   }
+  for (const std::string& remark : remarks_in(worker.output().text())) say(stderr, remark + "\n");
   switch (const Trace& trace = worker.trace(); trace.status) {
     case Status::converged:
       return {read_text(answer.path), ""};
     case Status::failed:
       return {{}, fmt::format("it threw: {}", valid_utf8(trace.message))};
     case Status::timeout:
-      return {{},
-              worker.was_idle() ? fmt::format("it was idle for more than {} s", idle_seconds)
-                                : fmt::format("it took more than {} s", seconds)};
+      return {
+          {},
+          !worker.was_idle()
+              ? fmt::format("it took more than {} s", seconds)
+              : fmt::format(
+                    "it was idle for more than {} s{}", idle_seconds,
+                    has_calls ? "; the option call-time of process[…] sets another limit" : "")};
     case Status::memory:
       return {{}, "it ran out of memory"};
     default: {

@@ -18,7 +18,7 @@
 #include <utility>
 
 #include "core/clock.h"
-#include "core/foreign/call_log.h"
+#include "core/foreign/evaluations.h"
 #include "core/foreign/line.h"
 #include "core/threads.h"
 #include "optimizers/optimizer.h"
@@ -43,13 +43,14 @@ struct PointToJudge {
   std::size_t slot;
   std::uint64_t seed;
   int threads;
-  char calls[PATH_MAX];  // the log of calls; may be empty
+  char folder[PATH_MAX];  // whose store of evaluations answers; may be empty
 };
 
 struct JudgesReply {
   std::size_t slot;
   bool is_judged, is_interrupted;
   Judged judged;
+  std::int64_t afresh, afresh_failed;  // calls for the point
   char failure[Trace::kText];
 };
 
@@ -63,6 +64,7 @@ struct Instance {
     require(theta.size() == problem.unknowns(), [&] {
       return fmt::format("it returned {} numbers instead of {}", theta.size(), problem.unknowns());
     });
+    const Afresh afresh;
     meter.finish(theta, Status::budget);
     return told_by(trace);
   }
@@ -79,6 +81,7 @@ JudgesReply reply_to(const PointToJudge& asked, const Worker& worker, Instances&
                      const Make& make) {
   constexpr std::size_t kMost = 8;  // seeds come in turn, method by method
   JudgesReply reply{.slot = asked.slot};
+  call_report() = {};
   try {
     set_library_threads(asked.threads);
     if (instances.size() >= kMost && !instances.contains(asked.seed)) instances.clear();
@@ -87,6 +90,8 @@ JudgesReply reply_to(const PointToJudge& asked, const Worker& worker, Instances&
     reply.judged =
         instance->judged(Eigen::Map<const Vector>(worker.returned(), worker.returned_size()));
     reply.is_judged = true;
+    reply.afresh = call_report().afresh;
+    reply.afresh_failed = call_report().afresh_failed;
     return reply;
   } catch (const KilledProgram& error) {
     reply.is_interrupted = true;
@@ -105,15 +110,12 @@ JudgesReply reply_to(const PointToJudge& asked, const Worker& worker, Instances&
                                const std::vector<Worker>& workers, int socket) {
   const int nowhere = open("/dev/null", O_WRONLY | O_CLOEXEC);  // what a problem prints here
   if (nowhere < 0 || dup2(nowhere, STDOUT_FILENO) < 0 || dup2(nowhere, STDERR_FILENO) < 0) _exit(1);
-  const auto make = [&](std::uint64_t seed) { return make_problem(catalog, problem, seed); };
+  const auto make = [&](std::uint64_t seed) { return make_for_methods(catalog, problem, seed); };
   Instances instances;
   PointToJudge asked;
   while (recv(socket, &asked, sizeof asked, 0) == sizeof asked) {
     const Worker& worker = workers[asked.slot];
-    const std::filesystem::path calls = asked.calls;
-    call_log() = calls.empty() ? nullptr
-                               : std::make_unique<CallLog>(calls, calls.stem().string(), false,
-                                                           Answers::in_any_order);
+    evaluations().begin({.folder = asked.folder});
     JudgesReply reply = reply_to(asked, worker, instances, make);
     if (!reply.is_judged) reply = reply_to(asked, worker, instances, make);  // a fresh one
     if (send(socket, &reply, sizeof reply, MSG_NOSIGNAL) != sizeof reply) break;
@@ -155,8 +157,8 @@ Judges::~Judges() {
 
 // Creating the problem again may take its startup time.
 void Judges::ask(std::size_t slot, const Request& request, const Limits& limits,
-                 const std::filesystem::path& calls) {
-  Question question{slot, &request, limits, calls};
+                 const std::filesystem::path& folder) {
+  Question question{slot, &request, limits, folder};
   question.limits.hard_seconds = std::max(limits.hard_seconds, limits.startup_seconds);
   try {
     send(judge_of(request.problem), question);
@@ -202,8 +204,8 @@ void Judges::start(Judge& judge, const Component& problem) {
 void Judges::send(Judge& judge, const Question& question) {
   const Request& request = *question.request;
   PointToJudge asked{question.slot, request.seed, request.threads, {}};
-  if (question.calls.native().size() < sizeof asked.calls)
-    question.calls.native().copy(asked.calls, sizeof asked.calls - 1);
+  if (question.folder.native().size() < sizeof asked.folder)
+    question.folder.native().copy(asked.folder, sizeof asked.folder - 1);
   judge.open.push_back(question);
   if (judge.open.size() == 1) watch_first(judge);
   ::send(judge.socket, &asked, sizeof asked, MSG_NOSIGNAL);  // a dead judge is met when collected
@@ -278,7 +280,7 @@ void Judges::collect(Judge& judge) {
     watch_first(judge);
     reply.failure[Trace::kText - 1] = '\0';
     verdicts_.push_back({reply.slot, reply.is_judged ? std::optional(reply.judged) : std::nullopt,
-                         reply.failure, reply.is_interrupted});
+                         reply.failure, reply.is_interrupted, reply.afresh, reply.afresh_failed});
   }
 }
 

@@ -4,6 +4,7 @@
 
 #include <poll.h>
 
+#include <cstdint>
 #include <deque>
 #include <filesystem>
 #include <list>
@@ -33,6 +34,7 @@ struct Verdict {
   std::optional<Judged> judged;
   std::string failure;          // the reason: "signal 11 (Segmentation fault) ended it"
   bool is_interrupted = false;  // the verifier was killed, or could not be started: try again
+  std::int64_t afresh = 0, afresh_failed = 0;  // calls to another program for the point
 };
 
 class Judges {
@@ -46,9 +48,10 @@ class Judges {
   Judges& operator=(const Judges&) = delete;
 
   // Has the point judged that the worker of this slot returned, within the limits of its cell. The
-  // log of its calls to a slow program, if there is one, answers those at the start and the point.
+  // store of evaluations in `folder`, where that is named, answers the calls to a slow program,
+  // with the exception of those at the point.
   void ask(std::size_t slot, const Request& request, const Limits& limits,
-           const std::filesystem::path& calls);
+           const std::filesystem::path& folder);
   std::vector<Verdict> collect();  // those that have come by now
   void add_to(std::vector<pollfd>& waiting) const;
 
@@ -57,7 +60,7 @@ class Judges {
     std::size_t slot;
     const Request* request;
     Limits limits;
-    std::filesystem::path calls;
+    std::filesystem::path folder;
     bool is_asked_again = false;  // a judge has died of it, or was killed over it
   };
   struct Judge {

@@ -5,18 +5,22 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <utility>
 
+#include "benchmarks/run/calls.h"
 #include "benchmarks/run/sheets.h"
 #include "core/clock.h"
 #include "core/errors.h"
 #include "core/files.h"
-#include "core/foreign/call_log.h"
+#include "core/foreign/evaluations.h"
 #include "core/foreign/line.h"
+#include "core/foreign/workers.h"
 #include "core/json.h"
 #include "core/output.h"
+#include "core/seeds.h"
 #include "optimizers/optimizer.h"
 #include "problems/conformance.h"
 #include "problems/problem.h"
@@ -63,20 +67,72 @@ std::string checks_text(const TracePoint& now, const std::string& problem) {
   return fmt::format("{} of {} checks{} of {}", now.iteration, now.work, calls, problem);
 }
 
-// As broken_property_of, but calls of checks that were killed are not made again.
-std::string checked(const Catalog& catalog, const Request& request, const Store& store, bool logs,
-                    Trace& trace) {
-  if (is_elsewhere(request.problem))
-    call_log() = std::make_unique<CallLog>(store.check_path(request.problem, request.seed),
-                                           build_of(request.problem), logs);
-  try {
-    return broken_property_of(catalog, request, trace);
-  } catch (const KilledProgram&) {
-    throw;
-  } catch (...) {
-    store.remove_checks(request.problem);
-    throw;
+// In the process of a check: no call lasts for ever.
+void limit_calls(const Request& request) {
+  constexpr double kLeastSeconds = 60, kTimes = 10;
+  if (request.budget.seconds > 0)
+    call_seconds_otherwise() = std::max(kLeastSeconds, kTimes * request.budget.seconds);
+}
+
+// As broken_property_of. The store of evaluations answers what it can, and keeps its calls.
+std::string checked(const Catalog& catalog, const Request& request, const Store& store,
+                    const RunOptions& options, Trace& trace) {
+  evaluations().begin(evaluations_of(options, request, store.folder()));
+  limit_calls(request);
+  return broken_property_of(catalog, request, trace);
+}
+
+// Whether the program still answers as the store has it, at the start. What the program imports is
+// not in the digest of its files: the store may be of an earlier version. Where two calls differ as
+// much as one from the store, the program has noise.
+std::string answers_differently(const Catalog& catalog, const Request& request,
+                                const Store& store) {
+  constexpr Real kRelative = 1e-9, kTimesNoise = 10;
+  evaluations().begin({.folder = store.folder()});
+  limit_calls(request);
+  const Problem problem = make_problem(catalog, request.problem, request.seed);
+  const auto y_at_start = [&] {
+    Point at;
+    problem.forward(problem.start(), at);
+    return Matrix(at.y);
+  };
+  const Matrix known = y_at_start();
+  if (call_report().answered == 0) return "";
+  const Afresh afresh;
+  const auto distance = [](const Matrix& a, const Matrix& b) {
+    if (a.allFinite() != b.allFinite()) return std::numeric_limits<Real>::infinity();
+    return a.allFinite() ? (a - b).cwiseAbs().maxCoeff() : 0;
+  };
+  const Matrix now = y_at_start();
+  const Real change = distance(now, known);
+  if (change <= kRelative * known.cwiseAbs().maxCoeff() || change == 0) return "";
+  return change > kTimesNoise * distance(now, y_at_start()) ? "differs" : "";
+}
+
+// Each problem of another program of which the store has evaluations computes one of them again.
+void confirm_evaluations(const Catalog& catalog, const std::vector<const Request*>& requests,
+                         Store& store, const RunOptions& options) {
+  std::set<std::string> seen;
+  for (const Request* request : requests) {
+    const Component& problem = request->problem;
+    if (evaluations_of(options, *request, store.folder()).folder.empty() || options.force) continue;
+    const EvaluationKey key(problem.options.text("command"), declared_values(problem.options),
+                            instance_of(request->seed));
+    if (evaluation_files(store.folder(), key.stem()).empty() || !seen.insert(key.problem).second)
+      continue;
+    const auto found = isolated_text([&] { return answers_differently(catalog, *request, store); },
+                                     text_seconds_of(problem, kForeignSeconds));
+    if (found.text && !found.text->empty())
+      for (const std::filesystem::path& file : evaluation_files(store.folder(), key.problem))
+        store.set_aside(file, "the program answers differently now at a point in " + file.string());
+    if (asked_to_end() != Asked::nothing) return;
   }
+}
+
+// Whether any of its repetitions is still to be done, as runs decide it.
+bool will_run(const Request& request, Store& store, const RunOptions& options) {
+  const std::optional<Record> done = store.find(request);
+  return !done || options.redoes(done) || std::ssize(done->repeat_wall_seconds) < options.repeat;
 }
 
 // UsageError with the first violated property of a problem of another program, and the measured
@@ -84,21 +140,22 @@ std::string checked(const Catalog& catalog, const Request& request, const Store&
 // --uncertified, none is checked, and the labels of those without a certificate say so in each
 // table. Checks only problems with cells to run, each at the first of its seeds, in its own
 // process, and once for each build. Returns the builds that have passed, by problem.
-Certificates require_certified(const Catalog& catalog, std::vector<Request>& requests,
-                               const Store& store, const RunOptions& options) {
+Certificates require_certified(const Catalog& catalog, std::vector<Request>& requests, Store& store,
+                               const RunOptions& options) {
   constexpr double kCertificateSeconds = 120;
   Certificates passed;
   std::set<std::string> seen;
-  std::vector<const Request*> firsts;
+  std::vector<const Request*> firsts, to_run;
   for (const Request& request : requests) {
     const std::string& spec = request.problem.spec;
-    if (!request.problem.foreign) continue;
+    if (!request.problem.foreign || !will_run(request, store, options)) continue;
+    to_run.push_back(&request);
     const bool is_new = !passed.contains(spec);
     if (is_new) passed[spec] = certified_in(store.folder(), request.problem);
-    if ((options.force || !store.has(request)) && passed[spec] != build_of(request.problem) &&
-        seen.insert(spec).second)
+    if (passed[spec] != build_of(request.problem) && seen.insert(spec).second)
       firsts.push_back(&request);
   }
+  confirm_evaluations(catalog, to_run, store, options);
   std::set<std::string> uncertified;
   if (options.uncertified)
     for (const Request* request : std::exchange(firsts, {})) {
@@ -110,9 +167,8 @@ Certificates require_certified(const Catalog& catalog, std::vector<Request>& req
     progress.started(request->problem.spec);
     bool is_announced = false;
     const auto [broken, failure] = isolated_text(
-        [&](Trace& trace) { return checked(catalog, *request, store, options.logs_calls, trace); },
-        is_elsewhere(request->problem) ? kForeignSeconds : kCertificateSeconds,
-        Limits{}.memory_bytes,
+        [&](Trace& trace) { return checked(catalog, *request, store, options, trace); },
+        text_seconds_of(request->problem, kCertificateSeconds), Limits{}.memory_bytes,
         [&](const Trace& trace) {
           if (trace.last.work > 0) progress.started(checks_text(trace.last, request->problem.spec));
           const bool has_calls = trace.last.counts[0] > 0;
@@ -120,7 +176,6 @@ Certificates require_certified(const Catalog& catalog, std::vector<Request>& req
         });
     if (asked_to_end() != Asked::nothing) return passed;
     const std::string reason = broken.value_or("it cannot be checked: " + failure);
-    if (broken && !reason.empty()) store.remove_checks(request->problem);
     require(reason.empty(), [&] {
       return fmt::format(
           "{} failed a check and was not run: {}; `isoline check` prints all its checks, and "

@@ -14,12 +14,14 @@
 #include <thread>
 
 #include "benchmarks/plan/catalog.h"
+#include "benchmarks/run/calls.h"
 #include "benchmarks/run/execute.h"
 #include "benchmarks/run/judge.h"
 #include "benchmarks/run/preview.h"
 #include "core/clock.h"
 #include "core/errors.h"
 #include "core/files.h"
+#include "core/foreign/evaluations.h"
 #include "core/foreign/handshake.h"
 #include "core/records/provenance.h"
 #include "core/seeds.h"
@@ -36,6 +38,9 @@ void Outcome::count(const Record& record) {
   if (record.status == Status::crashed && !crash)
     crash = Crash{record.request, "runs/" + record.file_name()};
   if (record.status == Status::interrupted) ++interrupted;
+  if (record.minimum && !record.request.problem.is_learned &&
+      record.summary.start_loss <= *record.minimum)
+    solved_at_start.insert(record.request.problem.spec);
 }
 
 void Outcome::uncount(const Record& record) {
@@ -68,6 +73,17 @@ bool RunOptions::redoes(const std::optional<Record>& done) const {
   const bool lacks_spectrum = keeps_spectra && done && !done->spectrum &&
                               !is_failure(done->status) && done->status != Status::inapplicable;
   return force || lacks_spectrum || (done && retry.contains(done->status));
+}
+
+// A run whose time counts makes its calls. One that is to be repeated makes those that failed.
+Evaluations::Settings evaluations_of(const RunOptions& options, const Request& request,
+                                     const std::filesystem::path& folder) {
+  const bool has_store = is_elsewhere(request.problem) && options.repeat == 1 &&
+                         !options.exclusive && options.perturbation == 0;
+  return {.folder = has_store ? folder : std::filesystem::path(),
+          .keeps_all = options.logs_calls,
+          .answers = !options.force,
+          .answers_failures = options.retry.empty()};
 }
 
 namespace {
@@ -204,6 +220,7 @@ class Runner {
       wait();
       collect();
       if (monotonic_nanoseconds() >= flush_at_) flush();
+      say_new_remarks();
       progress_.show();
     }
     keep_judged();
@@ -222,6 +239,8 @@ class Runner {
     std::int64_t begun = 0;        // monotonic nanoseconds
     bool is_shared = false;        // its process has run others, or may
     bool is_being_judged = false;  // the cell itself has ended
+    Verdict verdict = {};
+    bool has_remark = false;  // which was said
   };
   // The cells that the process of a worker is kept ready for, and those that it has finished.
   struct Kept {
@@ -294,7 +313,7 @@ class Runner {
     Checkpoint checkpoint(path, path.stem().string(), kCheckpointSeconds);
     if (keeps_ends())
       checkpoint.continue_from({store_.end_stem(request), from, options_.least_kept_seconds});
-    if (logs_calls_of(request)) checkpoint.log_calls(options_.logs_calls);
+    evaluations().begin(evaluations_of(options_, request, store_.folder()));
     Vector returned;
     execute(catalog_, request, trace, std::move(checkpoint), &returned, options_.perturbation);
     workers_[i].keep_returned({returned.data(), static_cast<std::size_t>(returned.size())});
@@ -318,16 +337,6 @@ class Runner {
       doubtful_[before] = {};
       pending_.run_again(*before);
     }
-  }
-
-  // A run whose time counts makes its calls.
-  bool logs_calls_of(const Request& request) const {
-    return is_elsewhere(request.problem) && options_.repeat == 1 && !options_.exclusive &&
-           options_.perturbation == 0;
-  }
-  std::filesystem::path calls_path(const Request& request) const {
-    if (!logs_calls_of(request)) return {};
-    return store_.checkpoint_path(request).replace_extension(".calls");
   }
 
   // A repetition for its time begins at the start, as does a run that records more than others.
@@ -370,7 +379,8 @@ class Runner {
       task.is_being_judged =
           !is_failure(status) && status != Status::inapplicable && status != Status::interrupted;
       if (task.is_being_judged)
-        judges_.ask(i, *task.request, limits(*task.request), calls_path(*task.request));
+        judges_.ask(i, *task.request, limits(*task.request),
+                    evaluations_of(options_, *task.request, store_.folder()).folder);
       else
         keep(i);
     }
@@ -383,6 +393,7 @@ class Runner {
   void keep_judged() {
     for (const Verdict& verdict : judges_.collect()) {
       Worker& worker = workers_[verdict.slot];
+      tasks_[verdict.slot].verdict = verdict;
       if (!verdict.judged)
         worker.conclude(verdict.is_interrupted ? Status::interrupted : Status::failed,
                         "the returned point could not be verified: " + verdict.failure);
@@ -410,6 +421,33 @@ class Runner {
     for (collect(); running() > 0 && monotonic_nanoseconds() < last; keep_judged()) wait();
   }
 
+  // Without a call by the verifier that succeeded, it is unknown whether the point was verified.
+  void note_calls(std::size_t slot, Record& record) {
+    const Task& task = tasks_[slot];
+    if (!is_elsewhere(task.request->problem)) return;
+    for (const std::string& remark : remarks_in(workers_[slot].output().text()))
+      store_.remark(fmt::format("{}: {}", title_of(*task.request), remark));
+    if (task.verdict.afresh > task.verdict.afresh_failed) return;
+    for (auto* each : {&record.verified, &record.found})
+      for (auto& [tolerance, is_met] : *each) is_met.reset();
+  }
+
+  // At once, and again at the end.
+  void say_new_remarks() {
+    constexpr std::int64_t kNanoseconds = 1'000'000'000;
+    const std::int64_t now = monotonic_nanoseconds();
+    if (now < look_for_remarks_at_) return;
+    look_for_remarks_at_ = now + kNanoseconds;
+    for (std::size_t i = 0; i < tasks_.size(); ++i) {
+      Task& task = tasks_[i];
+      if (!task.request || task.has_remark || !is_elsewhere(task.request->problem)) continue;
+      const auto remarks = remarks_in(workers_[i].output().text());
+      task.has_remark = !remarks.empty();
+      for (const std::string& remark : remarks)
+        say(stderr, fmt::format("{}: {}\n", title_of(*task.request), remark));
+    }
+  }
+
   void keep(std::size_t slot) {
     const Request& request = *tasks_[slot].request;
     Worker& worker = workers_[slot];
@@ -420,6 +458,7 @@ class Runner {
       worker.conclude(Status::interrupted, edited.what());
     }
     Record record = record_of(request, worker.trace());
+    note_calls(slot, record);
     record.provenance.run = tasks_[slot].run;
     if (request.seed > 0 && !options_.keeps_fields) record.fields.reset();
     if (options_.keeps_output) record.output = worker.output().text();
@@ -485,6 +524,7 @@ class Runner {
   std::map<const Request*, std::optional<Status>> doubtful_;
   std::vector<std::pair<const Request*, bool>> unwritten_;  // and whether its checkpoint stays
   std::int64_t flush_at_ = kNever;                          // monotonic nanoseconds
+  std::int64_t look_for_remarks_at_ = 0;                    // monotonic nanoseconds
   bool has_said_ = false;                                   // that it is finishing
 };
 

@@ -31,6 +31,7 @@ struct Outcome {
   std::optional<Crash> crash;               // the first of them
   std::vector<std::string> conflicts;       // cells whose repetition has another result
   std::vector<std::string> remarks;         // damaged files, missing metadata
+  std::set<std::string> solved_at_start;    // problems
   std::vector<std::string> missing;  // cells that were done and whose records have disappeared
   std::int64_t reused_from_other_builds = 0;
   std::int64_t continued = 0;    // cells that began at the end of a run with a smaller budget

@@ -15,12 +15,13 @@
 #include <set>
 
 #include "benchmarks/plan/catalog.h"
+#include "benchmarks/run/calls.h"
 #include "benchmarks/run/isolate.h"
 #include "core/clock.h"
 #include "core/decompose.h"
 #include "core/errors.h"
 #include "core/files.h"
-#include "core/foreign/call_log.h"
+#include "core/foreign/evaluations.h"
 #include "core/json.h"
 #include "core/options.h"
 #include "core/records/provenance.h"
@@ -334,7 +335,7 @@ class SheetWriter {
     if (passed != certificates_.end()) sheet.certified = passed->second;
     write(sheet);
     if (is_elsewhere(component) && asked_to_end() == Asked::nothing)
-      store_.remove_checks(component);
+      store_.remove_checks(component);  // logs of earlier versions
   }
 
   void write_optimizer(const Component& component) {
@@ -400,14 +401,11 @@ class SheetWriter {
                                   std::string& reason) {
     constexpr double kSeconds = 30;
     const auto work = [&] {
-      if (is_elsewhere(component))
-        call_log() = std::make_unique<CallLog>(store_.check_path(component, 0), build_of(component),
-                                               false, Answers::in_any_order);
+      if (is_elsewhere(component)) evaluations().begin({.folder = store_.folder()});
       return file_text(make());
     };
-    const IsolatedText made =
-        isolated_text(work, is_elsewhere(component) ? kForeignSeconds : kSeconds,
-                      Limits{}.memory_bytes, [&] { progress_.show(); });
+    const IsolatedText made = isolated_text(work, text_seconds_of(component, kSeconds),
+                                            Limits{}.memory_bytes, [&] { progress_.show(); });
     reason = made.failure;
     if (made.text) try {
         return sheet_from_text(*made.text, "its output");
@@ -444,7 +442,7 @@ MeasuredPrices measure_prices(const Problem& problem, const std::string& build) 
     measured.oracles.push_back(price_of(name_of(Oracle::forward), 1, first, {{first}, {1}, 1}));
     return measured;
   }
-  if (problem.is_elsewhere()) call_log().reset();  // the others are made, and timed
+  if (problem.is_elsewhere()) evaluations().begin({});  // the others are made, and timed
   const double once = std::max(seconds_of(problem, 1, solve), 1e-9);
   Rounds alone = rounds_of(problem, {once, once});
   const double forward = at_share(alone.forward_seconds, 0.5);

@@ -9,6 +9,7 @@
 #include <set>
 #include <utility>
 
+#include "benchmarks/cli/left_out.h"
 #include "benchmarks/cli/verb.h"
 #include "benchmarks/plan/catalog.h"
 #include "benchmarks/plan/rates.h"
@@ -111,6 +112,9 @@ int extend_best(const BaselineArguments& given, Session& session) {
 int run(const BaselineArguments& given, Session& session) {
   if (!given.best.empty()) return extend_best(given, session);
   reports::Study study = reports::read_study({given.folders.begin(), given.folders.end()});
+  require(say_left_out(study.unreadable) == 0,
+          "a baseline with holes would pass every later comparison; repeat `isoline run` for the "
+          "records that were left out, or remove their files");
   std::erase_if(study.runs, [](const Record& run) { return run.imported.has_value(); });
   require(!study.runs.empty(),
           "no records in these folders; `isoline run --out FOLDER` creates some");

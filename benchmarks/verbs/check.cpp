@@ -5,6 +5,7 @@
 
 #include "benchmarks/cli/verb.h"
 #include "benchmarks/plan/catalog.h"
+#include "benchmarks/run/calls.h"
 #include "benchmarks/run/isolate.h"
 #include "core/differences.h"
 #include "core/json.h"
@@ -67,7 +68,7 @@ Json findings_of(const Catalog& catalog, const Component& component, std::uint64
 Json isolated_findings(const Catalog& catalog, const Component& component, std::uint64_t seed) {
   const auto [text, failure] =
       isolated_text([&] { return json_text(findings_of(catalog, component, seed)); },
-                    is_elsewhere(component) ? kForeignSeconds : kCheckSeconds);
+                    text_seconds_of(component, kCheckSeconds));
   if (text) return parse_json(*text, component.spec);
   return Json::array({{{"property", "the problem can be created and checked"},
                        {"figure", "nan"},
@@ -107,6 +108,8 @@ int run(const CheckArguments& given, Session& session) {
     for (const Json& finding : findings) failed += !finding.at("holds").get<bool>();
     total += findings.size();
     if (!given.as_json) print(component.spec, findings);
+    if (!given.as_json && component.foreign && !component.foreign->note.empty())
+      say(stdout, fmt::format("  note: {}\n", component.foreign->note));
     all[component.spec] = findings;
   }
   if (given.as_json)

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <span>
 
+#include "benchmarks/cli/left_out.h"
 #include "benchmarks/cli/terminal.h"
 #include "benchmarks/cli/verb.h"
 #include "benchmarks/plan/claim_cells.h"
@@ -122,7 +123,7 @@ int exit_code_of(const std::vector<reports::Judgement>& judgements) {
 std::vector<Record> runs_of(const ClaimArguments& given) {
   std::error_code unknown;
   if (given.out == ClaimArguments{}.out && !std::filesystem::exists(given.out, unknown)) return {};
-  return reports::read_study({given.out}).runs;
+  return study_of({given.out}).runs;
 }
 
 int run(const ClaimArguments& given, Session& session) {

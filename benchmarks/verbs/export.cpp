@@ -1,10 +1,10 @@
 // isoline export DIR... --format csv|coco --out PATH: writes results in the formats of other
-// programs.
+// programs, by clients/python/export_results.py from the records.
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <filesystem>
 
+#include "benchmarks/cli/left_out.h"
 #include "benchmarks/cli/terminal.h"
 #include "benchmarks/cli/verb.h"
 #include "core/errors.h"
@@ -25,40 +25,35 @@ struct ExportArguments {
 };
 
 void declare(VerbArguments& verb, ExportArguments& given) {
-  std::vector<std::string> names;
-  std::string help;
-  for (const reports::ExportFormat& format : reports::kExportFormats) {
-    help += fmt::format("{}{}: {}", help.empty() ? "" : "; ", format.name, format.help);
-    names.emplace_back(format.name);
-  }
   verb.texts("DIR", given.folders, kFolders).required();
-  verb.text("--format", given.format, help.c_str()).one_of(names).shown();
+  verb.text("--format", given.format,
+            "csv: one row per stored point; coco: data folders for its post-processing")
+      .one_of({"csv", "coco"})
+      .shown();
   verb.text("--out", given.out, "Output: a file, or a new folder for several").required();
 }
 
-void write_file(const fs::path& out, const std::string& text) {
-  write_output(out, text, text.substr(0, text.find('\n')));
-}
-
-int run(const ExportArguments& given, Session&) {
-  const reports::Study study =
-      reports::read_study(given.folders, progress_on_terminal("reading records"));
-  require(!study.runs.empty(), [&] {
-    return fmt::format("no records in {}; `isoline run --out FOLDER` creates some",
-                       reports::joined(given.folders));
-  });
+int run(const ExportArguments& given, Session& session) {
+  const reports::Study study = study_of_report(given.folders, session);
+  say_left_out(study.unreadable);
   const fs::path out = given.out;
-  const auto* format =
-      std::ranges::find(reports::kExportFormats, given.format, &reports::ExportFormat::name);
-  const reports::Export made = format->write(compare_optimizers(study));
+  const bool is_file = given.format == "csv";
   std::error_code unknown;
-  const bool is_file = made.files.contains("");
   require(
       is_file || !is_there(out) || (fs::is_directory(out, unknown) && names_in(out).empty()),
       [&] { return fmt::format("{} exists already: name a new folder with --out", given.out); });
-  for (const auto& [name, text] : made.files) write_file(is_file ? out : out / name, text);
-  for (const std::string& sentence : made.left_out)
-    say(stderr, fmt::format("left out: {}\n", sentence));
+  if (!is_file) make_output_folder(out);
+  const HiddenFolder folder;
+  const fs::path runs = folder.path() / "runs.json", text = folder.path() / "text";
+  write_text(runs, reports::json_of_runs(compare_optimizers(study)));
+  std::vector<std::string> arguments = given.folders;
+  arguments.insert(arguments.end(), {"--runs", runs.string(), "--format", given.format, "--out",
+                                     is_file ? text.string() : out.string()});
+  if (const int code = run_script("export_results.py", arguments); code != kGood) return code;
+  if (is_file) {
+    const std::string rows = read_text(text);
+    write_output(out, rows, rows.substr(0, rows.find('\n')));
+  }
   say(stdout, fmt::format("{}: {} as {}\n", given.out, reports::counted(study.runs.size(), "run"),
                           given.format));
   return kGood;
@@ -76,7 +71,7 @@ void register_export(VerbRegistry& registry) {
   isoline export results/quick --format coco --out exdata)",
        .notes =
            "Reading the numbers back gives the same bits. Non-finite values are written as inf, "
-           "-inf and nan."},
+           "-inf and nan. Needs pandas (Debian: python3-pandas)."},
       declare, run));
 }
 

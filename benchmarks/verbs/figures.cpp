@@ -1,17 +1,16 @@
 // isoline figures DIR... --format svg,pdf,pgf,csv: writes each plot of a report as files for
-// papers.
+// papers, by clients/python/draw_figures.py from the JSON of the report.
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <filesystem>
 
+#include "benchmarks/cli/left_out.h"
 #include "benchmarks/cli/terminal.h"
 #include "benchmarks/cli/verb.h"
 #include "core/errors.h"
 #include "core/files.h"
 #include "core/output.h"
-#include "core/text.h"
-#include "reports/page/page.h"
+#include "reports/formats/formats.h"
 #include "reports/sections/words.h"
 
 namespace isoline::benchmarks {
@@ -21,7 +20,9 @@ namespace fs = std::filesystem;
 
 struct FiguresArguments {
   std::vector<std::string> folders, formats = {"svg"};
+  std::vector<std::string> methods;
   std::string out, only;
+  double width = 3.2;
   bool is_list = false;
 };
 
@@ -31,51 +32,37 @@ void declare(VerbArguments& verb, FiguresArguments& given) {
       .between_commas()
       .one_of({"svg", "pdf", "pgf", "csv"});
   verb.text("--only", given.only, "Write the figures whose names contain this text");
+  verb.texts(
+          "--methods", given.methods,
+          "Draw these methods, by name, between commas (default: those that the page shows first)")
+      .between_commas();
+  constexpr double kLeast = 1, kMost = 20;
+  verb.real("--width", given.width, between(kLeast, kMost), "Width in inches").shown();
   verb.text("--out", given.out, "Output folder (default: figures/ in the first DIR)");
   verb.flag("--list", given.is_list, "List the names and titles, and write nothing");
 }
 
-void write_figure(const reports::NamedDrawing& one, const std::string& format,
-                  const fs::path& out) {
-  const fs::path file = out / (one.name + "." + format);
-  if (format == "csv") return write_text(file, reports::points_csv(one.drawing));
-  if (format == "pgf") return write_text(file, reports::paper_pgf(one.drawing));
-  const std::string svg = reports::paper_svg(one.drawing);
-  if (format == "svg") return write_text(file, svg);
-  const HiddenFolder folder;
-  write_text(folder.path() / "figure.svg", svg);
-  run_program({"rsvg-convert", "--format=pdf", "--output=" + file.string(),
-               (folder.path() / "figure.svg").string()},
-              "librsvg2-bin");
-}
-
 int run(const FiguresArguments& given, Session& session) {
   const reports::Study study = study_of_report(given.folders, session);
-  std::vector<reports::NamedDrawing> all = reports::drawings_of(document_of_report(study, session));
-  const std::size_t count = all.size();
-  std::erase_if(all, [&](const reports::NamedDrawing& one) {
-    return one.name.find(given.only) == std::string::npos;
-  });
-  require(!all.empty(), [&] {
-    return count == 0 ? "these results have no figures"
-                      : fmt::format(
-                            "--only {}: none of the {} contains this text; --list prints "
-                            "their names",
-                            given.only, reports::counted(count, "figure name"));
-  });
-  if (given.is_list) {
-    for (const reports::NamedDrawing& one : all)
-      say(stdout, fmt::format("{:40} {}\n", one.name, one.drawing.plot.title));
-    return kGood;
-  }
+  say_left_out(study.unreadable);
+  const HiddenFolder folder;
+  const fs::path report = folder.path() / "report.json";
+  write_text(report, reports::json_report(document_of_report(study, session)));
   const fs::path out =
       given.out.empty() ? given.folders.front() / fs::path("figures") : fs::path(given.out);
-  make_output_folder(out);
-  for (const std::string& format : given.formats)
-    for (const reports::NamedDrawing& one : all) write_figure(one, format, out);
-  say(stdout, fmt::format("{}: {} as {}\n", out.string(), reports::counted(all.size(), "figure"),
-                          reports::joined(given.formats)));
-  return kGood;
+  if (!given.is_list) make_output_folder(out);
+  std::vector<std::string> arguments = {report.string(),
+                                        "--out",
+                                        out.string(),
+                                        "--format",
+                                        reports::joined(given.formats, ","),
+                                        "--width",
+                                        fmt::format("{}", given.width)};
+  if (!given.only.empty()) arguments.insert(arguments.end(), {"--only", given.only});
+  if (!given.methods.empty())
+    arguments.insert(arguments.end(), {"--methods", reports::joined(given.methods, ",")});
+  if (given.is_list) arguments.emplace_back("--list");
+  return run_script("draw_figures.py", arguments);
 }
 
 }  // namespace
@@ -87,10 +74,10 @@ void register_figures(VerbRegistry& registry) {
        .summary = "Write the plots of a report as SVG, PDF, PGF and CSV",
        .examples = "  isoline figures results/quick --list\n"
                    "  isoline figures results/quick --only curves-heat --format pgf,csv",
-       .notes = "A figure is 3.2 inches wide, the column of a paper; its letters have 7 points and "
-                "more. SVG, PDF and PGF draw the lines that the page shows first, CSV has all "
-                "lines. PGF is for \\input and needs the package pgf; PDF needs rsvg-convert "
-                "(Debian: librsvg2-bin)."},
+       .notes = "A figure is as wide as the column of a paper; its letters have 7 points and more. "
+                "SVG, PDF and PGF draw the lines that the page shows first, CSV has all lines. "
+                "Figures are drawn by matplotlib (Debian: python3-matplotlib). PGF is for \\input "
+                "and needs LaTeX (Debian: texlive-latex-base, texlive-pictures)."},
       declare, run));
 }
 

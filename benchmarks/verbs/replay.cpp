@@ -23,6 +23,7 @@ namespace fs = std::filesystem;
 struct ReplayArguments {
   std::vector<std::string> records;
   std::string sample;             // "1%", "20"; empty: all of the records
+  std::string out;                // a result folder for the new records; empty: none
   std::uint64_t seed = 0;         // of the sample; 0: another one each time
   std::int64_t memory_bytes = 0;  // 0: as the runner has it
   bool trust = false;
@@ -34,6 +35,7 @@ void declare(VerbArguments& verb, ReplayArguments& given) {
       .required();
   verb.text("--sample", given.sample, "Replay a random sample of the records, such as 1% or 20");
   verb.seed("--seed", given.seed, "Seed of the sample; 0: a new seed each time, which is printed");
+  verb.text("--out", given.out, "Result folder in which the new records are kept");
   verb.memory("--memory", given.memory_bytes, "Memory limit of a cell (default: 4GB)");
   verb.flag("--trust", given.trust, kTrust);
   verb.plugins();
@@ -87,7 +89,7 @@ int replay(const std::string& path, const ReplayArguments& given, Session& sessi
                      .command = session.command()};
   if (given.memory_bytes > 0) options.limits.memory_bytes = given.memory_bytes;
   const HiddenFolder folder;
-  Store store(folder.path());
+  Store store(given.out.empty() ? folder.path() : fs::path(given.out));
   if (run_all(session.catalog(), {request}, store, options).is_interrupted) return kInterrupted;
   std::optional<Record> again = store.find(request);
   if (!again) {
@@ -152,7 +154,7 @@ void register_replay(VerbRegistry& registry) {
                    "  isoline replay results/quick --sample 1%",
        .notes =
            "The cell runs in its own process, with the problem, options, seed, budget and threads "
-           "of the record. `replay` does not write any file. If a time limit or a signal ended a "
+           "of the record. Without --out, `replay` does not write any file. If a time limit or a signal ended a "
            "run, the runs are compared up to the last common iteration.\n"
            "Exit codes: 0 equal; 2 different, and the first difference is printed; 4 not "
            "comparable: another build computed the record (the parts that differ are printed), "

@@ -11,6 +11,7 @@
 #include <filesystem>
 #include <set>
 
+#include "benchmarks/cli/left_out.h"
 #include "benchmarks/cli/terminal.h"
 #include "benchmarks/cli/verb.h"
 #include "benchmarks/cli/views.h"
@@ -96,8 +97,7 @@ std::string format_names() {
 int show(const ReportArguments& given) {
   View view = given.view;
   view.tolerance = given.tolerance;
-  reports::Study study =
-      reports::read_study(given.folders, progress_on_terminal("reading records"));
+  reports::Study study = study_of(given.folders);
   require(!study.runs.empty(), "no records; `isoline run --out FOLDER` creates some");
   if (!given.problem.empty()) keep_problems(study, given.problem);
   print_view(study, view);

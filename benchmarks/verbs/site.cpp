@@ -8,6 +8,7 @@
 #include <set>
 #include <string_view>
 
+#include "benchmarks/cli/left_out.h"
 #include "benchmarks/cli/terminal.h"
 #include "benchmarks/cli/verb.h"
 #include "benchmarks/plan/claim_cells.h"
@@ -62,14 +63,13 @@ std::vector<Record> claimed_runs(const std::deque<reports::Study>& studies,
 }
 
 // The report with its figures as files.
-void write_results(const reports::SiteResults& results, const fs::path& out) {
+int write_results(const reports::SiteResults& results, const fs::path& out) {
   const fs::path report = out / "reports" / reports::file_name_of(results.name);
   reports::write_report(*results.document, report);
   make_output_folder(report / "figures");
-  for (const reports::NamedDrawing& one : results.drawings) {
-    write_text(report / "figures" / (one.name + ".svg"), reports::paper_svg(one.drawing));
-    write_text(report / "figures" / (one.name + ".csv"), reports::points_csv(one.drawing));
-  }
+  return run_script("draw_figures.py",
+                    {(report / "report.json").string(), "--out", (report / "figures").string(),
+                     "--format", "svg,csv", "--quiet"});
 }
 
 int run(const SiteArguments& given, Session& session) {
@@ -86,13 +86,15 @@ int run(const SiteArguments& given, Session& session) {
       return fmt::format("two result folders have the name {}; a site needs different ones", name);
     });
     studies.push_back(study_of_report({folder}, session));
+    say_left_out(studies.back().unreadable);
     documents.push_back(document_of_report(studies.back(), session));
     site.results.push_back({name, &documents.back(), reports::drawings_of(documents.back())});
   }
   site.claims = reports::judge(json_of(claims), claimed_runs(studies, claims),
                                published_records(session.catalog()));
   site.items = reports::items_section(parse_json(std::string(embedded_papers()), "papers"));
-  for (const reports::SiteResults& results : site.results) write_results(results, out);
+  for (const reports::SiteResults& results : site.results)
+    if (const int code = write_results(results, out); code != kGood) return code;
   std::size_t bytes = 0;
   const std::map<std::string, std::string> pages = reports::site_pages(site);
   for (const auto& [path, text] : pages) {
@@ -114,9 +116,11 @@ void register_site(VerbRegistry& registry) {
        .help_position = 37,
        .summary = "Write a static site of several results",
        .examples = "  isoline site results/quick results/nist --out site",
-       .notes = "The site has a page per suite, problem, method, paper and page of the "
-                "documentation, and the full report of each result folder. It needs no server and "
-                "no scripts. The documentation is converted by cmark-gfm (Debian: cmark-gfm)."},
+       .notes =
+           "The site has a page per suite, problem, method, paper and page of the "
+           "documentation, and the full report of each result folder. It needs no server and "
+           "no scripts. The documentation is converted by cmark-gfm (Debian: cmark-gfm), and figures "
+           "are drawn by matplotlib (Debian: python3-matplotlib)."},
       declare, run));
 }
 

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "benchmarks/cli/left_out.h"
 #include "benchmarks/cli/terminal.h"
 #include "benchmarks/cli/verb.h"
 #include "benchmarks/run/isolate.h"
@@ -20,7 +21,6 @@
 #include "core/records/naming.h"
 #include "core/records/npy.h"
 #include "core/results/answers.h"
-#include "core/results/study.h"
 #include "core/text.h"
 #include "reports/formats/formats.h"
 #include "reports/sections/answers.h"
@@ -302,8 +302,7 @@ int run(const SolutionArguments& given, Session& session) {
     return infer_isolated(given, session);
   require(given.format != "npy" || !given.out.empty(),
           "--format npy writes a binary file: name it with --out x.npy");
-  const results::Study study =
-      results::read_study(given.folders, progress_on_terminal("reading records"));
+  const results::Study study = study_of(given.folders);
   const std::vector<Solution> solutions = solutions_of(study, given);
   require(!solutions.empty(), [&] {
     return fmt::format(

@@ -1,7 +1,8 @@
-"""Isoline from Python: a simulator as a problem, a method as an optimizer.
+"""Isoline from Python: a fit of a function to data, a simulator as a problem, a method as an optimizer.
 
-One file. It needs the standard library only, and uses NumPy if that is installed. Isoline starts the
-script that imports this module:
+It needs the standard library only, and uses NumPy if that is installed. `fit` and `read_data` are in
+isoline_fit.py; a script or a notebook calls them. For problem() and optimizer(), this one file is
+enough: Isoline starts the script that imports this module:
 
     isoline run --problem 'process[command="python3 mine.py"]'
 
@@ -11,7 +12,10 @@ describes the frames; docs/bring-a-simulator.md and docs/bring-an-optimizer.md h
 
 import array
 import atexit
+import collections
+import importlib
 import json
+import math
 import os
 import platform
 import re
@@ -24,6 +28,7 @@ import struct
 import subprocess
 import sys
 import tempfile
+import threading
 import zlib
 
 try:
@@ -53,6 +58,14 @@ class Stop(SystemExit):
 
 class Refused(RuntimeError):
     """Isoline or the problem refused a request; the message gives the reason."""
+
+
+def __getattr__(name):
+    if name not in ("fit", "read_data"):
+        raise AttributeError(f"module 'isoline' has no attribute {name!r}")
+    import isoline_fit  # loaded for fits only: Isoline starts scripts many times
+
+    return getattr(isoline_fit, name)
 
 
 # --- numbers: arrays of NumPy, or lists
@@ -746,22 +759,22 @@ def _read_by(instructions, text, name):
 
 # --- programs end by their group, with their folder
 
-_guards = {}  # by process: a pipe to a shell that outlives this process
+_guards = {}  # by thread of a process: a pipe to a shell that outlives this process
 
 
 def _guard():
     """A pipe that takes lines "GROUP FOLDER". When this process is gone, both of the last line end."""
-    process = os.getpid()
-    if process not in _guards or _guards[process][0].poll() is not None:
+    thread = os.getpid(), threading.get_ident()
+    if thread not in _guards or _guards[thread][0].poll() is not None:
         work = ('trap "" 1 2 15; while read -r a b; do group=$a; folder=$b; done; '
                 '[ -z "$group" ] || kill -s KILL -- "-$group" 2>/dev/null; '
                 '[ -z "$folder" ] || rm -rf -- "$folder" || rm -rf -- "$folder"')
         shell = subprocess.Popen(["sh", "-c", work], stdin=subprocess.PIPE, stdout=subprocess.DEVNULL,
                                  stderr=subprocess.DEVNULL, cwd="/", start_new_session=True)
-        _guards[process] = (shell, os.dup(shell.stdin.fileno()))
-        os.set_inheritable(_guards[process][1], False)
+        _guards[thread] = (shell, os.dup(shell.stdin.fileno()))
+        os.set_inheritable(_guards[thread][1], False)
         shell.stdin.close()
-    return _guards[process][1]
+    return _guards[thread][1]
 
 
 def _kill_group(group):
@@ -822,20 +835,26 @@ def _bound(side, start):
 def _serve(line, products, inverse, x_error, n, m):
     points = {}
     while True:
-        verb, number, payload = line.receive()
-        try:
-            if verb == X_ERROR:
-                answer = [_sized(_column(x_error(_vector(payload)), "x_error(x)"), 1, "x_error")]
-            else:
-                answer = _answer(verb, number, payload, points, products, inverse, n, m)
-        except Exception as error:  # the cell fails with this message; the traceback goes to its output
+        _reply(line, points, products, inverse, x_error, n, m)
+
+
+def _reply(line, points, products, inverse, x_error, n, m):
+    """Receives one request and answers it. The points of earlier forward passes are in `points`."""
+    verb, number, payload = line.receive()
+    try:
+        if verb == X_ERROR:
+            answer = [_sized(_column(x_error(_vector(payload)), "x_error(x)"), 1, "x_error")]
+        else:
+            answer = _answer(verb, number, payload, points, products, inverse, n, m)
+    except Exception as error:  # the cell fails with this message; the traceback goes to its output
+        if "ISOLINE_FD" in os.environ:
             import traceback
 
             traceback.print_exc()
-            why = str(error) if isinstance(error, Refused) else f"{type(error).__name__}: {error}"
-            line.send(verb, FAILED, _text(why))
-            continue
-        line.send(verb, DONE, *answer)
+        why = str(error) if isinstance(error, Refused) else f"{type(error).__name__}: {error}"
+        line.send(verb, FAILED, _text(why))
+        return
+    line.send(verb, DONE, *answer)
 
 
 def _answer(verb, number, payload, points, products, inverse, n, m):
@@ -893,14 +912,19 @@ class optimizer:
     as one iteration.
     keeps_bounds=True: the method evaluates only points with lower ≤ x ≤ upper; otherwise, it does not
     apply to problems whose solution may lie on a bound.
+    failed=1e100: where an evaluation fails, value is this number, and so is each component of residual;
+    derivatives are 0. Otherwise, all of them are NaN there.
     When the run is over, every call raises Stop, which exits the script.
     """
 
     def __init__(
         self, needs=(), name=None, least_squares=False, reports=False, note=None, source=None,
-        keeps_bounds=False,
+        keeps_bounds=False, failed=None,
     ):
         self._line, greeting = _greeted()
+        self._failed = failed
+        if failed is not None and note is None:
+            note = f"Where an evaluation fails, the program is given values and residuals of {failed:g}."
         said = {"name": name, "note": note, "source": source, "needs": list(needs)}
         said.update(least_squares=least_squares, reports=reports, keeps_bounds=keeps_bounds)
         _introduce(self._line, greeting, "optimizer", said)
@@ -916,24 +940,24 @@ class optimizer:
 
     def value(self, x):
         """L"""
-        return float(self._ask(VALUE, x)[0])
+        return float(self._numbers(VALUE, x)[0])
 
     def gradient(self, x):
         """∇L"""
-        return self._ask(GRADIENT, x)
+        return self._numbers(GRADIENT, x)
 
     def value_and_grad(self, x):
         """L and ∇L, at the cost of one forward and one pullback"""
-        both = self._ask(VALUE_AND_GRADIENT, x)
+        both = self._numbers(VALUE_AND_GRADIENT, x)
         return float(both[0]), both[1:]
 
     def residual(self, x):
         """r = (y − y*)/√B; for a least-squares problem, L = ½‖r‖²"""
-        return self._ask(RESIDUAL, x)
+        return self._numbers(RESIDUAL, x)
 
     def jacobian(self, x):
         """∂r/∂x"""
-        columns = self._ask(RESIDUAL_JACOBIAN, x)
+        columns = self._numbers(RESIDUAL_JACOBIAN, x)
         if numpy is not None:
             return columns.reshape(self.n, self.residuals).T
         rows = self.residuals
@@ -941,15 +965,15 @@ class optimizer:
 
     def jvp(self, x, v):
         """(∂r/∂x) v"""
-        return self._ask(RESIDUAL_PUSHFORWARD, x, v)
+        return self._numbers(RESIDUAL_PUSHFORWARD, x, v)
 
     def vjp(self, x, w):
         """(∂r/∂x)ᵀ w"""
-        return self._ask(RESIDUAL_PULLBACK, x, w)
+        return self._numbers(RESIDUAL_PULLBACK, x, w)
 
     def hvp(self, x, v):
         """∇²L v"""
-        return self._ask(HESSIAN_PRODUCT, x, v)
+        return self._numbers(HESSIAN_PRODUCT, x, v)
 
     def report(self, x, *_, **__):
         """An iteration has ended at x. Can serve as a callback of SciPy."""
@@ -978,6 +1002,13 @@ class optimizer:
         sys.excepthook = show
         atexit.register(end)
 
+    def _numbers(self, verb, *vectors):
+        numbers = self._ask(verb, *vectors)
+        if self._failed is None or all(x - x == 0 for x in numbers):
+            return numbers
+        values = {VALUE: 1, VALUE_AND_GRADIENT: 1, RESIDUAL: len(numbers)}.get(verb, 0)
+        return _column([self._failed] * values + [0] * (len(numbers) - values))
+
     def _ask(self, verb, *vectors):
         self._line.send(verb, DONE, *(_column(each, "x") for each in vectors))
         return self._answer()
@@ -989,3 +1020,97 @@ class optimizer:
         if status == FAILED:
             raise Refused(bytes(payload).decode(errors="replace"))
         return _vector(payload)
+
+
+# --- results as pandas frames
+
+KEYS = ["cell", "build"]  # which run a row belongs to, in every frame
+
+
+class Results(collections.namedtuple("Results", "runs curves hits")):
+    """One row per run; one per kept point of a run; one per target that was looked for."""
+
+
+def package(name, debian):
+    """A package of Python. Debian's Python is tried where this one lacks it; else says what to install."""
+    try:
+        return importlib.import_module(name)
+    except ImportError:
+        theirs = "/usr/bin/python3"
+        if os.path.exists(theirs) and os.path.realpath(sys.executable) != os.path.realpath(theirs):
+            if sys.argv[0] and os.path.exists(sys.argv[0]):
+                sys.stdout.flush()
+                os.execv(theirs, [theirs, *sys.argv])
+    sys.exit(f"this needs the Python package {name}; on Debian, `apt-get install {debian}` installs it")
+
+
+def _read_number(value):
+    """JSON has no infinity and no NaN: records have them as texts."""
+    return float(value) if value in ("inf", "-inf", "nan") else value
+
+
+def _columns_of(columns):
+    """Equal columns of a part of a record, its counts by oracle as columns of their own."""
+    plain = {name: values for name, values in columns.items() if name != "counts"}
+    return {**plain, **{oracle: values for oracle, values in columns.get("counts", {}).items()}}
+
+
+def load(*folders, only=None):
+    """The records of result folders, as three frames of pandas: runs, curves, hits.
+
+    All have the columns cell and build, which together name a run. `only` selects such pairs. A folder
+    may have records of several builds of one cell; the newest is the one that reports count.
+
+        runs, curves, hits = isoline.load("results/quick")
+        curves.merge(runs[["cell", "build", "problem", "optimizer", "seed"]])
+    """
+    pandas = package("pandas", "python3-pandas")
+    runs, curves, hits, known = [], [], [], set()
+    for folder in folders:
+        for file in sorted(os.scandir(os.path.join(folder, "runs")), key=lambda one: one.name):
+            if not file.name.endswith(".json"):
+                continue
+            with open(file.path, encoding="utf-8") as text:
+                record = json.load(text)
+            key = {name: record[name] for name in KEYS}
+            pair = (record["cell"], record["build"])
+            if pair in known or (only is not None and pair not in only):
+                continue
+            known.add(pair)
+            runs.append({**key, **_run(record)})
+            for part, frames in (("curve", curves), ("hits", hits)):
+                if record.get(part):
+                    columns = _columns_of(record[part])
+                    length = len(columns["work"])
+                    frames.append({**{name: [value] * length for name, value in key.items()}, **columns})
+    return Results(pandas.DataFrame(runs, columns=None if runs else KEYS), _stacked(pandas, curves),
+                   _stacked(pandas, hits))
+
+
+def _run(record):
+    """A run as a flat row: what was asked, how it ended, and its last values."""
+    request, verified = record["request"], record.get("verified", {})
+    return {
+        "problem": request["problem"]["spec"], "optimizer": request["optimizer"]["spec"],
+        "seed": request["seed"], "status": record["status"], "message": record.get("message", ""),
+        "imported": bool(record.get("imported", False)),
+        **{f"verified_{tau}": verified.get(tau) for tau in ("1e-1", "1e-3", "1e-6")},
+        **{name: _read_number(record.get(name)) for name in ("minimum", "scale", "x_scale")},
+        **{name: _read_number(value) for name, value in record.get("summary", {}).items()},
+        **{f"{oracle}_calls": count for oracle, count in record.get("counts", {}).items()}}
+
+
+def _stacked(pandas, parts):
+    """One frame of the columns of many runs; a count that a run did not keep is 0."""
+    names = dict.fromkeys(name for columns in parts for name in columns)
+    if not names:
+        return pandas.DataFrame(columns=[*KEYS, "iteration", "work", "target", "loss"])
+    figures = {"loss", "x_error", "gradient_norm", "step_norm", "wall_seconds", "processor_seconds", "target"}
+    stacked = {name: [] for name in names}
+    for columns in parts:
+        length = len(columns["work"])
+        for name, column in stacked.items():
+            values = columns.get(name, ())  # shorter where it has not been kept
+            column.extend(_read_number(value) if name in figures else value for value in values)
+            column.extend([math.nan if name in figures else 0] * (length - len(values)))
+    return pandas.DataFrame(stacked).astype({name: float for name in figures & names.keys()})

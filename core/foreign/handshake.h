@@ -30,17 +30,23 @@ void fields(ProcessOptions& o, auto& field) {
 // When a call of a problem has failed, and how often that may happen in a row.
 struct SimulatorOptions : ProcessOptions {
   Real call_time = 0;
-  Index failures = 10, workers = 1;
+  Index failures = 0, workers = 1;
+  bool scales_unknowns = true;
 };
 
 void fields(SimulatorOptions& o, auto& field) {
   fields(static_cast<ProcessOptions&>(o), field);
   field("call-time", o.call_time, between(0, 1e9),
         "seconds after which a call has failed, and the program is started again; 0: no limit");
-  field("failures", o.failures, between(1, 1'000'000),
-        "failed calls of one kind in a row that end the run");
+  field(
+      "failures", o.failures, between(0, 1'000'000),
+      "failed calls of one kind in a row that end the run; 0: 100, or 10 for each unknown if that is "
+      "more");
   field("workers", o.workers, between(1, 1024),
         "copies of the program, which compute at once what a method asks for at once");
+  field("scale-unknowns", o.scales_unknowns,
+        "methods see each unknown divided by its size at the start, where the program declares "
+        "bounds or scales of its own");
 }
 
 // The values of the options that a program has declared, out of all of a component.

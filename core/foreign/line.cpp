@@ -131,7 +131,7 @@ void Line::wait(short events, Deadline& deadline) {
 }
 
 void Line::fail_late(double seconds) {
-  throw LostProgram(fmt::format("{} did not answer within {} s{}", sender_, seconds, state_text()),
+  throw LateProgram(fmt::format("{} did not answer within {} s{}", sender_, seconds, state_text()),
                     fmt::format("it did not answer within {} s", seconds));
 }
 

@@ -86,6 +86,11 @@ struct LostProgram : FailedCall {
   using FailedCall::FailedCall;
 };
 
+// It was late.
+struct LateProgram : LostProgram {
+  using LostProgram::LostProgram;
+};
+
 inline constexpr double kNoDeadline = std::numeric_limits<double>::infinity();
 
 // A socket that frames go over, and the program at its other end, where this one started it.

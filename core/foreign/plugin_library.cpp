@@ -11,6 +11,7 @@
 #include <stdexcept>
 
 #include "core/files.h"
+#include "core/floating_point.h"
 #include "core/foreign/isoline.h"
 #include "core/text.h"
 
@@ -149,6 +150,7 @@ class Reader {
 void* opened(const std::string& path) {
   const std::string whole =
       std::filesystem::absolute(path).string();  // otherwise the loader would search for it
+  const KeptFloatingPoint kept;
   void* library = dlopen(whole.c_str(), RTLD_NOW | RTLD_LOCAL);
   require(library != nullptr, [&] {
     const char* reason = dlerror();
@@ -191,6 +193,7 @@ PluginInstance::PluginInstance(PluginComponent of, const OptionValues& options, 
   std::vector<double> values;
   for (const OptionField& field : of_.options)
     values.push_back(options.number(field.name, std::nan("")));
+  const KeptFloatingPoint kept;
   self_ = table().open(values.data(), seed);
   if (self_ == nullptr) throw std::runtime_error(of_.words() + ": open() returned null");
 }

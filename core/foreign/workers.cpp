@@ -5,9 +5,11 @@
 
 #include <algorithm>
 #include <cstring>
+#include <limits>
 #include <string>
 #include <utility>
 
+#include "core/calls.h"
 #include "core/clock.h"
 #include "core/errors.h"
 
@@ -46,6 +48,14 @@ void Workers::launch(Worker& worker) {
 }
 
 void Workers::welcome(Worker& worker) {
+  receive_greeting_of(worker);
+  if (!is_copy(worker) || worker.starts > 1 || known_x_.size() == 0) return;
+  worker.line->send(Verb::linearize, point_, numbers_of(known_x_));
+  worker.waited = 0;
+  worker.state = State::compared;
+}
+
+void Workers::receive_greeting_of(Worker& worker) {
   const ProblemHandshake now = receive_greeting(*worker.line, given_.startup);
   if (now.inputs != said_.inputs || now.outputs != said_.outputs)
     worker.line->fail("has other numbers of inputs and outputs now that it was started again");
@@ -58,6 +68,48 @@ void Workers::restart_if_lost() {
   welcome(workers_[0]);
 }
 
+// Where a copy fails in a way that would end the run, it ends alone.
+void Workers::guarded(Worker& worker, const auto& work) {
+  if (!is_copy(worker)) return work();
+  try {
+    work();
+  } catch (const KilledProgram&) {
+    throw;
+  } catch (const std::exception& error) {
+    retire(worker, error.what());
+  }
+}
+
+void Workers::retire(Worker& worker, const char* why) {
+  if (worker.state == State::busy) again_.push_back(worker.call);
+  worker.state = State::retired;
+  worker.line.reset();
+  remark_on_calls(
+      fmt::format("copy {} of the program is not used, and the run continues "
+                  "with the others: {}",
+                  &worker - workers_.data(), why));
+}
+
+// Compares its answer to a call that the first program has answered.
+void Workers::compare(Worker& worker) {
+  constexpr Real kRelative = 1e-9;
+  Vector y(said_.outputs);
+  worker.state = State::idle;
+  try {
+    worker.line->receive_answer(Verb::linearize, {y.data(), static_cast<std::size_t>(y.size())},
+                                most_seconds());
+  } catch (const LostProgram&) {
+    throw;
+  } catch (const FailedCall&) {
+    y.setConstant(std::numeric_limits<Real>::quiet_NaN());
+  }
+  if ((y - known_y_).cwiseAbs().maxCoeff() <= kRelative * known_y_.cwiseAbs().maxCoeff()) return;
+  remark_on_calls(fmt::format(
+      "copy {} of the program answers differently than the first one at the same x; with workers=1 "
+      "there are no copies",
+      &worker - workers_.data()));
+}
+
 void Workers::ask(Verb verb, std::uint32_t point, std::span<const std::span<const Real>> numbers,
                   std::span<Real> answer) {
   settle();
@@ -65,6 +117,11 @@ void Workers::ask(Verb verb, std::uint32_t point, std::span<const std::span<cons
   try {
     line.send(verb, point, numbers);
     line.receive_answer(verb, answer, most_seconds());
+    if (workers_.size() > 1 && known_x_.size() == 0 && verb == Verb::linearize &&
+        numbers[0].size() == static_cast<std::size_t>(said_.inputs)) {
+      known_x_ = Eigen::Map<const Vector>(numbers[0].data(), said_.inputs);
+      known_y_ = Eigen::Map<const Vector>(answer.data(), said_.outputs);
+    }
   } catch (const LostProgram&) {
     workers_[0].state = State::lost;
     throw;
@@ -74,6 +131,7 @@ void Workers::ask(Verb verb, std::uint32_t point, std::span<const std::span<cons
 // Drops what was announced, and waits until the first program is free.
 void Workers::settle() {
   begun_ = calls_.size();
+  again_.clear();
   while (workers_[0].state == State::busy || workers_[0].state == State::greeted) pump();
   next_ = calls_.size();
   restart_if_lost();
@@ -81,9 +139,11 @@ void Workers::settle() {
 
 void Workers::announce(BatchRef x, std::uint32_t point) {
   begun_ = calls_.size();
+  again_.clear();
   while (std::ranges::any_of(workers_, [](const Worker& w) { return w.state == State::busy; }))
     pump();  // of an announcement that was dropped
   calls_.clear();
+  again_.clear();
   next_ = begun_ = 0;
   point_ = point;
   for (Index i = 0; i < x.cols(); ++i)
@@ -107,9 +167,14 @@ void Workers::take(std::span<Real> answer) {
 void Workers::hand_out() {
   begun_ = std::max(begun_, next_);
   for (Worker& worker : workers_) {
-    if (begun_ == calls_.size()) return;
+    if (begun_ == calls_.size() && again_.empty()) return;
     if (worker.state != State::idle) continue;
-    worker.call = begun_++;
+    if (again_.empty()) {
+      worker.call = begun_++;
+    } else {
+      worker.call = again_.back();
+      again_.pop_back();
+    }
     worker.waited = 0;
     worker.state = State::busy;
     const std::span<const Real> x = numbers_of(calls_[worker.call].x);
@@ -124,8 +189,10 @@ void Workers::hand_out() {
   for (Worker& worker : workers_) {
     if (begun_ + starting >= calls_.size()) return;
     if (worker.state != State::absent) continue;
-    launch(worker);
-    ++starting;
+    guarded(worker, [&] {
+      launch(worker);
+      ++starting;
+    });
   }
 }
 
@@ -134,14 +201,13 @@ void Workers::pump() {
   hand_out();
   std::vector<Line*> lines;
   for (const Worker& worker : workers_)
-    if (worker.state == State::busy || worker.state == State::greeted)
-      lines.push_back(worker.line.get());
+    if (is_awaited(worker)) lines.push_back(worker.line.get());
   const std::int64_t begin = monotonic_nanoseconds();
   Line::wait_for_any(lines, kTurn);
   const double turn =
       std::min(1e-9 * static_cast<double>(monotonic_nanoseconds() - begin), kMostCounted);
   for (Worker& worker : workers_)
-    if (worker.state == State::busy || worker.state == State::greeted) hear(worker, turn);
+    if (is_awaited(worker)) guarded(worker, [&] { hear(worker, turn); });
 }
 
 void Workers::hear(Worker& worker, double turn) {
@@ -151,6 +217,10 @@ void Workers::hear(Worker& worker, double turn) {
   if (!has_input) worker.waited += turn;
   const bool is_late = !has_input && worker.waited > most;
   if (!has_input && !is_late) return;
+  if (worker.state == State::compared) {
+    if (is_late) worker.line->fail_late(most);
+    return compare(worker);
+  }
   if (is_greeted) {
     require(!is_late, [&] {
       return fmt::format("{} did not answer within {} s", worker.line->sender(), most);
@@ -177,12 +247,19 @@ void Workers::end_call(Worker& worker, const auto& exchange) {
     is_lost = true;
   } catch (const FailedCall&) {
     call.error = std::current_exception();
-  } catch (...) {
+  } catch (const KilledProgram&) {
+    call.error = std::current_exception();
+    worker.state = State::lost;
+  } catch (const std::exception& error) {
+    if (is_copy(worker)) {
+      worker.state = State::busy;
+      return retire(worker, error.what());
+    }
     call.error = std::current_exception();
     worker.state = State::lost;
   }
   call.is_done = true;
-  if (is_lost) launch(worker);
+  if (is_lost) guarded(worker, [&] { launch(worker); });
 }
 
 }  // namespace isoline

@@ -15,12 +15,22 @@
 
 namespace isoline {
 
+// Seconds after which a call has failed where its problem sets no limit. A check sets them, or a
+// simulator that never answers would keep it for ever.
+inline double& call_seconds_otherwise() {
+  static double seconds = kNoDeadline;
+  return seconds;
+}
+
 class Workers {
  public:
   // Starts and greets the first program. The others start when there is work for them.
   Workers(SimulatorOptions given, std::uint64_t seed, OptionValues declared);
 
   const ProblemHandshake& said() const { return said_; }
+  double most_seconds() const {  // of a call
+    return given_.call_time > 0 ? given_.call_time : call_seconds_otherwise();
+  }
   int starts() const { return workers_[0].starts; }  // of the first program
 
   // A call to the first program. LineError as Line has it.
@@ -32,13 +42,14 @@ class Workers {
   // else uses. take() begins them.
   void announce(BatchRef x, std::uint32_t point);
   bool is_next(std::span<const Real> x) const;  // bit for bit
-  void skip() { ++next_; }                      // the next one, whose answer is known
   // The answer of the next one, or its error, as ask() would have it. A program that was lost is
   // started again while the others go on.
   void take(std::span<Real> answer);
 
  private:
-  enum class State { absent, greeted, idle, busy, lost };
+  // A copy is compared by a call to which the first program has answered. One that cannot start or
+  // breaks the protocol is retired, and its call goes to another one.
+  enum class State { absent, greeted, compared, idle, busy, lost, retired };
   struct Worker {
     std::unique_ptr<Line> line = nullptr;
     State state = State::absent;
@@ -52,9 +63,17 @@ class Workers {
     bool is_done = false;
   };
 
-  double most_seconds() const { return given_.call_time > 0 ? given_.call_time : kNoDeadline; }
+  static bool is_awaited(const Worker& worker) {
+    return worker.state == State::busy || worker.state == State::greeted ||
+           worker.state == State::compared;
+  }
+  bool is_copy(const Worker& worker) const { return &worker != workers_.data(); }
   void launch(Worker& worker);
   void welcome(Worker& worker);
+  void receive_greeting_of(Worker& worker);
+  void compare(Worker& worker);
+  void retire(Worker& worker, const char* why);
+  void guarded(Worker& worker, const auto& work);
   void settle();
   void pump();
   void hand_out();
@@ -68,6 +87,8 @@ class Workers {
   ProblemHandshake said_;
   std::vector<Call> calls_;
   std::size_t next_ = 0, begun_ = 0;  // calls_ before them were taken, and were handed out
+  std::vector<std::size_t> again_;    // calls_ that retired copies gave back
+  Vector known_x_, known_y_;          // an answer of the first program
   std::uint32_t point_ = 0;
 };
 

@@ -129,6 +129,55 @@ std::string in_words(const std::string& description) {
   return "unknown member" + description.substr(colon + 1);
 }
 
+// Reads a text, also with integers beyond 64 bits: programs that write doubles without an exponent
+// make them. Such an integer gets an exponent in `longer`, which must live as long as the elements.
+simdjson::error_code parse_all(simdjson::dom::parser& parser, const std::string& text,
+                               std::string& longer, element& root) {
+  constexpr std::size_t kDigits = 19;  // as many always fit
+  const simdjson::error_code error = parser.parse(text).get(root);
+  if (error != simdjson::NUMBER_ERROR) return error;
+  longer.clear();
+  for (std::size_t i = 0; i < text.size();) {
+    std::size_t end = i + 1;
+    if (text[i] == '"') {
+      while (end < text.size() && text[end] != '"') end += text[end] == '\\' ? 2 : 1;
+      end = std::min(end + 1, text.size());
+    } else if (text[i] >= '0' && text[i] <= '9') {
+      end = std::min(text.find_first_not_of("0123456789.eE+-", i), text.size());
+    }
+    longer.append(text, i, end - i);
+    const bool is_long = end - i > kDigits && text[i] != '"';
+    if (is_long && longer.find_first_of(".eE", longer.size() - (end - i)) == longer.npos)
+      longer += "e0";
+    i = end;
+  }
+  return parser.parse(longer).get(root);
+}
+
+// Texts that are longer than their schema allows. They are found before any pattern is applied: a
+// regular expression takes of the stack for each character.
+void add_long_texts(const Json& value, const Json& schema, const Json& root,
+                    const std::string& place, std::vector<std::string>& found) {
+  if (!schema.is_object()) return;
+  if (schema.contains("$ref")) {
+    const std::string target = schema["$ref"].get<std::string>().substr(1);
+    return add_long_texts(value, root.at(Json::json_pointer(target)), root, place, found);
+  }
+  if (value.is_string() && schema.contains("maxLength")) {
+    const auto most = schema["maxLength"].get<std::size_t>();
+    const std::size_t length = value.get_ref<const std::string&>().size();
+    if (length > most)
+      found.push_back(fmt::format("{}: has {} bytes; at most {} are allowed", place, length, most));
+  }
+  if (value.is_object() && schema.contains("properties"))
+    for (const auto& [name, inner] : schema["properties"].items())
+      if (value.contains(name))
+        add_long_texts(value[name], inner, root, fmt::format("{}[{}]", place, name), found);
+  if (value.is_array() && schema.contains("items"))
+    for (std::size_t i = 0; i < value.size(); ++i)
+      add_long_texts(value[i], schema["items"], root, fmt::format("{}[{}]", place, i), found);
+}
+
 // Larger numbers are replaced by the largest that it reads.
 void bring_within(Json& value) {
   if (value.is_structured())
@@ -141,8 +190,9 @@ void bring_within(Json& value) {
 
 Json outline_of(const std::string& text, const std::string& origin) {
   static thread_local simdjson::dom::parser parser;
+  std::string longer;
   element root;
-  if (parser.parse(text).get(root) == simdjson::SUCCESS) return outline(root);
+  if (parse_all(parser, text, longer, root) == simdjson::SUCCESS) return outline(root);
   return parse_json(text, origin);
 }
 
@@ -209,6 +259,7 @@ std::vector<Real> reals_of(const JsonView& list) {
 
 struct JsonReader::Parser {
   simdjson::dom::parser parser;
+  std::string longer;
 };
 
 JsonReader::JsonReader() : parser_(std::make_unique<Parser>()) {}
@@ -217,10 +268,10 @@ JsonReader::~JsonReader() = default;
 // The slow parser reports the error and its place.
 JsonView JsonReader::parse(const std::string& text, const std::string& origin) {
   element root;
-  const simdjson::error_code error = parser_->parser.parse(text).get(root);
-  if (error == simdjson::SUCCESS) return view_of(root);
+  if (parse_all(parser_->parser, text, parser_->longer, root) == simdjson::SUCCESS)
+    return view_of(root);
   parse_json(text, origin);
-  throw UsageError(fmt::format("{} is not JSON: {}", origin, simdjson::error_message(error)));
+  throw UsageError(origin + " is not JSON: it is not valid UTF-8, or has a number out of range");
 }
 
 // Schemas, by valijson.
@@ -229,11 +280,13 @@ using Adapter = valijson::adapters::NlohmannJsonAdapter;
 
 struct Schema::Parsed {
   valijson::Schema schema;
+  Json text;
 };
 
 Schema::Schema(const Json& schema) {
   auto parsed = std::make_unique<Parsed>();
   valijson::SchemaParser().populateSchema(Adapter(schema), parsed->schema);
+  parsed->text = schema;
   parsed_ = std::move(parsed);
 }
 
@@ -245,9 +298,11 @@ std::vector<std::string> Schema::violations(const Json& document) const {
     bring_within(within);
     return violations(within);
   }
+  std::vector<std::string> violations;
+  add_long_texts(document, parsed_->text, parsed_->text, "<root>", violations);
+  if (!violations.empty()) return violations;
   valijson::ValidationResults results;
   valijson::Validator().validate(parsed_->schema, Adapter(document), &results);
-  std::vector<std::string> violations;
   for (valijson::ValidationResults::Error error; results.popError(error);)
     violations.push_back(
         fmt::format("{}: {}", fmt::join(error.context, ""), in_words(error.description)));

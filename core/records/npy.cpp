@@ -5,18 +5,17 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <sstream>
 #include <string_view>
 
 #include "core/errors.h"
 #include "core/files.h"
+#include "core/numbers.h"
 #include "core/text.h"
 
 namespace isoline {
@@ -27,6 +26,7 @@ using Json = nlohmann::json;
 constexpr std::string_view kMagic = "\x93NUMPY";
 constexpr std::size_t kPreamble = 8;  // magic, major and minor version
 constexpr std::size_t kAlignment = 64;
+constexpr std::size_t kMostQuoted = 40;           // bytes of a cell
 constexpr std::size_t kMostHeaderBytes = 10'000;  // NumPy's own bound (max_header_size)
 constexpr std::size_t kMostDimensions = 64;       // NumPy's own bound (NPY_MAXDIMS of NumPy 2)
 
@@ -171,51 +171,52 @@ std::string bytes_of(const char* type, const std::vector<Index>& shape,
   return bytes;
 }
 
-std::vector<std::string> cells_of(const std::string& line) {
-  std::vector<std::string> cells;
-  std::istringstream in(line);
-  for (std::string cell; std::getline(in, cell, ',');) {
-    const auto first = cell.find_first_not_of(" \t\r"), last = cell.find_last_not_of(" \t\r");
-    cells.push_back(first == std::string::npos ? "" : cell.substr(first, last - first + 1));
-  }
-  return cells;
-}
-
-std::optional<Real> number_of(const std::string& cell) {
-  Real value = 0;
-  const char* end = cell.data() + cell.size();
-  const auto [stop, error] = std::from_chars(cell.data(), end, value);
-  if (error != std::errc() || stop != end) return std::nullopt;
-  return value;
-}
-
-bool is_header(const std::vector<std::string>& cells) {
-  return std::ranges::none_of(cells, [](const auto& cell) { return number_of(cell).has_value(); });
-}
-
 NumberArray read_csv(const std::filesystem::path& path) {
-  std::istringstream in(read_text(path));
+  const std::string text = read_text(path);
   NumberArray array;
-  Index rows = 0, columns = 0, number = 0;
-  for (std::string line; std::getline(in, line);) {
+  Index rows = 0, columns = 0, number = 0, first = 0;
+  std::string heading;  // the first line, where it holds no number
+  for (std::string_view rest = without_byte_order_mark(text); !rest.empty();) {
     ++number;
-    const std::vector<std::string> cells = cells_of(line);
-    if (cells.empty() || (number == 1 && is_header(cells))) continue;
+    const std::string_view line = rest.substr(0, rest.find('\n'));
+    rest.remove_prefix(std::min(line.size() + 1, rest.size()));
+    const std::vector<std::string_view> cells = cells_of_line(line);
+    if (std::ranges::all_of(cells, [](const auto& cell) { return bare_cell(cell).empty(); }) ||
+        bare_cell(line).starts_with('#'))
+      continue;
+    if (first == 0) {
+      first = number;
+      if (std::ranges::none_of(cells, begins_as_number) &&
+          std::ranges::none_of(cells,
+                               [](const auto& cell) { return number_in(cell).has_value(); })) {
+        heading = bare_cell(line);
+        continue;
+      }
+    }
     const auto count = static_cast<Index>(cells.size());
     if (rows == 0) columns = count;
     require(count == columns, [&] {
       return fmt::format("{}: line {} has {} numbers, the first has {}", path.string(), number,
                          count, columns);
     });
-    for (const std::string& cell : cells) {
-      const std::optional<Real> value = number_of(cell);
+    for (const std::string_view cell : cells) {
+      const std::optional<Real> value = number_in(cell);
       require(value && std::isfinite(*value), [&] {
-        return fmt::format("{}: line {}: '{}' is not a finite number", path.string(), number, cell);
+        return fmt::format(
+            "{}: line {}: '{}' is not a finite number, such as -1.5e-3; the decimal separator is a "
+            "point",
+            path.string(), number, cut(cell, kMostQuoted));
       });
       array.values.push_back(*value);
     }
     ++rows;
   }
+  require(rows > 0, [&] {
+    return heading.empty()
+               ? fmt::format("{}: it has no line of numbers", path.string())
+               : fmt::format("{}: it has no line of numbers below the heading '{}' of line {}",
+                             path.string(), cut(heading, kMostQuoted), first);
+  });
   array.shape = {rows, columns};
   return array;
 }

@@ -33,8 +33,9 @@ void write_npy(const std::filesystem::path& path, const NumberArray& array);
 
 // Arrays of numbers in a user's file: `.npy`, or `.csv` with one row per line.
 
-// UsageError, with file and line, if it cannot be read or holds a number that is not finite. If the
-// first line of a CSV file holds no number, it is the header.
+// UsageError, with file and line, if it cannot be read or holds a number that is not finite.
+// Numbers and their separators are those of core/numbers.h. If the first line of a CSV file holds
+// no number, it is the header; lines that begin with # are comments.
 NumberArray read_numbers(const std::filesystem::path& path);
 
 // Whole or not at all. A CSV file has one line for each of the first index.

@@ -2,8 +2,10 @@
 #include "core/records/provenance.h"
 
 #include <fmt/format.h>
+#include <gnu/libc-version.h>
 #include <sys/utsname.h>
 
+#include <cmath>
 #include <fstream>
 #include <sstream>
 #include <thread>
@@ -53,6 +55,21 @@ std::string instruction_set() {
   return set;
 }
 
+// Digest of values that the C library returns here. Its functions have variants for processors, and
+// updates of a distribution change last digits under an equal version.
+std::string digest_of_mathematics() {
+  std::string all;
+  for (double x = 0.0137; x < 30; x *= 1.37) {
+    const volatile double unknown = x;  // to the compiler, which would compute them itself
+    const double v = unknown;
+    for (const double y : {std::exp(v), std::log(v), std::pow(v, 1.7), std::sin(v), std::cos(v),
+                           std::tan(v), std::atan(v), std::sinh(v), std::cosh(v), std::tanh(v),
+                           std::expm1(v), std::log1p(v), std::log2(v), std::cbrt(v), std::erf(v)})
+      all += fmt::format("{} ", y);
+  }
+  return digest(all);
+}
+
 std::map<std::string, std::string> libraries() {
   std::map<std::string, std::string> versions;
   std::istringstream list(ISOLINE_LIBRARIES);  // "Name version;Name version"
@@ -60,6 +77,7 @@ std::map<std::string, std::string> libraries() {
     versions[library.substr(0, library.find(' '))] = library.substr(library.find(' ') + 1);
   versions["OpenBLAS"].append(" ").append(library_kernel().name);
   versions["FFTW"] = fourier_version();
+  versions["libm"] = fmt::format("{} {}", gnu_get_libc_version(), digest_of_mathematics());
   return versions;
 }
 
@@ -121,8 +139,8 @@ const std::string& platform_digest() {
     std::string text =
         fmt::format("{} {} {} {} {} {} {}", build.compiler, build.build_type, build.flags,
                     build.instruction_set, caches.l1, caches.l2, caches.l3);
-    for (const char* name :
-         {"Ceres", "NLopt", "cminpack", "GSL", "Eigen", "OpenBLAS", "FFTW", "oneDNN", "Random123"})
+    for (const char* name : {"Ceres", "NLopt", "cminpack", "GSL", "Eigen", "OpenBLAS", "FFTW",
+                             "oneDNN", "Random123", "libm"})
       text += fmt::format(" {} {}", name, build.libraries.at(name));
     return digest(text);
   }();

@@ -251,6 +251,8 @@ void fields(Like<AnswerPoints> auto& answer, auto& field) {
                  R"({"description": "Unknowns on their lower bound, from 0, where L is least"})");
   field.optional("at_upper", answer.at_upper,
                  R"({"description": "Unknowns on their upper bound, from 0, where L is least"})");
+  field.optional("scales", answer.scales,
+                 R"({"description": "Of the unknowns: methods saw x divided by them"})");
   field.optional("digest", answer.digest,
                  R"({"pattern": "^[0-9a-f]{16}$", "description": "Of the file with the numbers"})");
   using Field = std::remove_cvref_t<decltype(field)>;
@@ -261,6 +263,16 @@ void fields(Like<AnswerPoints> auto& answer, auto& field) {
   field.optional("x", answer.x, R"({"description": "A list for each of the points"})");
   field.optional("residual_norm", answer.residual_norm,
                  R"({"description": "‖y − y*‖ at the returned point"})");
+}
+
+void fields(Like<Calls> auto& calls, auto& field) {
+  field("made", calls.made, kCountLaw);
+  field("answered", calls.answered,
+        R"({"type": "integer", "minimum": 0, "description": "From the store of evaluations"})");
+  field(
+      "verified", calls.verified,
+      R"({"type": "integer", "minimum": 0, "description": "Made again by the verifier for the returned point; with none, verified is null"})");
+  field("failed", calls.failed, R"({"type": "integer", "minimum": 0, "description": "Of these"})");
 }
 
 void fields(Like<Failures> auto& failures, auto& field) {
@@ -353,6 +365,7 @@ void fields(Like<Record> auto& record, auto& field) {
                  R"({"description": "Of a least-squares solution: x and its covariance"})");
   field.optional("answer", record.answer,
                  R"({"description": "θ = x of a direct problem, as returned and of least loss"})");
+  field.optional("calls", record.calls, R"({"description": "To a problem of another program"})");
   field.optional("failures", record.failures, R"({"description": "Evaluations that failed"})");
   field("privileges", record.privileges);
   field.optional("foreign", record.foreign,
@@ -416,6 +429,7 @@ Json result_of(const Json& record) {
 
 Json without_timings(Json record) {
   record.erase("repeat_wall_seconds");
+  record.erase("calls");   // what the store answers depends on earlier runs
   record.erase("output");  // may hold addresses and times
   if (record.contains("failures")) record["failures"].erase("reasons");  // as these
   record.erase("fields");
@@ -556,6 +570,8 @@ void require_sound(const AnswerPoints& answer) {
   for (const auto* texts : {&answer.names, &answer.units})
     require(texts->empty() || std::ssize(*texts) == answer.unknowns,
             "the names or units of its unknowns differ in number from the unknowns");
+  require(answer.scales.empty() || std::ssize(answer.scales) == answer.unknowns,
+          "the scales of its unknowns differ in number from the unknowns");
   for (const auto* places : {&answer.at_lower, &answer.at_upper})
     for (const Index i : *places)
       require(i >= 0 && i < answer.unknowns, "an unknown on a bound does not exist");

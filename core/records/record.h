@@ -127,6 +127,7 @@ struct AnswerPoints {
   std::vector<std::vector<Real>> x = {};  // (points, unknowns); empty where the file has them
   // Unknowns, from 0, that lie on such a bound at the point of least loss.
   std::vector<Index> at_lower = {}, at_upper = {};
+  std::vector<Real> scales = {};           // (unknowns), by which methods saw x divided; empty: 1
   std::optional<Real> residual_norm = {};  // ‖y − y*‖ at the returned point
   std::string digest = {};                 // of the file, if there is one
 
@@ -165,6 +166,13 @@ struct Failures {
   std::int64_t total = 0;
   std::vector<std::vector<Real>> x = {};
   std::vector<std::string> reasons = {};  // one for each x
+};
+
+// Calls of a run to the program that computes its problem, and those by which a verifier computed
+// the returned point again.
+struct Calls {
+  std::int64_t made = 0, answered = 0;  // answered by the store of evaluations
+  std::int64_t verified = 0, failed = 0;
 };
 
 // The parts of a run that other programs computed.
@@ -224,6 +232,7 @@ struct Record {
   std::optional<Imported> imported;    // of a run that others made: its figures are their claims
   std::optional<AnswerPoints> answer;  // of a direct problem
   std::optional<Failures> failures;    // where any evaluation failed
+  std::optional<Calls> calls;          // to a problem of another program
 
   std::string file_name() const { return record_file_name(cell, build); }
 };

@@ -339,6 +339,22 @@ std::unordered_map<std::string, std::size_t> places(const std::vector<Axis>& axi
   return at;
 }
 
+// A learned run is judged by its validation curve, whose end has the noise of its last batches; an
+// imported one has no returned point.
+std::size_t returned_targets(const Run& run, const ProblemAxis& problem) {
+  const Record& record = *run.record;
+  std::size_t met = run.targets.size();
+  if (problem.is_learned || record.imported) return met;
+  const auto misses = [&](std::size_t j) {
+    if (run.aim == Aim::x)
+      return !(record.summary.x_error <=
+               x_goal(rung(j), record.x_scale.value_or(0), record.x_floor));
+    return !(record.summary.loss <= run.minimum + rung(j) * run.scale);
+  };
+  while (met > 0 && misses(met - 1)) --met;
+  return met;
+}
+
 Run run_of(const Record& record, const ProblemAxis& problem, const BestKnown& best) {
   Run run{.record = &record,
           .seed = record.request.seed,
@@ -357,6 +373,7 @@ Run run_of(const Record& record, const ProblemAxis& problem, const BestKnown& be
   run.x_met = x.size();
   run.targets = std::move(run.aim == Aim::x ? x : loss);
   run.targets.shrink_to_fit();
+  run.returned_met = returned_targets(run, problem);
   return run;
 }
 

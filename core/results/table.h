@@ -39,12 +39,20 @@ struct Run {
   Real scale = 0;                       // s of f ≤ f_L + τ s
   std::vector<Reached> targets = {};    // of its aim: those that it met
   std::size_t loss_met = 0, x_met = 0;  // how many it met of either kind
+  // How many of `targets` the returned point meets: a method that passes a good point and returns a
+  // worse one has not solved the problem.
+  std::size_t returned_met = 0;
   Real spent = 0;              // in all, in equivalent forward solves at the prices of its problem
   bool is_timed_alone = true;  // no other run beside it: its times mean something
   bool is_repeated = false;    // its record stands in another row, too, and is counted there
 
-  // Until it met a target of its aim; infinite where it never did.
+  // Until it met a target of its aim; infinite where it never did, or where its returned point does
+  // not meet it.
   Real taken(Measure by, std::size_t target) const {
+    return target < returned_met ? taken_by_best(by, target) : kNever;
+  }
+  // By the best evaluated point, as curves and running times show it.
+  Real taken_by_best(Measure by, std::size_t target) const {
     return target < targets.size() ? targets[target].by(by) : kNever;
   }
   Real spent_by(Measure by) const;  // in all

@@ -1,5 +1,5 @@
-// The report as tidy CSV: one row per run or missing cell, one row per number of the statistics,
-// and one row per point of a curve.
+// The report as tidy CSV: one row per run or missing cell, and one row per number of the
+// statistics.
 #include <fmt/format.h>
 
 #include <functional>
@@ -111,61 +111,6 @@ std::string statistics_csv(const Document& document) {
         text += fmt::format("{},{},{},{}\n", table.id, csv_field(row[0].text),
                             csv_field(table.columns[i]), csv_field(row[i].text));
   return text;
-}
-
-// The curves, for programs: each number and text to the byte.
-
-namespace {
-
-std::string optional_figure(const std::optional<Real>& value) {
-  return value ? exact_figure(*value) : "";
-}
-
-// The beginning of all rows of a run.
-std::string run_fields(const Record& record) {
-  const Request& request = record.request;
-  std::string text =
-      fmt::format("{},{},{},{},{},{},{}", exact_csv_field(request.problem.spec),
-                  exact_csv_field(request.optimizer.spec), request.seed, name_of(record.status),
-                  record.cell, record.build, record.imported ? "true" : "false");
-  for (const char* tau : {"1e-1", "1e-3", "1e-6"}) {  // nothing where it is not known
-    const auto at = record.verified.find(tau);
-    const bool is_known = at != record.verified.end() && at->second;
-    text += !is_known ? "," : *at->second ? ",true" : ",false";
-  }
-  return text + fmt::format(",{},{},{}", optional_figure(record.minimum),
-                            optional_figure(record.scale), optional_figure(record.x_scale));
-}
-
-void add_rows(std::string& csv, const Record& record) {
-  const Curve& curve = record.curve;
-  const std::string run = run_fields(record);
-  for (std::size_t i = 0; i < curve.iteration.size(); ++i) {
-    csv += fmt::format("{},{},{}", run, curve.iteration[i], curve.work[i]);
-    for (const std::string_view oracle : kOracleNames) {
-      const auto counts = curve.counts.find(std::string(oracle));
-      csv += fmt::format(",{}", counts == curve.counts.end() ? 0 : counts->second[i]);
-    }
-    for (const auto* column : {&curve.wall_seconds, &curve.processor_seconds, &curve.loss,
-                               &curve.x_error, &curve.gradient_norm, &curve.step_norm})
-      csv += "," + exact_figure((*column)[i]);
-    csv += "\r\n";
-  }
-  constexpr std::size_t kFigures = 8;  // of each point, its counts by oracle aside
-  if (curve.iteration.empty()) csv += run + std::string(kFigures + kOracles, ',') + "\r\n";
-}
-
-}  // namespace
-
-std::string curves_csv(const Comparison& comparison) {
-  std::string csv = fmt::format(
-      "problem,optimizer,seed,status,cell,build,imported,verified_1e-1,verified_1e-3,verified_1e-6,"
-      "minimum,scale,x_scale,iteration,work,{},wall_seconds,processor_seconds,loss,x_error,"
-      "gradient_norm,step_norm\r\n",
-      fmt::join(kOracleNames, ","));
-  for (const Run& run : comparison.runs)
-    if (!run.is_repeated) add_rows(csv, *run.record);
-  return csv;
 }
 
 }  // namespace isoline::reports

@@ -2,7 +2,6 @@
 // is made safe for the place it goes to.
 #pragma once
 
-#include <map>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <string_view>
@@ -16,6 +15,9 @@ std::string markdown_report(const Document& document);  // short enough for the 
 std::string csv_report(const Document& document);       // one row a run
 std::string statistics_csv(const Document& document);   // table,row,column,value
 std::string json_report(const Document& document);      // schema isoline.report/1
+// Which records a comparison is of, with the f_L and the scale of each: its problems and cells in
+// the form of json_report.
+std::string json_of_runs(const Comparison& comparison);
 
 // These two draw plots: reports/page.
 std::string html_report(const Document& document);   // the page
@@ -29,32 +31,6 @@ inline constexpr Format kFormats[] = {  // all that `isoline report` writes
     {"index.html", html_report},  {"report.csv", csv_report},
     {"report.json", json_report}, {"report.md", markdown_report},
     {"report.tex", latex_report}, {"statistics.csv", statistics_csv}};
-
-// Tidy CSV by RFC 4180, lines ended by CRLF: a row a kept point of each run, with what was asked
-// and how it ended in every row; a run that kept none has one row without figures. Numbers read
-// back as the same numbers; "inf", "-inf" and "nan" stand for themselves.
-std::string curves_csv(const Comparison& comparison);
-
-// Data folders of COCO, which its post-processing reads: for each method FOLDER/isoline_fN.info and
-// FOLDER/data_fN/isoline_fN_DIMn.dat and .tdat. Problems are its functions, numbered as
-// functions.csv says; instance s is its instance s + 1; an evaluation is one forward solve of
-// declared work, counted from 1, the start. Its values are f − f_L.
-struct Export {
-  std::map<std::string, std::string> files;  // text by name below a folder; a single file: no name
-  std::vector<std::string> left_out = {};    // a sentence each
-};
-Export coco_export(const Comparison& comparison);
-
-struct ExportFormat {
-  std::string_view name, help;
-  Export (*write)(const Comparison&);
-};
-inline constexpr ExportFormat kExportFormats[] = {
-    {"csv", "one row per stored point",
-     [](const Comparison& comparison) {
-       return Export{{{"", curves_csv(comparison)}}};
-     }},
-    {"coco", "data folders for its post-processing", coco_export}};
 
 std::string terminal_table(const Document& document);  // standings, or every cell of a small study
 // Within a hundred columns: what it says, then its tables, so many rows of all of them.

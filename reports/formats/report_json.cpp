@@ -1,5 +1,6 @@
-// All aggregates as JSON, schema isoline.report/1. `figures` are the same for the same build, so
-// that two reports can be compared; times are not, nor measured costs.
+// The document as JSON, schema isoline.report/1: its sections, its plots by name, and all
+// aggregates that they are made of. `figures` are the same for the same build, so that two reports
+// can be compared; times are not, nor measured costs.
 #include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -8,6 +9,7 @@
 #include "core/files.h"
 #include "core/json.h"
 #include "reports/formats/formats.h"
+#include "reports/sections/drawings.h"
 #include "reports/sections/sections.h"
 #include "reports/sections/words.h"
 
@@ -62,6 +64,15 @@ Json calls_json(const Comparison& c, const Cell& cell) {
   return json;
 }
 
+// [cell, build, f_L, s, whether another row counts it] of each run: its record, and its success.
+Json records_json(const Comparison& c, const Cell& cell) {
+  return list_of(cell.runs, [&](std::size_t index) -> Json {
+    const Run& run = c.runs[index];
+    return Json::array({run.record->cell, run.record->build, json_number(run.minimum),
+                        json_number(run.scale), run.is_repeated});
+  });
+}
+
 Json cell_json(const Comparison& c, std::size_t p, std::size_t s) {
   const Cell& cell = c.cell(p, s);
   std::set<std::string> asked, builds;  // requests, so that two reports compare like with like
@@ -77,7 +88,8 @@ Json cell_json(const Comparison& c, std::size_t p, std::size_t s) {
             {"statuses", to_json(cell.statuses)},
             {"privileges", cell.privileges},
             {"asked", digest(joined({asked.begin(), asked.end()}, " "))},
-            {"builds", builds}};
+            {"builds", builds},
+            {"records", records_json(c, cell)}};
   if (!cell.inapplicable.empty()) json["inapplicable"] = cell.inapplicable;
   if (!cell.is_measured()) return json;
   const auto taken = [&](Measure by) {
@@ -191,35 +203,65 @@ Json table_json(const Table& table) {
           {"values", list_of(table.rows, [&](const auto& row) { return list_of(row, numbers); })}};
 }
 
-Json plot_json(const Plot& plot, const Comparison& c) {
-  constexpr const char* kKinds[] = {"steps", "lines"};
-  const auto series_json = [&](const PlotSeries& one) -> Json {
-    return {{"optimizer", one.optimizer ? Json(c.optimizers[*one.optimizer].label) : Json()},
-            {"name", one.name},
-            {"x", json_numbers(one.x)},
-            {"y", json_numbers(one.y)},
-            {"low", json_numbers(one.low)},
-            {"high", json_numbers(one.high)}};
-  };
-  return {{"id", plot.id},
-          {"kind", kKinds[static_cast<std::size_t>(plot.kind)]},
-          {"title", plot.title},
-          {"reading", plot.reading},
-          {"caption", plot.caption},
-          {"x_label", plot.x_label},
-          {"y_label", plot.y_label},
-          {"log_x", plot.is_log_x},
-          {"series", list_of(plot.series, series_json)}};
+Json line_json(const PlotSeries& line, const Comparison& c) {
+  Json json{{"name", line.name}, {"x", json_numbers(line.x)}, {"y", json_numbers(line.y)}};
+  if (line.optimizer) json["optimizer"] = c.optimizers[*line.optimizer].label;
+  if (!line.low.empty()) json["low"] = json_numbers(line.low);
+  if (!line.high.empty()) json["high"] = json_numbers(line.high);
+  return json;
 }
 
-Json statistics_json(const Document& document) {
-  const Section& section = document.section("statistics");
-  return {{"limits", list_of(section.readings, [](const Reading& limit) { return limit.text; })},
-          {"cost_unit", cost_unit(document.comparison)},
-          {"tables", list_of(section.tables, table_json)},
-          {"plots", list_of(section.plots, [&](const Plot& plot) {
-             return plot_json(plot, document.comparison);
-           })}};
+// A plot with the marks, axes and window that every drawing of it has.
+Json plot_json(const NamedDrawing& one, const Document& document) {
+  constexpr const char* kKinds[] = {"steps", "lines"};
+  const Comparison& c = document.comparison;
+  const Drawing& drawing = one.drawing;
+  const Plot& plot = drawing.plot;
+  const Window window = window_of(drawing);
+  const auto lines = [&](const std::vector<PlotSeries>& all) {
+    return list_of(all, [&](const PlotSeries& line) { return line_json(line, c); });
+  };
+  Json json{{"name", one.name},
+            {"id", plot.id},
+            {"kind", kKinds[static_cast<std::size_t>(plot.kind)]},
+            {"join", kJoinNames[static_cast<std::size_t>(drawing.join)]},
+            {"title", plot.title},
+            {"reading", plot.reading},
+            {"caption", plot.caption},
+            {"x_label", plot.x_label},
+            {"y_label", plot.y_label},
+            {"log_x", plot.is_log_x},
+            {"log_y", plot.is_log_y},
+            {"window",
+             json_numbers(std::array{window.x_low, window.x_high, window.y_low, window.y_high})},
+            {"series", lines(plot.series)}};
+  for (std::size_t i = 0; i < plot.series.size(); ++i)
+    if (is_hidden(drawing, plot.series[i])) json["series"][i]["hidden"] = true;
+  if (one.problem) json["problem"] = c.problems[*one.problem].spec;
+  if (drawing.is_to_scale) json["to_scale"] = true;
+  if (drawing.tolerance) json["goal"] = *drawing.tolerance * c.yardstick.tolerances[kTightest].tau;
+  if (!plot.published.empty()) json["published"] = lines(plot.published);
+  if (!drawing.ground.empty()) json["ground"] = lines(drawing.ground);
+  return json;
+}
+
+Json whole_section_json(const Section& section) {
+  const auto reading_json = [](const Reading& one) -> Json {
+    return {{"title", one.title}, {"text", one.text}};
+  };
+  return {
+      {"id", section.id},
+      {"title", section.title},
+      {"lead", section.lead},
+      {"readings", list_of(section.readings, reading_json)},
+      {"tables", list_of(section.tables, table_json)},
+      {"plots", list_of(section.plots, [](const Plot& plot) { return file_name_of(plot.id); })}};
+}
+
+Json problem_json(const ProblemAxis& problem) {
+  Json json{{"problem", problem.spec}, {"name", problem.name}, {"group", problem.group()}};
+  if (problem.has_own_sheet()) json["unknowns"] = problem.sheet->unknowns;
+  return json;
 }
 
 Json measurement_json(const std::optional<Measurement>& measured) {
@@ -313,6 +355,16 @@ Json claims_json(const std::vector<Judgement>& judgements) {
   return list_of(judgements, claim_json);
 }
 
+std::string json_of_runs(const Comparison& c) {
+  Json cells = Json::array();
+  for (std::size_t p = 0; p < c.problems.size(); ++p)
+    for (std::size_t s = 0; s < c.optimizers.size(); ++s)
+      cells.push_back({{"problem", c.problems[p].spec},
+                       {"optimizer", c.optimizers[s].label},
+                       {"records", records_json(c, c.cell(p, s))}});
+  return json_text({{"problems", list_of(c.problems, problem_json)}, {"cells", cells}});
+}
+
 std::string json_report(const Document& document) {
   const Comparison& c = document.comparison;
   Json cells = Json::array();
@@ -332,7 +384,7 @@ std::string json_report(const Document& document) {
   const auto tolerance_json = [](const Tolerance& tolerance) -> Json {
     return {{"name", tolerance.name}, {"tau", tolerance.tau}};
   };
-  const Json json{
+  Json json{
       {"schema", "isoline.report/1"},
       {"suites", c.study->plan.suites},
       {"planned", c.planned},
@@ -358,9 +410,25 @@ std::string json_report(const Document& document) {
        list_of(c.optimizers, [&](const OptimizerAxis& one) { return optimizer_json(c, one); })},
       {"pairs", list_of(all_pairs(c), [&](const MethodPair& pair) { return pair_json(c, pair); })},
       {"profiles", profiles_json(c)},
-      {"statistics", statistics_json(document)},
+      {"cost_unit", cost_unit(c)},
+      {"problems", list_of(c.problems, problem_json)},
+      {"sections", list_of(document.sections, whole_section_json)},
+      {"plots", list_of(drawings_of(document),
+                        [&](const NamedDrawing& one) { return plot_json(one, document); })},
       {"cells", std::move(cells)}};
-  return json_text(json, 1) + "\n";
+  // A line per cell, section and plot: an indent per number would double the file.
+  std::string text;
+  for (const auto& [key, value] : json.items()) {
+    text += (text.empty() ? "{\n" : ",\n") + json_text(key) + ": ";
+    if (!value.is_array()) {
+      text += json_text(value);
+      continue;
+    }
+    std::vector<std::string> lines;
+    for (const Json& one : value) lines.push_back(json_text(one));
+    text += lines.empty() ? "[]" : "[\n" + joined(lines, ",\n") + "\n]";
+  }
+  return text + "\n}\n";
 }
 
 }  // namespace isoline::reports

@@ -17,8 +17,8 @@ function inFull(list) {
 
 // Rows of the data by name.
 for (const problem of DATA.problems) {
-  problem.cells = problem.cells.map(([s, reached = [], medians = [], failed = 0, missing = 0, records = [], answer = null]) =>
-    ({s, reached: inFull(reached), medians, failed, missing, records, answer, origin: problem.origins?.[s]}));
+  problem.cells = problem.cells.map(([s, reached = [], medians = [], failed = 0, missing = 0, records = [], answer = null, command]) =>
+    ({s, reached: inFull(reached), medians, failed, missing, records: records.map((name) => (name.includes('-') ? name : name + records[0].slice(records[0].indexOf('-')))), answer, command, origin: problem.origins?.[s]}));
   if (problem.learned !== undefined)
     problem.learned.rows = problem.learned.rows.map(([s, error, low, high, loss, runs, diverged]) => ({s, error, low, high, loss, runs, diverged}));
 }

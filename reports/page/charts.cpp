@@ -1,271 +1,16 @@
-// The charts of problems and papers: curves by every metric, and the papers' figures.
+// The charts of problems and papers on the page.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <set>
+#include <tuple>
 
 #include "reports/formats/formats.h"
 #include "reports/page/page.h"
-#include "reports/sections/figures.h"
 #include "reports/sections/words.h"
 
 namespace isoline::reports {
-
-std::set<std::size_t> shown_at_first(const Comparison& c, const std::vector<std::size_t>& ranking) {
-  std::set<std::size_t> shown;
-  std::set<std::string> kinds;
-  for (std::size_t i = 0; i < ranking.size() && shown.size() < kMostShown; ++i)
-    if (kinds.insert(c.optimizers[ranking[i]].mathematics()).second || i == 1)
-      shown.insert(ranking[i]);
-  return shown;
-}
-
 namespace {
-
-// Points a line, so that all lines together stay within a few megabytes.
-std::size_t points_per_curve(const Comparison& c) {
-  constexpr std::size_t kAll = 40000, kLeast = 4, kMost = 64;
-  const std::size_t curves = std::max<std::size_t>(1, c.problems.size() * c.optimizers.size());
-  return std::clamp(kAll / curves, kLeast, kMost);
-}
-
-// --- curves
-
-using Column = std::vector<Real>;
-
-struct Vertical {
-  const char *name, *label;
-  Column MedianCurve::*middle, MedianCurve::*low, MedianCurve::*high;
-};
-constexpr Vertical kVerticals[] = {
-    {"gap", "relative loss gap", &MedianCurve::gap, &MedianCurve::gap_low, &MedianCurve::gap_high},
-    {"x_error", "error in x", &MedianCurve::x_error, &MedianCurve::x_error_low,
-     &MedianCurve::x_error_high}};
-
-constexpr Real kLowest = 1e-12;  // of a gap or an error: below lies rounding
-constexpr Real kHighest = 1e3;   // of a gap: a run that diverges would flatten all others
-
-Column taken_along(const MedianCurve& curve, Measure by) {
-  if (by == Measure::work) return curve.work;
-  if (by == Measure::cost) return curve.cost;
-  if (by == Measure::iterations) return curve.iteration;
-  Column milliseconds;
-  for (const Real seconds : curve.seconds) milliseconds.push_back(1e3 * seconds);
-  return milliseconds;
-}
-
-PlotSeries points_along(const MedianCurve& curve, const Vertical& vertical, Measure by) {
-  PlotSeries line;
-  const Column taken = taken_along(curve, by);
-  for (std::size_t i = 0; i < taken.size(); ++i) {
-    const Real y = (curve.*vertical.middle)[i];
-    if (!std::isfinite(taken[i]) || !std::isfinite(y)) continue;
-    line.x.push_back(taken[i]);
-    line.y.push_back(std::max(y, kLowest));
-    line.low.push_back(std::max((curve.*vertical.low)[i], kLowest));
-    line.high.push_back(std::max((curve.*vertical.high)[i], kLowest));
-  }
-  return line;
-}
-
-// Of a direct problem the best loss so far, which holds until a better one is evaluated: a
-// staircase through the very medians of the tables, so that a line crosses τ where the table says.
-// Points between and beyond them come from the kept iterations.
-PlotSeries stairs(const PlotSeries& kept, const std::vector<std::pair<Real, Real>>& medians) {
-  std::vector<std::pair<Real, Real>> points = medians;
-  for (std::size_t i = 0; i < kept.x.size(); ++i)
-    if (medians.empty() || kept.x[i] < medians.front().first || kept.x[i] > medians.back().first)
-      points.emplace_back(kept.x[i], kept.y[i]);
-  std::ranges::sort(points, [](const auto& a, const auto& b) {
-    return a.first < b.first || (a.first == b.first && a.second > b.second);
-  });
-  PlotSeries line;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const Real y = line.y.empty() ? points[i].second : std::min(points[i].second, line.y.back());
-    if (i > 0 && i + 1 < points.size() && y == line.y.back()) continue;
-    line.x.push_back(points[i].first);
-    line.y.push_back(y);
-  }
-  return line;
-}
-
-class Curves {
- public:
-  Curves(const Comparison& c, std::size_t p) : c_(c), p_(p), ranking_(ranking(c, p)) {
-    for (const std::size_t s : ranking_)
-      curves_.push_back(median_curve(c, c.cell(p, s), points_per_curve(c)));
-    shown_ = shown_at_first(c, ranking_);
-    for (const Cell& cell : c.cells[p])
-      for (const std::size_t run : cell.runs)
-        if (const auto& scale = c.runs[run].record->x_scale) scales_.push_back(*scale);
-  }
-
-  // One drawing a measure and quantity; the report's own is the one that is not hidden.
-  std::string html() const {
-    if (curves_.empty()) return "";
-    const bool is_of_x = is_x_sought() || c_.problems[p_].is_learned;
-    const bool has_x = this->has_x();
-    std::string html;
-    for (const Vertical& vertical : kVerticals) {
-      const bool is_of_error = &vertical == &kVerticals[1];
-      if (is_of_error && !has_x) continue;
-      for (const Measure by : is_large(c_) ? std::vector{c_.yardstick.by} : measures_of(c_)) {
-        Drawing drawing = drawing_of(vertical, by, is_of_error);
-        const bool is_own = (is_of_error == (has_x && is_of_x)) && by == c_.yardstick.by;
-        drawing.attributes = fmt::format(" data-by={} data-vertical={}{}", name_of(by),
-                                         vertical.name, is_own ? "" : " hidden");
-        html += drawing_svg(drawing, c_.yardstick.tolerances[kTightest].tau);
-      }
-    }
-    return html;
-  }
-
-  // The report's own.
-  std::optional<Drawing> own() const {
-    if (curves_.empty()) return std::nullopt;
-    const bool is_of_error = is_x_sought() || (c_.problems[p_].is_learned && has_x());
-    return drawing_of(kVerticals[is_of_error ? 1 : 0], c_.yardstick.by, is_of_error);
-  }
-
- private:
-  bool has_x() const {
-    return std::ranges::any_of(curves_, [](const MedianCurve& curve) {
-      return std::ranges::any_of(curve.x_error, [](Real error) { return std::isfinite(error); });
-    });
-  }
-  bool is_x_sought() const { return c_.problems[p_].aim == Aim::x && !scales_.empty(); }
-
-  // What the medians of the tables are of: a staircase to them.
-  std::vector<std::pair<Real, Real>> medians(std::size_t s, Measure by) const {
-    std::vector<std::pair<Real, Real>> points;
-    for (const std::size_t target : targets_of(c_))
-      if (const Real taken = c_.cell(p_, s).median(by, target); taken < kNever)
-        points.emplace_back(by == Measure::time ? 1e3 * taken : taken,
-                            std::pow(10.0, -static_cast<Real>(target) / 5));
-    return points;
-  }
-
-  Drawing drawing_of(const Vertical& vertical, Measure by, bool is_of_error) const {
-    const bool is_learned = c_.problems[p_].is_learned, are_stairs = !is_learned && !is_of_error;
-    const std::string_view counted = counted_name(by), unit = unit_name(by);
-    Drawing out{
-        .plot = {.kind = Plot::Kind::lines,
-                 .title = fmt::format("{} on {}", vertical.label, problem_name(c_.problems[p_])),
-                 .x_label =
-                     counted == unit ? std::string(counted) : fmt::format("{}, {}", counted, unit),
-                 .y_label = vertical.label + std::string(are_stairs ? ", best so far" : ""),
-                 .is_log_x = true,
-                 .is_log_y = true},
-        .join = are_stairs ? Join::steps : Join::straight,
-        .has_names = true,
-        .shown = shown_};
-    Real start = 0;  // the greatest
-    for (std::size_t i = 0; i < ranking_.size(); ++i) {
-      const std::size_t s = ranking_[i];
-      const PlotSeries kept = points_along(curves_[i], vertical, by);
-      if (kept.x.empty()) continue;
-      start = std::max(start, kept.y.front());
-      PlotSeries line =
-          are_stairs
-              ? stairs(kept, is_x_sought() ? std::vector<std::pair<Real, Real>>() : medians(s, by))
-              : kept;
-      line.optimizer = s;
-      line.name = optimizer_name(c_.optimizers[s]);
-      if (are_stairs || !shown_.contains(s)) line.low.clear(), line.high.clear();
-      out.plot.series.push_back(std::move(line));
-    }
-    if (is_of_error == is_x_sought() && !is_learned)
-      out.tolerance = is_of_error ? median_of(scales_) : 1;
-    out.has_points = !are_stairs;
-    Window window = window_of(shown_lines(out));
-    const Real most = is_of_error ? kHighest * std::max(start, kLowest) : kHighest;
-    window.y_high = std::max(std::min(window.y_high, most), 2 * window.y_low);
-    out.window = window;
-    return out;
-  }
-
-  const Comparison& c_;
-  std::size_t p_;
-  std::vector<std::size_t> ranking_;
-  std::vector<MedianCurve> curves_;
-  std::set<std::size_t> shown_;
-  std::vector<Real> scales_;
-};
-
-// --- papers
-
-// The methods that the paper's claims are about, else all or the best of each kind; of a published
-// setting and its tuned twin the published one.
-std::set<std::size_t> lines_of_paper(const Comparison& c, const Figure& figure) {
-  std::vector<std::size_t> all;
-  for (const FigureLine& line : figure.lines)
-    if (figure.of_the_paper.empty() || figure.of_the_paper.contains(line.optimizer))
-      all.push_back(line.optimizer);
-  std::erase_if(all, [&](std::size_t s) {
-    return std::ranges::any_of(all, [&](std::size_t other) {
-      return c.optimizers[s].label == c.optimizers[other].label + ", tuned";
-    });
-  });
-  std::ranges::sort(all);  // by rank
-  if (figure.of_the_paper.empty() && all.size() > kMostShown) return shown_at_first(c, all);
-  all.resize(std::min(all.size(), kMostShown));
-  return {all.begin(), all.end()};
-}
-
-// No axis leaves out the end of a line. The overshoot of a path's first steps would flatten all.
-Window figure_window(const Figure& figure, const Drawing& drawing) {
-  Plot shown = shown_lines(drawing);
-  if (figure.kind == "path") {
-    constexpr Real kDiverged = 1e3;  // times as far as most
-    const auto reach = [](const PlotSeries& line) {
-      return std::max(std::abs(line.x.back()), std::abs(line.y.back()));
-    };
-    std::vector<Real> all;
-    for (const PlotSeries& line : shown.series) all.push_back(reach(line));
-    std::erase_if(shown.series, [&, most = kDiverged * median_of(all)](const PlotSeries& line) {
-      return reach(line) > most;
-    });
-    for (PlotSeries& line : shown.series) {
-      const auto half = static_cast<std::ptrdiff_t>(line.x.size() / 2);
-      line.x.erase(line.x.begin(), line.x.begin() + half);
-      line.y.erase(line.y.begin(), line.y.begin() + half);
-    }
-  }
-  for (PlotSeries& line : shown.series) {
-    if (figure.kind != "scatter") continue;
-    std::vector<Real> sorted = line.x;  // a line of what is sought is as wide as it is high
-    std::ranges::sort(sorted);
-    const Real air = sorted.empty() ? 0 : sorted.back() - sorted.front();
-    for (Real& y : line.y)
-      if (!sorted.empty()) y = std::clamp(y, sorted.front() - air, sorted.back() + air);
-  }
-  return window_of(shown);
-}
-
-Drawing figure_drawing(const Comparison& c, const Figure& figure) {
-  Drawing out{.plot = {.kind = Plot::Kind::lines,
-                       .title = figure.title,
-                       .caption = figure.reading,
-                       .x_label = figure.x_label,
-                       .y_label = figure.y_label,
-                       .is_log_x = figure.is_log_x,
-                       .is_log_y = figure.is_log_y},
-              .join = figure.kind == "scatter" ? Join::none : Join::straight,
-              .has_names = figure.kind != "scatter",
-              .shown = lines_of_paper(c, figure)};
-  for (const FigureLine& line : figure.lines)
-    out.plot.series.push_back({line.optimizer, optimizer_name(c.optimizers[line.optimizer]), line.x,
-                               line.y, line.low, line.high});
-  for (const PublishedMark& mark : figure.published)
-    if (out.shown->contains(mark.optimizer))
-      out.plot.published.push_back(
-          {mark.optimizer, mark.name, {mark.x}, {mark.y}, {mark.low}, {mark.high}});
-  out.window = figure_window(figure, out);
-  const std::vector<Real> ends = {out.window->x_low, out.window->x_high};
-  if (figure.has_diagonal) out.ground.push_back({{}, "", ends, ends, {}, {}});
-  return out;
-}
 
 // Of a kind, all have the scale of greys of y*, which comes first, or of x*, which comes last.
 std::string pictures_html(const std::vector<Picture>& pictures) {
@@ -287,7 +32,7 @@ std::string pictures_html(const std::vector<Picture>& pictures) {
   return "<div class=pictures>" + html + "</div>";
 }
 
-std::string figure_html(const Comparison& c, const Figure& figure) {
+std::string figure_html(const Comparison& c, const Figure& figure, std::size_t place) {
   Topic topic;
   for (std::size_t p = c.problems.size(); p-- > 0;)  // the first
     if (shown_spec(c.problems[p].spec) == shown_spec(figure.problem)) topic.problem = p;
@@ -295,7 +40,8 @@ std::string figure_html(const Comparison& c, const Figure& figure) {
   if (!figure.pictures.empty()) {
     drawn = pictures_html(figure.pictures);
   } else {
-    const Drawing drawing = figure_drawing(c, figure);
+    Drawing drawing = figure_drawing(c, figure);
+    drawing.rest = std::to_string(place);
     drawn = drawing_svg(drawing) + names_html(drawing);
   }
   return fmt::format(
@@ -305,50 +51,68 @@ std::string figure_html(const Comparison& c, const Figure& figure) {
       html_text(figure.problem), html_text(figure.reading), drawn);
 }
 
-}  // namespace
-
-std::string curves_html(const Comparison& c, std::size_t p) { return Curves(c, p).html(); }
-
-std::optional<Drawing> own_curves(const Comparison& c, std::size_t p) { return Curves(c, p).own(); }
-
-std::string file_name_of(std::string_view title) {
-  std::string name;
-  for (const char letter : title) {
-    const bool is_plain = std::isalnum(static_cast<unsigned char>(letter)) != 0;
-    if (is_plain)
-      name += letter;
-    else if (!name.empty() && name.back() != '-')
-      name += '-';
-  }
-  while (name.ends_with('-')) name.pop_back();
-  return name.empty() ? "figure" : name;
+// Whether the curves are the same numbers: where a cost is the work, it has no chart of its own.
+bool are_same(const CurveDrawing& one, const CurveDrawing& other) {
+  const auto numbers = [](const PlotSeries& line) { return std::tie(line.x, line.y); };
+  return one.vertical == other.vertical &&
+         std::ranges::equal(one.drawing.plot.series, other.drawing.plot.series, {}, numbers,
+                            numbers);
 }
 
-std::vector<NamedDrawing> drawings_of(const Document& document) {
-  const Comparison& c = document.comparison;
-  std::vector<NamedDrawing> all;
-  std::map<std::string, int> counts;
-  const auto add = [&](std::string name, Drawing drawing, std::optional<std::size_t> problem = {}) {
-    const int count = ++counts[name];
-    if (count > 1) name += fmt::format("-{}", count);
-    all.push_back({std::move(name), std::move(drawing), problem});
+bool is_first(const std::vector<CurveDrawing>& all, std::size_t place) {
+  return std::none_of(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(place),
+                      [&](const CurveDrawing& before) { return are_same(before, all[place]); });
+}
+
+std::string curve_svg(const Comparison& c, const std::vector<CurveDrawing>& all,
+                      std::size_t place) {
+  CurveDrawing one = all[place];
+  one.drawing.attributes =
+      fmt::format(" data-by={} data-vertical={}", name_of(one.by), one.vertical);
+  for (std::size_t i = place + 1; i < all.size(); ++i)
+    if (!all[i].is_own && are_same(one, all[i]))
+      one.drawing.attributes += fmt::format(" data-also={}", name_of(all[i].by));
+  if (!one.is_own) one.drawing.attributes += " hidden";
+  one.drawing.rest = std::to_string(place);
+  return drawing_svg(one.drawing, c.yardstick.tolerances[kTightest].tau);
+}
+
+}  // namespace
+
+std::string curves_html(const Comparison& c, std::size_t p) {
+  const std::vector<CurveDrawing> all = curve_drawings(c, p);
+  const auto own = std::ranges::find_if(all, &CurveDrawing::is_own);
+  return own == all.end() ? "" : curve_svg(c, all, static_cast<std::size_t>(own - all.begin()));
+}
+
+std::string curves_json(const Comparison& c, std::size_t p) {
+  const std::vector<CurveDrawing> all = curve_drawings(c, p);
+  std::string others, rest;
+  const auto add = [&](const std::string& name, const Drawing& drawing) {
+    rest += fmt::format("{}\"{}\":{}", rest.empty() ? "" : ",", name,
+                        json_quoted(hidden_lines_svg(drawing)));
   };
-  for (const Section& section : document.sections)
-    for (const Plot& plot : section.plots) add(file_name_of(plot.id), drawing_of(plot));
-  for (std::size_t p = 0; p < c.problems.size(); ++p)
-    if (std::optional<Drawing> curves = own_curves(c, p))
-      add("curves-" + file_name_of(problem_name(c.problems[p])), std::move(*curves), p);
-  for (const Figure& one : document.figures)
-    if (one.pictures.empty()) add("figure-" + file_name_of(one.title), figure_drawing(c, one));
-  for (const Judgement& one : document.claims)
-    for (const Plot& plot : claim_section(one).plots)
-      add("claim-" + file_name_of(one.id), drawing_of(plot));
-  return all;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (!all[i].is_own && !is_first(all, i)) continue;
+    if (!all[i].is_own) others += curve_svg(c, all, i);
+    add(std::to_string(i), all[i].drawing);
+  }
+  for (const Drawing& plane : plane_drawings(c, p)) add(plane.rest, plane);
+  return fmt::format("{{\"charts\":{},\"rest\":{{{}}}}}", json_quoted(others), rest);
+}
+
+std::string figure_lines_json(const Document& document) {
+  return json_list(document.figures, [&](const Figure& figure) {
+    return figure.pictures.empty()
+               ? json_quoted(hidden_lines_svg(figure_drawing(document.comparison, figure)))
+               : std::string("\"\"");
+  });
 }
 
 std::string figures_html(const Document& document) {
   std::string html;
-  for (const Figure& figure : document.figures) html += figure_html(document.comparison, figure);
+  for (std::size_t i = 0; i < document.figures.size(); ++i)
+    html += figure_html(document.comparison, document.figures[i], i);
   return html.empty() ? "<p class=lead>No problem of this report has figures of its own.</p>"
                       : "<div class=panels>" + html + "</div>";
 }

@@ -218,6 +218,17 @@ document.addEventListener('click', ({target}) => {
   if (place.matches('article')) CHOSEN.set(Number(place.dataset.p), lines);
   showLinesIn(place, lines);
 });
+// What a problem or a figure shows on demand: other curves, and lines that are hidden at first.
+function completeCharts(place, p) {
+  const {charts, rest} = DATA.problems[p]?.curves ?? DATA;
+  place.querySelector('.curves > .chart')?.insertAdjacentHTML('afterend', charts);
+  for (const chart of place.querySelectorAll('[data-rest]')) {
+    const shown = areaOf(chart).querySelector(':scope > g'), hidden = rest[chart.dataset.rest];
+    if (shown === null) areaOf(chart).insertAdjacentHTML('beforeend', hidden);
+    else shown.insertAdjacentHTML('beforebegin', hidden);
+  }
+}
+ON_UNPACK.push((place) => completeCharts(place, place.dataset.p));
 // Names of lines are one stop of the keyboard: arrows move among them.
 ON_UNPACK.push((place) => place.querySelectorAll('.names').forEach((names) => {
   const buttons = [...names.querySelectorAll('button')];

@@ -1,19 +1,13 @@
 // The evidence of a number: the data of a method on a problem, its curve, its records, and the
 // commands that repeat it.
 
-// A row of the table of all cells, packed or not: it has the command.
-function commandOf(p, s) {
-  const packed = document.querySelector('#cells > noscript')?.textContent;
-  if (packed === undefined) return [...LONG.values()][0]?.rows.find((row) => row.dataset.p === String(p) && row.dataset.s === String(s))?.querySelector('[data-command]')?.dataset.command;
-  const row = packed.match(new RegExp(`<tr data-s=${s} data-p=${p}>.*`))?.[0], made = document.createElement('template');
-  made.innerHTML = row?.match(/<button.*<\/button>/)?.[0] ?? '';
-  return made.content.firstChild?.dataset.command;
-}
-
 // Its line in the chart that the article shows, from the article as it came or as it stands.
 function sparkline(p, s) {
   const article = document.getElementById(`problem-${p}`), packed = article.querySelector(':scope > noscript'), made = document.createElement('template');
-  if (packed !== null) made.innerHTML = packed.textContent;
+  if (packed !== null) {
+    made.innerHTML = packed.textContent;
+    completeCharts(made.content, p);
+  }
   const path = (packed === null ? article : made.content).querySelector(`.curves > .chart:not([hidden]) .area > [data-s="${s}"] .line`);
   if (path === null) return [];
   const drawn = svgElement('svg', {class: 'spark', viewBox: `0 0 ${AREA} ${AREA}`, preserveAspectRatio: 'none', 'data-s': s, role: 'img', 'aria-label': 'Its curve'});
@@ -67,7 +61,7 @@ function answerOf({answer}) {
 
 // What is known of a method on a problem, its curve, its x, the command of all its runs, and each record.
 function evidenceOf(p, s) {
-  const [title, ...lines] = explanationOf(p, s), cell = cellOf(DATA.problems[p], s) ?? {}, {records = [], reached = []} = cell, command = commandOf(p, s), curves = leaving(`#problem-${p}`, worded('all-curves'));
+  const [title, ...lines] = explanationOf(p, s), cell = cellOf(DATA.problems[p], s) ?? {}, {records = [], reached = [], command} = cell, curves = leaving(`#problem-${p}`, worded('all-curves'));
   curves.addEventListener('click', () => showLines(p, [...linesShown(p), s]));
   return [element('h3', {}, title), ...lines.map((line) => element('p', {}, line)), ...sparkline(p, s), element('p', {}, curves), ...answerOf(cell),
     ...command === undefined ? [] : [element('p', {}, worded('cell-command'), ' ', ...withCopy(command))],

@@ -1,7 +1,7 @@
 // Fields of a problem on a grid, with one byte per cell, painted on a canvas. A slider over the
 // stored iterations changes every image of x.
 const ZERO = 128;  // the byte of the value 0
-const bytesOf = (text) => Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
+const bytesOf = (letters) => Uint8Array.from(letters, (letter) => letter.charCodeAt(0));
 const lessTruth = (bytes, truth) => bytes.map((byte, i) => Math.min(255, Math.max(1, ZERO + byte - truth[i])));
 
 // Of each byte its colour: greys, or blue below 0 and orange above. Both arms are straight lines of
@@ -28,7 +28,7 @@ function paletteOf(ramp) {
   return PALETTES.get(ramp);
 }
 
-function paint(canvas, bytes = bytesOf(canvas.dataset.cells)) {
+function paint(canvas, bytes = bytesOf(atob(canvas.dataset.cells))) {
   const context = canvas.getContext('2d', {willReadFrequently: true}), image = context.createImageData(canvas.width, canvas.height), palette = paletteOf(canvas.dataset.ramp);
   new Uint32Array(image.data.buffer).set(Uint32Array.from(bytes, (byte) => palette[byte]));
   context.putImageData(image, 0, 0);
@@ -68,7 +68,19 @@ function makeFields(article) {
       element('small', {}, ' from the start to the end of each run, evenly spaced in the logarithm of the iteration'));
 }
 
+// All pictures of a place: x and x − x* at the end of each run, and x*, are in the data.
+function paintAll(place, fields) {
+  place.querySelectorAll('[data-cells]').forEach((canvas) => paint(canvas));
+  const truth = bytesOf(fields?.truth ?? ''), exact = place.querySelector('.given canvas:not([data-cells])');
+  if (exact !== null) paint(exact, truth);
+  for (const {s, x} of fields?.found ?? []) {
+    const [own, missing] = place.querySelectorAll(`figure[data-s="${s}"] canvas`), cells = bytesOf(x[x.length - 1]);
+    paint(own, cells);
+    if (missing !== undefined) paint(missing, lessTruth(cells, truth));
+  }
+}
+
 ON_UNPACK.push((place) => {
-  place.querySelectorAll('canvas').forEach((canvas) => paint(canvas));
+  paintAll(place, DATA.problems[place.dataset.p]?.fields);
   if (place.matches('.problem')) makeFields(place);
 });

@@ -38,12 +38,23 @@ std::string radix64(std::string_view bytes) {
   return text;
 }
 
+// The bytes as letters from U+0001 to U+00FF: compressed, they are shorter than radix 64.
+std::string letters_of(std::string_view bytes) {
+  constexpr unsigned kAscii = 0x80, kLead = 0xC0, kRest = 0x3F, kBits = 6;  // of UTF-8
+  std::string text;
+  for (const unsigned char byte : bytes) {
+    if (byte >= kAscii) text += static_cast<char>(kLead | byte >> kBits);
+    text += static_cast<char>(byte < kAscii ? byte : kAscii | (byte & kRest));
+  }
+  return text;
+}
+
 std::string canvas_html(std::string_view bytes, Index rows, Index columns, std::string_view ramp,
                         std::string_view words) {
+  const std::string cells = bytes.empty() ? "" : fmt::format(" data-cells=\"{}\"", radix64(bytes));
   return fmt::format(
-      "<canvas width={} height={} role=img aria-label=\"{}\" data-ramp={} "
-      "data-cells=\"{}\"></canvas>",
-      columns, rows, html_text(words), ramp, radix64(bytes));
+      "<canvas width={} height={} role=img aria-label=\"{}\" data-ramp={}{}></canvas>", columns,
+      rows, html_text(words), ramp, cells);
 }
 
 namespace {
@@ -79,13 +90,14 @@ std::string cells_of(const FoundFields& all, std::span<const float> values, Real
   return field_bytes(cells, scale);
 }
 
-std::string picture(const FoundFields& all, std::span<const float> values, Real scale,
-                    const std::string& label, const std::string& words) {
+// The data have the cells of x, x* and x − x*.
+std::string picture(const FoundFields& all, std::span<const float> values, const std::string& label,
+                    const std::string& words, const std::string& cells = "") {
   const FieldFrames& frames = all.frames();
   const auto [low, high] = std::ranges::minmax(values);
   return fmt::format(
       "<div class=\"picture{}\">{}<span>{}</span></div>", all.is_history() ? " history" : "",
-      canvas_html(cells_of(all, values, scale), frames.shape[1], frames.shape[2], "diverging",
+      canvas_html(cells, frames.shape[1], frames.shape[2], "diverging",
                   fmt::format("{}, from {} to {}", words, short_figure(low), short_figure(high))),
       label);
 }
@@ -100,10 +112,10 @@ std::string apart_text(const FoundField& found, std::size_t i) {
 std::string given_html(const FoundFields& all) {
   const FieldFrames& frames = all.frames();
   const std::string truth = labels_of(all).truth;
-  std::string pictures =
-      picture(all, frames.target(), all.y_scale, "y*", "y*: " + quantity_name(all.y));
+  std::string pictures = picture(all, frames.target(), "y*", "y*: " + quantity_name(all.y),
+                                 cells_of(all, frames.target(), all.y_scale));
   if (frames.has_truth())
-    pictures += picture(all, frames.truth(), all.x_scale, truth, truth + ": " + quantity_name(all));
+    pictures += picture(all, frames.truth(), truth, truth + ": " + quantity_name(all));
   return fmt::format(
       "<figure class=given><div class=two>{}</div><figcaption><b>The data{}.</b> {}{}; the colour "
       "scale runs from −{} to {}.</figcaption></figure>",
@@ -119,14 +131,13 @@ std::string found_html(const Comparison& c, const FoundFields& all, const FoundF
   const std::string name = shown_spec(axis.brief);
   const std::span<const float> x = found.frames.x(last);
   const Labels labels = labels_of(all);
-  std::string pictures = picture(all, x, all.x_scale, labels.x,
-                                 fmt::format("{} of {}: {}", labels.x, name, quantity_name(all)));
+  std::string pictures =
+      picture(all, x, labels.x, fmt::format("{} of {}: {}", labels.x, name, quantity_name(all)));
   std::string apart;
   if (!found.apart.empty()) {
     std::vector<float> rest(x.begin(), x.end());
     for (std::size_t i = 0; i < rest.size(); ++i) rest[i] -= found.frames.truth()[i];
-    pictures +=
-        picture(all, rest, all.x_scale, labels.rest, fmt::format("{} of {}", labels.rest, name));
+    pictures += picture(all, rest, labels.rest, fmt::format("{} of {}", labels.rest, name));
     apart = fmt::format(", <span class=norm>‖x − x*‖ <output class=apart>{}</output> ‖x*‖</span>",
                         html_text(apart_text(found, last)));
   }
@@ -192,15 +203,16 @@ std::string fields_json(const FoundFields& all) {
         of_each([&](std::size_t i) { return std::to_string(one.frames.iterations[i]); }),
         of_each([&](std::size_t i) { return json_quoted(apart_text(one, i)); }),
         of_each([&](std::size_t i) {
-          return '"' + radix64(cells_of(all, one.frames.x(i), all.x_scale)) + '"';
+          return json_quoted(letters_of(cells_of(all, one.frames.x(i), all.x_scale)));
         }));
   };
   const FieldFrames& frames = all.frames();
   const Labels labels = labels_of(all);
-  return fmt::format("{{\"labels\":[{},{}],\"truth\":\"{}\",\"found\":{}}}", json_quoted(labels.x),
-                     json_quoted(labels.rest),
-                     frames.has_truth() ? radix64(cells_of(all, frames.truth(), all.x_scale)) : "",
-                     json_list(all.found, found_json));
+  return fmt::format(
+      "{{\"labels\":[{},{}],\"truth\":{},\"found\":{}}}", json_quoted(labels.x),
+      json_quoted(labels.rest),
+      json_quoted(frames.has_truth() ? letters_of(cells_of(all, frames.truth(), all.x_scale)) : ""),
+      json_list(all.found, found_json));
 }
 
 }  // namespace isoline::reports

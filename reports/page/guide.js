@@ -25,7 +25,7 @@ function guideParts(markdown) {
 }
 
 function offerGuide(place) {
-  const button = pressable(place.textContent, undefined, () => showDrawer(element('div', {className: 'guide'}, ...guideParts(document.getElementById('guide').content.textContent))));
+  const button = pressable(place.textContent, undefined, () => showDrawer(element('div', {className: 'guide'}, ...guideParts(DATA.guide))));
   button.className = 'evidence';
   place.replaceChildren(button);
 }

@@ -1,5 +1,5 @@
-// The tables of a report in LaTeX, in the style of booktabs, and its plots in PGF; wide and long
-// tables in several, so that each fits a page of an article.
+// The tables of a report in LaTeX, in the style of booktabs; wide and long tables in several, so
+// that each fits a page of an article. Its plots are files that `isoline figures` writes.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -80,28 +80,32 @@ std::string part_text(const Table& table, const Part& part,
 std::string figure_text(const NamedDrawing& one) {
   const Plot& plot = one.drawing.plot;
   return part_of_document(
-      one.name, fmt::format("\\begin{{figure}}[p]\n  \\centering\n{}  \\isolinecaption{{{}. {} {}}}"
-                            "{{fig:{}}}\n\\end{{figure}}\n",
-                            paper_pgf(one.drawing), latex_words(plot.title),
-                            latex_words(plot.reading), latex_words(plot.caption), one.name));
+      one.name, fmt::format("\\begin{{figure}}[p]\n  \\centering\n  \\isolinefigure{{{}}}\n"
+                            "  \\isolinecaption{{{}. {} {}}}{{fig:{}}}\n\\end{{figure}}\n",
+                            one.name, latex_words(plot.title), latex_words(plot.reading),
+                            latex_words(plot.caption), one.name));
 }
 
 // Alone, the file is a document. In a paper, \isolineend is empty and the preamble is left out.
 constexpr std::string_view kBegin =
-    R"(% A document: pdflatex report.tex. Or in a paper, with booktabs, graphicx and pgf:
+    R"(% A document: pdflatex report.tex. Or in a paper, with booktabs and graphicx:
 %   \input{report}                               everything
 %   \def\isolineonly{curves-heat}\input{report}    the table or plot with this label
+% The plots are files of \isolinefigures, written by: isoline figures DIR --format pdf
+\providecommand{\isolinefigures}{../figures}
 \makeatletter
 \long\def\isolinepart#1#2{\def\isolinethis{#1}%
   \ifx\isolineonly\undefined#2\else\ifx\isolineonly\isolinethis#2\fi\fi}
 \def\isolinefit#1{\sbox0{#1}\ifdim\wd0>\linewidth\resizebox{\linewidth}{!}{\usebox0}\else\usebox0\fi}
 \def\isolinecaption#1#2{{\sloppy\emergencystretch=3em\caption{#1}\label{#2}}}
+\def\isolinefigure#1{\IfFileExists{\isolinefigures/#1.pdf}%
+  {\includegraphics{\isolinefigures/#1.pdf}}{\fbox{\isolinefigures/#1.pdf is missing}}}
 \ifx\@nodocument\relax
   \let\isolineend\relax\let\isolineclear\relax
 \else
   \documentclass{article}
   \usepackage[margin=2cm]{geometry}
-  \usepackage{booktabs,graphicx,pgf}
+  \usepackage{booktabs,graphicx}
   \def\isolineend{\end{document}}\let\isolineclear\clearpage
   \begin{document}
 \fi

@@ -178,7 +178,7 @@ function makeMotion(place) {
     }, 700);
   };
   place.replaceChildren(element('p', {}, element('a', {href: `#problem-${p}`}, worded('motion', {problem: spec})), ' ', button), element('div', {className: 'field-cards'}, ...figures));
-  place.querySelectorAll('canvas').forEach((canvas) => paint(canvas));
+  paintAll(place, {...fields, found: three});
   draw();
   if (!matchMedia('(prefers-reduced-motion: reduce)').matches) play();
 }

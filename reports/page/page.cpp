@@ -9,9 +9,9 @@
 #include <iterator>
 #include <map>
 #include <set>
-#include <sstream>
 #include <string_view>
 
+#include "core/compress.h"
 #include "core/results/ranking.h"
 #include "reports/formats/formats.h"
 #include "reports/sections/sections.h"
@@ -22,7 +22,6 @@ namespace isoline::reports {
 std::string_view embedded_page_html();
 std::string_view embedded_page_css();
 std::string_view embedded_page_js();
-std::string_view embedded_guide();
 
 namespace {
 
@@ -223,13 +222,7 @@ std::string marks_html(const OptimizerAxis& axis) {
   return marks;
 }
 
-// The guide with its lines, which html_text would join.
-std::string guide_html() {
-  std::string html;
-  std::istringstream lines{std::string(embedded_guide())};
-  for (std::string line; std::getline(lines, line);) html += html_text(line) + "\n";
-  return html;
-}
+std::string packed_text(std::string_view text) { return radix64(compressed(text)); }
 
 std::string html_report(const Document& document) {
   const Comparison& c = document.comparison;
@@ -240,8 +233,7 @@ std::string html_report(const Document& document) {
   std::erase_if(order.tables, is_apart);
   Parts parts{{"title", html_text(title_of(c))},
               {"style", std::string(embedded_page_css()) + kind_rules(c)},
-              {"scripts", std::string(embedded_page_js())},
-              {"guide", guide_html()},
+              {"scripts", packed_text(embedded_page_js())},
               {"tau", tau_name(c)},
               {"headline", head_html(document)},
               {"page.ranking",
@@ -261,7 +253,7 @@ std::string html_report(const Document& document) {
               {"methods", methods_html(c)},
               {"optimizers", optimizers_html(c)},
               {"legend", legend_html(c)},
-              {"data", page_data(document, fields)}};
+              {"data", packed_text(page_data(document, fields))}};
   for (const Section& section : document.sections)  // but those that the scripts redraw
     if (!parts.contains(section.id)) parts.emplace(section.id, section_html(section));
   return filled(embedded_page_html(), parts);

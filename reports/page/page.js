@@ -51,6 +51,15 @@ ON_UNPACK.push((place) => {
   if (place.id !== 'cells') return;
   const table = place.querySelector('table'), wide = document.getElementById('wide');
   if (table === null) return;  // too many
+  table.tHead.rows[0].append(element('th', {scope: 'col'}, 'command'));
+  for (const row of table.tBodies[0].rows) {
+    const {command} = cellOf(DATA.problems[row.dataset.p], Number(row.dataset.s)), last = row.lastElementChild;
+    if (last.colSpan > 1) last.colSpan += 1;
+    if (command === undefined) continue;
+    const button = element('button', {className: 'copy'}, 'copy');
+    button.dataset.command = command;
+    row.append(element('td', {className: 'text'}, button));
+  }
   countRows = makeFilter(document.getElementById('filter'), table, document.getElementById('shown'));
   document.querySelector('.filter').hidden = false;
   wide.addEventListener('change', () => table.classList.toggle('wide', wide.checked));

@@ -13,12 +13,16 @@
 #include <unordered_map>
 
 #include "core/json.h"
+#include "core/seeds.h"
 #include "core/threads.h"
 #include "reports/page/page.h"
 #include "reports/sections/answers.h"
 #include "reports/sections/words.h"
 
 namespace isoline::reports {
+
+std::string_view embedded_guide();
+
 namespace {
 
 std::string number(Real value) { return std::isfinite(value) ? figure(value) : "null"; }
@@ -88,9 +92,28 @@ std::string answer_json(const Comparison& c, std::span<const std::size_t> runs) 
   return json_text(json);
 }
 
+// The command that repeats a cell: all its seeds where these follow each other and were asked for
+// alike, else the first.
+std::string cell_command(const Comparison& c, const Cell& cell) {
+  const Request& first = c.runs[cell.runs.front()].record->request;
+  std::string command = rerun_command(first);
+  std::uint64_t next = first.seed;
+  for (const std::size_t run : cell.runs) {
+    const Request& request = c.runs[run].record->request;
+    if (request.seed != next++ || is_pair(request.seed) ||
+        request.optimizer.spec != first.optimizer.spec ||
+        budget_options(request) != budget_options(first))
+      return command;
+  }
+  const std::string one = fmt::format("--seeds ={} ", first.seed);
+  if (cell.runs.size() == 1) return command;
+  return command.replace(command.find(one), one.size(),
+                         fmt::format("--seeds {}..{} ", first.seed, next - 1));
+}
+
 // [optimizer, targets reached by each run, [medians by measure], runs failed, runs missing, [record
-// of each run, or of the first], x]: what the page chooses from. The optimizer alone where the pair
-// makes no sense.
+// of each run, or of the first], x, command]: what the page chooses from. The optimizer alone where
+// the pair makes no sense. A record without a build has that of the first.
 std::string cell_json(const Comparison& c, std::size_t p, std::size_t s) {
   const Cell& cell = c.cell(p, s);
   if (!cell.runs.empty() && !cell.is_measured()) return fmt::format("[{}]", s);
@@ -100,13 +123,19 @@ std::string cell_json(const Comparison& c, std::size_t p, std::size_t s) {
   constexpr std::size_t kEach = 6;
   const std::size_t most = is_large(c) ? 1 : kEach;
   const std::span runs(cell.runs.data(), std::min(most, cell.runs.size()));
+  const std::string build = runs.empty() ? "" : c.runs[runs[0]].record->build;
   const std::string records = json_list(runs, [&](std::size_t run) {
-    const std::string name = c.runs[run].record->file_name();
-    return json_quoted(name.substr(0, name.find('.')));
+    const Record& record = *c.runs[run].record;
+    const std::string name = record.file_name();
+    const bool is_known = run != runs[0] && record.build == build;
+    return json_quoted(is_known ? record.cell : name.substr(0, name.find('.')));
   });
-  return fmt::format("[{},{},{},{},{},{}{}]", s, repeats_json(reached), medians_json(c, cell),
-                     cell.failed, cell.missing(), records,
-                     is_large(c) ? "" : "," + answer_json(c, cell.runs));
+  return fmt::format(
+      "[{},{},{},{},{},{}{}]", s, repeats_json(reached), medians_json(c, cell), cell.failed,
+      cell.missing(), records,
+      is_large(c) || cell.runs.empty()
+          ? ""
+          : fmt::format(",{},{}", answer_json(c, cell.runs), json_quoted(cell_command(c, cell))));
 }
 
 // {"optimizer": "3.8e-5, tuned"}, of those whose options a table of rates chose.
@@ -152,7 +181,8 @@ std::string problem_json(const Comparison& c, std::size_t p,
               ? fmt::format(",\"goal\":{:.4g}", problem.least_goal)
               : "") +
          (prices_of(problem) ? ",\"sheet\":" + json_quoted(problem.sheet->file_name()) : "") +
-         (fields ? ",\"fields\":" + fields_json(*fields) : "") + "}";
+         (fields ? ",\"fields\":" + fields_json(*fields) : "") +
+         ",\"curves\":" + curves_json(c, p) + "}";
 }
 
 // {"id": [optimizers, problems]}: what the cells that decide a claim are about.
@@ -312,28 +342,6 @@ std::string advice_json(const Comparison& c) {
 
 }  // namespace
 
-std::vector<std::size_t> targets_of(const Comparison& c) {
-  constexpr std::size_t kMostForAll = 5000;  // cells: some 200 bytes each for all targets
-  std::vector<std::size_t> targets;
-  if (c.problems.size() * c.optimizers.size() > kMostForAll) {
-    for (const Tolerance& tolerance : c.yardstick.tolerances) targets.push_back(tolerance.rung);
-    return targets;
-  }
-  for (std::size_t j = 0; j < kTargets; ++j) targets.push_back(j);
-  return targets;
-}
-
-bool is_large(const Comparison& c) {
-  constexpr std::size_t kMost = 2500;  // cells
-  return c.problems.size() * c.optimizers.size() > kMost;
-}
-
-std::vector<Measure> measures_of(const Comparison& c) {
-  std::vector<Measure> measures = {Measure::work, Measure::cost, Measure::time};
-  if (c.yardstick.by == Measure::iterations) measures.push_back(Measure::iterations);
-  return measures;
-}
-
 std::string json_quoted(const std::string& text) { return json_text(Json(text)); }
 
 std::string page_data(const Document& document, const AllFields& fields) {
@@ -344,7 +352,7 @@ std::string page_data(const Document& document, const AllFields& fields) {
       "\"rungs\":{},\"targets\":{},{},\"given\":{},\"ranked\":{},\"common\":{},\"sanity\":{},"
       "\"claims\":{},"
       "\"pinned\":{},\"group\":{},\"dataKinds\":{},\"advice\":{},\"words\":{},\"terms\":{},"
-      "\"standings\":{},\"problems\":[",
+      "\"standings\":{},\"guide\":{},\"rest\":{},\"problems\":[",
       json_quoted(runs_address(document)), name_of(c.yardstick.by), is_all_learned(c),
       json_list(kShades, exact_figure), measures_json(c), c.is_any_timed_together,
       json_list(c.yardstick.tolerances,
@@ -352,12 +360,11 @@ std::string page_data(const Document& document, const AllFields& fields) {
       indices(targets_of(c)), axes_json(c), given_json(c), indices(c.order.methods),
       indices(c.order.settings), indices(c.sanity.settings), claims_about(document), pinned_json(c),
       indices(c.decision ? c.decision->group() : std::vector<std::size_t>()), kinds_json(c),
-      advice_json(c), script_words("script."), script_words("glossary."), standings_json(c));
+      advice_json(c), script_words("script."), script_words("glossary."), standings_json(c),
+      json_quoted(std::string(embedded_guide())), figure_lines_json(document));
   for (std::size_t p = 0; p < c.problems.size(); ++p)
     text += (p > 0 ? "," : "") + problem_json(c, p, fields[p]);
-  std::string safe;  // no </script and no <!-- can stand in it
-  for (const char letter : text + "]}") safe += letter == '<' ? "\\u003c" : std::string(1, letter);
-  return safe;
+  return text + "]}";
 }
 
 }  // namespace isoline::reports

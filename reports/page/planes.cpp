@@ -4,6 +4,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <deque>
+#include <map>
+#include <optional>
+#include <utility>
 
 #include "core/records/sheet.h"
 #include "reports/formats/formats.h"
@@ -46,44 +50,80 @@ std::vector<Real> contour_levels(const Landscape& landscape) {
                     [](Real v) { return std::exp(v); });
 }
 
+namespace {
+
+using Edge = std::pair<Index, Index>;  // two corners of a cell, the lower number first
+using Segment = std::pair<Edge, Edge>;
+using Point = std::array<Real, 2>;
+
+// The segments joined at their ends, as lines apart by NaN.
+PlotSeries joined(const std::vector<Segment>& segments, const std::map<Edge, Point>& crossings) {
+  std::map<Edge, std::vector<std::size_t>> meeting;
+  for (std::size_t i = 0; i < segments.size(); ++i)
+    for (const Edge& end : {segments[i].first, segments[i].second}) meeting[end].push_back(i);
+  std::vector<bool> is_joined(segments.size());
+  const auto next_after = [&](const Edge& end) -> std::optional<Edge> {
+    for (const std::size_t i : meeting.at(end)) {
+      if (is_joined[i]) continue;
+      is_joined[i] = true;
+      return segments[i].first == end ? segments[i].second : segments[i].first;
+    }
+    return std::nullopt;
+  };
+  PlotSeries line;
+  for (std::size_t i = 0; i < segments.size(); ++i) {
+    if (is_joined[i]) continue;
+    is_joined[i] = true;
+    std::deque<Edge> chain = {segments[i].first, segments[i].second};
+    while (const auto next = next_after(chain.back())) chain.push_back(*next);
+    while (const auto next = next_after(chain.front())) chain.push_front(*next);
+    if (!line.x.empty()) line.x.push_back(NAN), line.y.push_back(NAN);
+    for (const Edge& end : chain) {
+      line.x.push_back(crossings.at(end)[0]);
+      line.y.push_back(crossings.at(end)[1]);
+    }
+  }
+  return line;
+}
+
+}  // namespace
+
 PlotSeries isoline(const Landscape& landscape, Real level) {
   const Grid& loss = landscape.loss;
   const auto& [left, right, low, high] = landscape.window;
-  PlotSeries line;
-  for (Index j = 0; j + 1 < loss.columns(); ++j)
-    for (Index i = 0; i + 1 < loss.rows(); ++i) {
-      const std::array<std::array<Index, 2>, 4> corners = {
-          {{i, j}, {i + 1, j}, {i + 1, j + 1}, {i, j + 1}}};
-      const auto loss_at = [&](std::size_t k) {
-        return loss(corners[k % 4][0], corners[k % 4][1]);
-      };
-      const Real mean = (loss_at(0) + loss_at(1) + loss_at(2) + loss_at(3)) / 4;
+  const Index rows = loss.rows(), columns = loss.columns();
+  std::vector<Segment> segments;
+  std::map<Edge, Point> crossings;
+  for (Index j = 0; j + 1 < columns; ++j)
+    for (Index i = 0; i + 1 < rows; ++i) {
+      const std::array<Index, 4> corners = {i + rows * j, i + 1 + rows * j, i + 1 + rows * (j + 1),
+                                            i + rows * (j + 1)};
+      const auto loss_at = [&](Index corner) { return loss(corner % rows, corner / rows); };
+      const Real mean =
+          (loss_at(corners[0]) + loss_at(corners[1]) + loss_at(corners[2]) + loss_at(corners[3])) /
+          4;
       if (!std::isfinite(mean)) continue;
-      std::vector<std::array<Real, 2>> crossings;
+      std::vector<Edge> crossed;
       for (std::size_t k = 0; k < 4; ++k) {
-        const Real near = loss_at(k), far = loss_at(k + 1);
+        const auto [a, b] = std::minmax(corners[k], corners[(k + 1) % 4]);
+        const Real near = loss_at(a), far = loss_at(b);
         if ((near < level) == (far < level)) continue;
         const Real t = (level - near) / (far - near);
-        const auto at = [&](std::size_t axis, Real from, Real to, Index points) {
-          const Real a = Real(corners[k][axis]), b = Real(corners[(k + 1) % 4][axis]);
-          return from + (to - from) * (a + t * (b - a)) / Real(points - 1);
+        const auto at = [t](Real from, Real to, Index first, Index last, Index points) {
+          return from + (to - from) * (Real(first) + t * Real(last - first)) / Real(points - 1);
         };
-        crossings.push_back({at(0, left, right, loss.rows()), at(1, low, high, loss.columns())});
+        crossed.emplace_back(a, b);
+        crossings[{a, b}] = {at(left, right, a % rows, b % rows, rows),
+                             at(low, high, a / rows, b / rows, columns)};
       }
       // In a saddle, where all four sides are crossed, the mean of the corners decides which
       // corners are cut off.
-      if (crossings.size() == 4 && (loss_at(0) < level) != (mean < level))
-        std::swap(crossings[1], crossings[3]);
-      for (std::size_t k = 0; k < crossings.size(); ++k) {
-        if (k % 2 == 0 && !line.x.empty()) {
-          line.x.push_back(NAN);
-          line.y.push_back(NAN);
-        }
-        line.x.push_back(crossings[k][0]);
-        line.y.push_back(crossings[k][1]);
-      }
+      if (crossed.size() == 4 && (loss_at(corners[0]) < level) != (mean < level))
+        std::swap(crossed[1], crossed[3]);
+      for (std::size_t k = 0; k + 1 < crossed.size(); k += 2)
+        segments.emplace_back(crossed[k], crossed[k + 1]);
     }
-  return line;
+  return joined(segments, crossings);
 }
 
 namespace {
@@ -104,7 +144,8 @@ Drawing plane_drawing(const Comparison& c, std::size_t p, const std::vector<Path
                .y_label = space + std::string("₂")},
       .is_to_scale = stretch <= kMostStretch,
       .shown = shown_at_first(c, ranking(c, p)),
-      .window = Window{left, right, low, high}};
+      .window = Window{left, right, low, high},
+      .rest = space};
   for (const Real level : contour_levels(landscape))
     out.ground.push_back(isoline(landscape, level));
   for (const Path& path : all) {
@@ -142,32 +183,52 @@ std::string path_reading(const Comparison& c, std::vector<Path> all, Rows Trajec
       shown_spec(c.optimizers[winding.optimizer].label), multiple(length(winding)));
 }
 
-}  // namespace
+struct Plane {
+  Drawing drawing;
+  std::string title, reading;
+};
 
-// Paths as the paper draws them: short runs with a point a step, long ones as lines.
-std::string planes_html(const Comparison& c, std::size_t p) {
+// In x and in y, as far as the problem has such contours and runs kept their paths.
+std::vector<Plane> planes_of(const Comparison& c, std::size_t p) {
   const Sheet* sheet = c.problems[p].sheet;
-  const bool has_planes = sheet != nullptr && (sheet->landscape_x || sheet->landscape_y);
-  const std::vector<Path> all = has_planes ? paths(c, p) : std::vector<Path>();
-  if (all.empty()) return "";
-  std::string html = "<div class=planes>";
+  std::vector<Plane> planes;
+  if (sheet == nullptr || !(sheet->landscape_x || sheet->landscape_y)) return planes;
+  const std::vector<Path> all = paths(c, p);
   const auto add = [&](const std::optional<Landscape>& landscape, const char* space,
                        Rows Trajectory::*rows, const std::vector<Real>& goal, const char* title) {
-    if (!landscape) return;
-    const Drawing drawing = plane_drawing(c, p, all, *landscape, space, rows, goal);
-    html += fmt::format("<figure class=plane><figcaption><b>{}</b> {} {}</figcaption>{}</figure>",
-                        title, html_text(path_reading(c, all, rows)),
-                        html_text(drawing.plot.caption), drawing_svg(drawing));
+    if (landscape && !all.empty())
+      planes.push_back({plane_drawing(c, p, all, *landscape, space, rows, goal), title,
+                        path_reading(c, all, rows)});
   };
   add(sheet->landscape_x, "x", &Trajectory::x, sheet->truth,
       "Paths in x, with contours of the loss.");
   add(sheet->landscape_y, "y", &Trajectory::y, sheet->target, "The same paths in y.");
-  return html +
-         fmt::format(
-             "</div><p class=legend>Thin lines: contours of the loss, {}. The paths are those of "
-             "the run with the lowest seed; points mark the steps of short runs. ○: start; ●: "
-             "solution in x, target in y.</p>",
-             levels_text(sheet->landscape_x ? *sheet->landscape_x : *sheet->landscape_y));
+  return planes;
+}
+
+}  // namespace
+
+std::vector<Drawing> plane_drawings(const Comparison& c, std::size_t p) {
+  std::vector<Drawing> drawings;
+  for (Plane& plane : planes_of(c, p)) drawings.push_back(std::move(plane.drawing));
+  return drawings;
+}
+
+// Paths as the paper draws them: short runs with a point a step, long ones as lines.
+std::string planes_html(const Comparison& c, std::size_t p) {
+  const std::vector<Plane> planes = planes_of(c, p);
+  if (planes.empty()) return "";
+  std::string html;
+  for (const Plane& plane : planes)
+    html += fmt::format("<figure class=plane><figcaption><b>{}</b> {} {}</figcaption>{}</figure>",
+                        plane.title, html_text(plane.reading),
+                        html_text(plane.drawing.plot.caption), drawing_svg(plane.drawing));
+  const Sheet& sheet = *c.problems[p].sheet;
+  return fmt::format(
+      "<div class=planes>{}</div><p class=legend>Thin lines: contours of the loss, {}. The paths "
+      "are those of the run with the lowest seed; points mark the steps of short runs. ○: start; "
+      "●: solution in x, target in y.</p>",
+      html, levels_text(sheet.landscape_x ? *sheet.landscape_x : *sheet.landscape_y));
 }
 
 }  // namespace isoline::reports

@@ -10,7 +10,7 @@ function showLines(p, lines) {
 
 // The line of the curves, in the colour and dash of what it stands in.
 const swatch = (index) => {
-  const line = document.createRange().createContextualFragment('<svg class="swatch" viewBox="0 0 24 8" aria-hidden="true"><path d="M0 4h24"/></svg>').firstChild;
+  const line = document.createRange().createContextualFragment('<svg class="swatch"><path d="M0 4h24"/></svg>').firstChild;
   line.dataset.s = index;
   return line;
 };
@@ -77,14 +77,17 @@ function drawLegend(place, problem, lines) {
   place.replaceChildren(element('div', {className: 'presets'}, ...presets), table);
 }
 
-// The chart of the measure and the quantity chosen, with the lines chosen; the others wait hidden.
+// The chart of the measure and the quantity chosen, with the lines chosen; the others wait hidden. One
+// where two measures are the same numbers has the name of the measure chosen.
 function drawProblem(article) {
-  const p = Number(article.dataset.p), problem = DATA.problems[p], lines = linesShown(p), {vertical} = article.dataset;
-  const charts = [...article.querySelectorAll('.curves > .chart')], by = charts.some((chart) => chart.dataset.by === measureNow().name) ? measureNow().name : DATA.by;
+  const p = Number(article.dataset.p), problem = DATA.problems[p], lines = linesShown(p), {vertical} = article.dataset, {name, counted, unit} = measureNow();
+  const charts = [...article.querySelectorAll('.curves > .chart')], isOf = (measure) => ({dataset}) => dataset.vertical === vertical && [dataset.by, dataset.also].includes(measure);
+  const shown = charts.find(isOf(name)) ?? charts.find(isOf(DATA.by));
   for (const chart of charts) {
-    chart.toggleAttribute('hidden', chart.dataset.by !== by || chart.dataset.vertical !== vertical);
+    chart.toggleAttribute('hidden', chart !== shown);
     moveTolerance(chart);
   }
+  if (shown?.dataset.also !== undefined) shown.querySelector('.axes > [dy="2.5em"]').textContent = counted === unit ? counted : `${counted}, ${unit}`;
   drawLegend(article.querySelector('.reached'), problem, lines);
   showLinesIn(article, lines);
 }

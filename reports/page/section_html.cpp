@@ -9,7 +9,6 @@
 
 #include "core/files.h"
 #include "core/records/sheet.h"
-#include "core/seeds.h"
 #include "reports/formats/formats.h"
 #include "reports/page/page.h"
 #include "reports/sections/sections.h"
@@ -39,7 +38,6 @@ std::string cell_html(const Table& table, const TableCell& cell, std::size_t col
   if (cell.of) tag += fmt::format(" data-of=\"{} {}\"", cell.of->first, cell.of->second);
   if (!cell.note.empty()) tag += fmt::format(" title=\"{}\"", html_text(cell.note));
   std::string text = html_text(cell.text);
-  if (align == 'b' && !text.empty()) text = command_button(cell.text);
   if (align == 'c' && !text.empty()) text = "<code>" + text + "</code>";
   if (!cell.link.empty()) text = fmt::format("<a href=\"{}\">{}</a>", html_text(cell.link), text);
   if (cell.is_best) text = "<b>" + text + "</b>";
@@ -189,29 +187,6 @@ std::string claims_html(const Document& document) {
   return html + "</div>";
 }
 
-namespace {
-
-// The command that repeats a cell: all its seeds where these follow each other and were asked for
-// alike, else the first.
-std::string cell_command(const Comparison& c, const Cell& cell) {
-  const Request& first = c.runs[cell.runs.front()].record->request;
-  std::string command = rerun_command(first);
-  std::uint64_t next = first.seed;
-  for (const std::size_t run : cell.runs) {
-    const Request& request = c.runs[run].record->request;
-    if (request.seed != next++ || is_pair(request.seed) ||
-        request.optimizer.spec != first.optimizer.spec ||
-        budget_options(request) != budget_options(first))
-      return command;
-  }
-  const std::string one = fmt::format("--seeds ={} ", first.seed);
-  if (cell.runs.size() == 1) return command;
-  return command.replace(command.find(one), one.size(),
-                         fmt::format("--seeds {}..{} ", first.seed, next - 1));
-}
-
-}  // namespace
-
 Table cells_table(const Comparison& c,
                   const std::vector<std::pair<std::size_t, std::size_t>>& cells) {
   const auto spread_cell = [](const Spread& spread, std::string (*text)(Real)) {
@@ -221,12 +196,12 @@ Table cells_table(const Comparison& c,
   };
   const Measure by = c.yardstick.by == Measure::time ? Measure::work : c.yardstick.by;
   Table table{.columns = {"problem", "optimizer", "runs to " + tau_name(c)},
-              .align = "llrrrrrrrrrlb",
+              .align = "llrrrrrrrrrl",
               .names = 2};
   for (const std::string_view what : {name_of(by), std::string_view("time, ms,")})
     for (const Tolerance& tolerance : c.yardstick.tolerances)
       table.columns.push_back(fmt::format("{} to {}", what, tolerance.name));
-  for (const char* last : {"final loss", "final error in x", "how the runs ended", "command"})
+  for (const char* last : {"final loss", "final error in x", "how the runs ended"})
     table.columns.emplace_back(last);
   for (const auto& [p, s] : cells) {
     const Cell& cell = c.cell(p, s);
@@ -251,7 +226,6 @@ Table cells_table(const Comparison& c,
     row.push_back(spread_cell(cell.loss, reached_figure));
     row.push_back(spread_cell(cell.x_error, reached_figure));
     row.push_back(status_text(cell.statuses));
-    row.push_back(is_large(c) ? "" : cell_command(c, cell));
   }
   return table;
 }
@@ -267,7 +241,9 @@ std::string details_html(const Comparison& c) {
   std::vector<std::pair<std::size_t, std::size_t>> all;
   for (std::size_t p = 0; p < c.problems.size(); ++p)
     for (std::size_t s = 0; s < c.optimizers.size(); ++s) all.emplace_back(p, s);
-  return "<table class=sortable id=detail-table>" + rows_html(cells_table(c, all)) + "</table>";
+  Table table = cells_table(c, all);
+  table.align.back() = 'r';  // the style sheet aligns it, without a class in each row
+  return "<table class=sortable id=detail-table>" + rows_html(table) + "</table>";
 }
 
 // The table of measured properties, with one row per method, which opens its details.

@@ -152,9 +152,6 @@ std::string best_methods_html(const Comparison& c, std::size_t p) {
     if (cells.size() < kMostRows) cells.emplace_back(p, s);
   if (cells.empty()) return "";
   Table table = cells_table(c, cells);
-  table.columns.pop_back();  // the command
-  for (auto& row : table.rows)
-    if (row.size() > table.columns.size()) row.pop_back();
   table.caption = words("site.best-methods", cells.size(), order.size());
   return section_html({.title = c.problems[p].spec, .tables = {std::move(table)}});
 }

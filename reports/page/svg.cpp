@@ -61,25 +61,28 @@ std::vector<Real> ticks_of(Real low, Real high, bool is_logarithmic) {
 }
 
 std::string x_axis(const Frame& frame, const std::string& label) {
-  std::string svg;
-  for (const Real tick : ticks_of(frame.window.x_low, frame.window.x_high, frame.is_log_x))
-    svg += fmt::format(
-        "<path class=grid d=\"M{0:.1f} {1:.0f}V{2:.0f}\"/><text x={0:.1f} y={3:.0f} "
-        "text-anchor=middle>{4}</text>",
-        frame.x(tick), frame.top, frame.bottom(), frame.bottom() + 15, tick_text(tick));
-  return svg + fmt::format("<text x={:.0f} y={:.0f} dy=2.5em text-anchor=middle>{}</text>",
-                           frame.left + frame.width / 2, frame.bottom(), html_text(label));
+  std::string grid, texts;
+  for (const Real tick : ticks_of(frame.window.x_low, frame.window.x_high, frame.is_log_x)) {
+    grid += fmt::format("M{:.1f} {:.0f}V{:.0f}", frame.x(tick), frame.top, frame.bottom());
+    texts += fmt::format("<text x={:.1f} y={:.0f}>{}</text>", frame.x(tick), frame.bottom() + 15,
+                         tick_text(tick));
+  }
+  return fmt::format(
+      "<path class=grid d=\"{}\"/><g text-anchor=middle>{}</g>"
+      "<text x={:.0f} y={:.0f} dy=2.5em text-anchor=middle>{}</text>",
+      grid, texts, frame.left + frame.width / 2, frame.bottom(), html_text(label));
 }
 
 std::string y_axis(const Frame& frame, const std::string& label, bool is_share) {
-  std::string svg;
-  for (const Real tick : ticks_of(frame.window.y_low, frame.window.y_high, frame.is_log_y))
-    svg += fmt::format(
-        "<path class=grid d=\"M{0:.0f} {1:.1f}H{2:.0f}\"/><text x={3:.0f} y={4:.1f} "
-        "text-anchor=end>{5}</text>",
-        frame.left, frame.y(tick), frame.right(), frame.left - 6, frame.y(tick) + 4,
-        is_share ? percent(tick) : tick_text(tick));
-  return svg + fmt::format("<text x=4 y={:.0f} dy=-.7em>{}</text>", frame.top, html_text(label));
+  std::string grid, texts;
+  for (const Real tick : ticks_of(frame.window.y_low, frame.window.y_high, frame.is_log_y)) {
+    grid += fmt::format("M{:.0f} {:.1f}H{:.0f}", frame.left, frame.y(tick), frame.right());
+    texts += fmt::format("<text x={:.0f} y={:.1f}>{}</text>", frame.left - 6, frame.y(tick) + 4,
+                         is_share ? percent(tick) : tick_text(tick));
+  }
+  return fmt::format(
+      "<path class=grid d=\"{}\"/><g text-anchor=end>{}</g><text x=4 y={:.0f} dy=-.7em>{}</text>",
+      grid, texts, frame.top, html_text(label));
 }
 
 // What is filtered with an optimizer, a problem, a method or a claim.
@@ -92,33 +95,16 @@ std::string topic_attributes(const Topic& topic) {
   return tag;
 }
 
-std::string swatch() {
-  return "<svg class=swatch viewBox=\"0 0 24 8\" aria-hidden=true><path d=\"M0 4h24\"/></svg>";
-}
+std::string swatch() { return "<svg class=swatch><path d=\"M0 4h24\"/></svg>"; }
 
 // Lines.
-
-namespace {
-
-constexpr Real kLeft = 62, kTop = 26, kBelow = 40, kNameWidth = 164;
-
-bool is_hidden(const Drawing& drawing, const PlotSeries& line) {
-  return line.optimizer && drawing.shown && !drawing.shown->contains(*line.optimizer);
-}
-
-}  // namespace
 
 Frame framed(const Drawing& drawing, Frame frame) {
   const Plot& plot = drawing.plot;
   frame.is_log_x = plot.is_log_x;
   frame.is_log_y = plot.is_log_y;
   Window& window = frame.window;
-  if (drawing.window)
-    window = *drawing.window;
-  else if (plot.kind == Plot::Kind::steps)
-    window = {plot.series[0].x.front(), plot.series[0].x.back(), 0, 1};
-  else
-    window = window_of(shown_lines(drawing));
+  window = window_of(drawing);
   if (drawing.is_to_scale) {
     const Real unit = std::max((window.x_high - window.x_low) / frame.width,
                                (window.y_high - window.y_low) / frame.height);
@@ -130,6 +116,8 @@ Frame framed(const Drawing& drawing, Frame frame) {
 }
 
 namespace {
+
+constexpr Real kLeft = 62, kTop = 26, kBelow = 40, kNameWidth = 164;
 
 // Narrow where names stand below, so that letters can be read on a telephone.
 Frame frame_of(const Drawing& drawing) {
@@ -306,25 +294,20 @@ std::string axis_attribute(Real low, Real high, bool is_log, bool is_share) {
 
 }  // namespace
 
-Plot shown_lines(const Drawing& drawing) {
-  Plot shown = drawing.plot;
-  std::erase_if(shown.series, [&](const PlotSeries& line) { return is_hidden(drawing, line); });
-  return shown.series.empty() ? drawing.plot : shown;
-}
-
 std::string drawing_svg(const Drawing& drawing, Real tau) {
   const Plot& plot = drawing.plot;
   const Frame frame = frame_of(drawing), area = area_of(frame);
   const bool is_share = plot.kind == Plot::Kind::steps;
   std::string svg = fmt::format(
-      "<svg class=\"chart{}\" viewBox=\"0 0 {:.0f} {:.0f}\" data-x=\"{}\" data-y=\"{}\"{} role=img "
+      "<svg class=\"chart{}\" viewBox=\"0 0 {:.0f} {:.0f}\" data-x=\"{}\" data-y=\"{}\"{}{} role=img "
       "aria-label=\"{}\"><title>{}</title><g class=axes>{}{}</g>",
       drawing.has_names ? drawing.has_points ? " wide marked" : " wide" : "",
       frame.right() + (drawing.has_names ? kNameWidth : 16), frame.bottom() + kBelow,
       axis_attribute(frame.window.x_low, frame.window.x_high, plot.is_log_x, false),
       axis_attribute(frame.window.y_low, frame.window.y_high, plot.is_log_y, is_share),
-      drawing.attributes, html_text(plot.title + ". " + plot.reading + plot.caption),
-      html_text(plot.title), x_axis(frame, plot.x_label), y_axis(frame, plot.y_label, is_share));
+      drawing.attributes, drawing.rest.empty() ? "" : " data-rest=" + drawing.rest,
+      html_text(plot.title + ". " + plot.reading + plot.caption), html_text(plot.title),
+      x_axis(frame, plot.x_label), y_axis(frame, plot.y_label, is_share));
   svg += fmt::format(
       "<svg class=area x={:.0f} y={:.0f} width={:.0f} height={:.0f} viewBox=\"0 0 {:.0f} {:.0f}\" "
       "preserveAspectRatio=none>",
@@ -337,13 +320,22 @@ std::string drawing_svg(const Drawing& drawing, Real tau) {
                        *drawing.tolerance, -kBeyond * kArea, area.y(*drawing.tolerance * tau),
                        2 * kBeyond * kArea);
   for (std::size_t i = plot.series.size(); i-- > 0;)  // the first on top
-    svg += series_svg(drawing, area, i);
+    if (drawing.rest.empty() || !is_hidden(drawing, plot.series[i]))
+      svg += series_svg(drawing, area, i);
   for (const PlotSeries& goal : plot.published) svg += published_svg(area, goal);
   for (const PlotSeries& end : drawing.ends)
     svg += fmt::format(
         "<g class=end><path d=\"{0}\"/><path class={1} d=\"{0}\"><title>{1}</title></path></g>",
         path_of(area, end.x, end.y, Join::none), html_text(end.name));
   return svg + "</svg>" + (drawing.has_names ? end_names(drawing, frame) : "") + "</svg>";
+}
+
+std::string hidden_lines_svg(const Drawing& drawing) {
+  const Frame area = area_of(frame_of(drawing));
+  std::string svg;
+  for (std::size_t i = drawing.plot.series.size(); i-- > 0;)
+    if (is_hidden(drawing, drawing.plot.series[i])) svg += series_svg(drawing, area, i);
+  return svg;
 }
 
 std::string names_html(const Drawing& drawing) {
@@ -364,11 +356,6 @@ std::string names_html(const Drawing& drawing) {
     others = fmt::format("<details><summary>{} more</summary><div class=names>{}</div></details>",
                          count, others);
   return "<div class=names>" + shown + "</div>" + others;
-}
-
-Drawing drawing_of(const Plot& plot) {
-  const bool is_steps = plot.kind == Plot::Kind::steps;
-  return {.plot = plot, .join = is_steps ? Join::steps : Join::straight, .has_names = is_steps};
 }
 
 std::string plot_html(const Plot& plot) {

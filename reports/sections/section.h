@@ -47,7 +47,7 @@ struct Table {
   std::vector<Topic> row_topics = {}, column_topics = {};  // may be fewer, or none
   Topic topic = {};
   std::vector<std::string> meanings = {};  // of the columns, for a new reader
-  // a letter a column: r figures, l words, p sentences, c commands, b ones to copy
+  // a letter a column: r figures, l words, p sentences, c commands
   std::string align = {};
   bool is_folded = false;  // behind its reading, where a format can fold
   std::size_t names = 1;   // columns that name the row, repeated in each part of a wide table

@@ -324,7 +324,8 @@ PlotSeries runtime_series(const Comparison& c, std::size_t s, const std::vector<
     for (const std::size_t index : cell.runs) {
       const Run& run = c.runs[index];
       targets.emplace_back(kTargets, kNever);
-      for (std::size_t j = 0; j < kTargets; ++j) targets.back()[j] = in_units(by, run.taken(by, j));
+      for (std::size_t j = 0; j < kTargets; ++j)
+        targets.back()[j] = in_units(by, run.taken_by_best(by, j));
       spent.push_back(std::max(in_units(by, run.spent_by(by)), 1e-9));  // of nothing is no end
     }
     const std::uint64_t key = fnv1a(c.problems[p].spec + " " + c.optimizers[s].label);

@@ -40,6 +40,15 @@ TEST(Choose, NamesAMethodThatNeedsNoMoreThanTheUserHas) {
   shell.expect("./isoline report out --view choice --have wings", {.exit_code = 1});
 }
 
+TEST(Contest, HasItsContrastsTestedByTheReport) {
+  const Shell shell;
+  shell.expect("./isoline run contest --problem 'exponential[n=4]' --out out --no-report --quiet");
+  shell.expect("./isoline report out",
+               {.out = {"Contrasts named before", "cannot decide between adam"}});
+  shell.expect("grep -l '\"adam\"' out/runs/*.json | head -n 1 | xargs rm");
+  shell.expect("./isoline report out", {.out = {"no contrast is tested"}});
+}
+
 TEST(Output, InAFolderThatCannotBeIsRefusedWithTheReason) {
   const Shell shell;
   shell.expect(

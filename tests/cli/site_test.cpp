@@ -23,6 +23,9 @@ class Site : public testing::Test {
   bool has_program(const std::string& name) const {
     return shell("command -v " + name).exit_code == 0;
   }
+  bool has_matplotlib() const {
+    return shell("/usr/bin/python3 -c 'import matplotlib'").exit_code == 0;
+  }
 
   Shell shell;
 };
@@ -38,6 +41,7 @@ std::set<std::string> values_of(const std::string& page, const std::string& attr
 
 TEST_F(Site, HasNoDeadLinkAndEachPageIsValid) {
   if (!has_program("cmark-gfm")) GTEST_SKIP() << "cmark-gfm is not installed";
+  if (!has_matplotlib()) GTEST_SKIP() << "matplotlib is not installed";
   std::string settings = "linear-chain[steps=24]";
   for (int steps = 25; steps <= 37; ++steps)
     settings += fmt::format(",linear-chain[steps={}]", steps);
@@ -92,35 +96,47 @@ TEST_F(Site, HasNoDeadLinkAndEachPageIsValid) {
 }
 
 TEST_F(Site, FiguresHaveThePointsOfThePlots) {
+  if (!has_matplotlib()) GTEST_SKIP() << "matplotlib is not installed";
   shell.expect("./isoline figures out --list", {.out = {"curves-rosenbrock"}});
-  shell.expect("./isoline figures out --only curves-rosenbrock --format svg,pgf,csv --out drawn",
-               {.out = {"1 figure as svg, pgf, csv"}});
+  shell.expect("./isoline figures out --only curves-rosenbrock --format svg,pdf,csv --out drawn",
+               {.out = {"1 figure as svg, pdf, csv"}});
   shell.expect("./isoline figures out --only nothing", {.exit_code = 1, .err = {"--list"}});
   const fs::path drawn = shell.folder() / "drawn";
   const std::string csv = read_text(drawn / "curves-rosenbrock.csv");
   EXPECT_TRUE(csv.starts_with("line,x,y,low,high\r\n")) << csv;
   for (const char* method : {"gd", "adam", "newton", "gauss-newton"})
     EXPECT_TRUE(contains(csv, std::string("\n") + method)) << method;
-  const std::string pgf = read_text(drawn / "curves-rosenbrock.pgf");
-  const std::regex size("fontsize\\{(\\d+)\\}");
-  std::size_t texts = 0;
-  for (std::sregex_iterator at(pgf.begin(), pgf.end(), size), end; at != end; ++at, ++texts)
-    EXPECT_GE(std::stoi((*at)[1]), 7) << "points, in a column of 3.2 inches";
-  EXPECT_GT(texts, 8U);
   const std::string svg = read_text(drawn / "curves-rosenbrock.svg");
   EXPECT_TRUE(contains(svg, ">gauss-newton</text>")) << svg;
-  if (!has_program("rsvg-convert")) {
-    shell.expect("./isoline figures out --only curves --format pdf",
-                 {.exit_code = 1, .err = {"librsvg2-bin"}});
-    return;
-  }
-  shell.expect("./isoline figures out --only curves-rosenbrock --format pdf --out drawn");
+  const std::regex size("font: (\\d+)px");
+  std::size_t texts = 0;
+  for (std::sregex_iterator at(svg.begin(), svg.end(), size), end; at != end; ++at, ++texts)
+    EXPECT_GE(std::stoi((*at)[1]), 7) << "points, in a column of 3.2 inches";
+  EXPECT_GT(texts, 8U);
   EXPECT_TRUE(read_text(drawn / "curves-rosenbrock.pdf").starts_with("%PDF"));
+  shell.expect("./isoline figures out --only curves-rosenbrock --methods adam,newton --out two");
+  const std::string two = read_text(shell.folder() / "two" / "curves-rosenbrock.svg");
+  EXPECT_TRUE(contains(two, ">adam") && !contains(two, ">gauss-newton")) << two;
+  shell.expect("./isoline figures out --methods nobody", {.exit_code = 1, .err = {"nobody"}});
+}
+
+TEST_F(Site, FiguresNameThePackageThatIsMissing) {
+  const std::string python =
+      "mkdir -p none && printf '#!/bin/sh\\nexec /usr/bin/python3 -S \"$@\"\\n' "
+      "> none/python3 && chmod +x none/python3 && ";
+  shell.expect(python + "PATH=$PWD/none:$PATH ./isoline figures out --only curves-rosenbrock",
+               {.exit_code = 1, .err = {"python3-matplotlib"}});
+  shell.expect(python + "PATH=$PWD/none:$PATH ./isoline export out --out curves.csv",
+               {.exit_code = 1, .err = {"python3-pandas"}});
+  if (has_program("pdflatex")) GTEST_SKIP() << "LaTeX is installed";
+  shell.expect("./isoline figures out --only curves-rosenbrock --format pgf",
+               {.exit_code = 1, .err = {"texlive-latex-base"}});
 }
 
 TEST_F(Site, LatexCompilesTheReportAndFigures) {
   if (!has_program("pdflatex")) GTEST_SKIP() << "pdflatex is not installed";
-  shell.expect("./isoline report out --out . && ./isoline figures out --format pgf --out drawn");
+  shell.expect(
+      "./isoline report out --out . && ./isoline figures out --format pgf,pdf --out drawn");
   const auto compile = [&](const std::string& name) {
     shell.expect("pdflatex -interaction=nonstopmode -halt-on-error " + name +
                  ".tex && pdflatex -interaction=nonstopmode -halt-on-error " + name + ".tex");
@@ -131,13 +147,15 @@ TEST_F(Site, LatexCompilesTheReportAndFigures) {
   compile("report");
   std::string figures;
   for (const auto& entry : fs::directory_iterator(shell.folder() / "drawn"))
-    figures += fmt::format("\\input{{drawn/{}}}\n\n", entry.path().filename().string());
+    if (entry.path().extension() == ".pgf")
+      figures += fmt::format("\\input{{drawn/{}}}\n\n", entry.path().filename().string());
   write_text(shell.folder() / "paper.tex",
              "\\documentclass[twocolumn]{article}\\usepackage{booktabs,graphicx,pgf}\n"
              "\\setlength{\\parindent}{0pt}\\raggedbottom\n"
              "\\begin{document}\n" +
                  figures +
-                 "\\onecolumn\\def\\isolineonly{standings-table}\\input{report}\n"
+                 "\\onecolumn\\def\\isolinefigures{drawn}\\def\\isolineonly{standings-table}"
+                 "\\input{report}\n"
                  "Table~\\ref{tab:standings-table}.\n\\end{document}\n");
   compile("paper");
 }

@@ -47,11 +47,13 @@ class Package(unittest.TestCase):
         client = [name for name in files if name.startswith("usr/share/isoline/python/")]
         self.assertIn("usr/share/isoline/python/isoline.py", client)
         self.assertTrue(all(name.endswith(".py") for name in client), client)
+        peers = [name for name in files if name.startswith("usr/share/isoline/peers/")]
+        self.assertIn("usr/share/isoline/peers/peers.py", peers)
         guide = [name for name in files if name.startswith("usr/share/doc/isoline/docs/")]
         self.assertIn("usr/share/doc/isoline/docs/running-a-matrix.md", guide)
         published = [name for name in files if name.startswith("usr/share/isoline/published/runs/")]
         self.assertTrue(published and all(name.endswith(".json") for name in published))
-        files = [name for name in files if name not in client + guide + published]
+        files = [name for name in files if name not in client + peers + guide + published]
         self.assertEqual(files, ["usr/bin/isoline"] + [f"usr/share/{name}" for name in (
             "bash-completion/completions/isoline", "doc/isoline/CHANGELOG.md",
             "doc/isoline/README.md", "doc/isoline/copyright",

@@ -384,6 +384,36 @@ TEST(Csv, IsReadWithOrWithoutAHeaderAndRefusesHoles) {
   }
 }
 
+TEST(Csv, HasNumbersAsSpreadsheetsAndFortranWriteThem) {
+  const TemporaryFolder folder;
+  const auto file = folder.path() / "a.csv";
+  for (const std::string text :
+       {"+0.5,-2.\n", "\"0.5\",\"-2\"\r\n", "0.5;-2\n", "  5.0D-01\t-2d0\n", "\xEF\xBB\xBF.5,-2\n",
+        "# of a fit\n\"a\";\"b\"\n+5E-1; -2\n\n"}) {
+    write_text(file, text);
+    EXPECT_EQ(read_numbers(file).values, (std::vector<Real>{0.5, -2})) << text;
+    EXPECT_EQ(read_numbers(file).shape, (std::vector<Index>{1, 2})) << text;
+  }
+}
+
+// A decimal comma, a letter for a digit, a heading alone, nothing.
+TEST(Csv, WithoutAPlainNumberNamesItsLine) {
+  const TemporaryFolder folder;
+  const auto file = folder.path() / "a.csv";
+  const std::vector<std::pair<std::string, std::string>> damages = {
+      {"0,5;2\n", "line 1"}, {"a,b\n1,2\n3,4O\n", "line 3"}, {"1O,2\n", "line 1"},
+      {"a,b\n", "'a,b'"},    {"1,--2\n", "'--2'"},           {"", "a.csv"}};
+  for (const auto& [text, part] : damages) {
+    write_text(file, text);
+    try {
+      read_numbers(file);
+      ADD_FAILURE() << text;
+    } catch (const UsageError& error) {
+      EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
+    }
+  }
+}
+
 // JSON: numbers are read back exactly, a view without a tree equals the tree, and errors name what
 // is missing or of another type.
 

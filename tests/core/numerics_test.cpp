@@ -473,5 +473,23 @@ TEST(Differences, StayInsideTheirRoomAndAreOfSecondOrderThere) {
   EXPECT_EQ(difference_offsets(1e-4, true, 0, 0)[0], 0);  // an unknown that is fixed
 }
 
+// A call without a value: the other side answers, unless there is no room or no value either.
+TEST(Differences, UseTheOtherSideOfAFailedCall) {
+  const Vector y0 = Vector::Ones(2);
+  const auto slope = [&](Real least, Real most, const std::array<Real, 2>& offsets, Real down) {
+    return quotient_of_calls(offsets, Room{.up = 1, .down = down}, y0, [&](Real t) -> Vector {
+      return t < least || t > most ? Vector::Constant(2, std::nan("")) : Vector(y0.array() + 3 * t);
+    });
+  };
+  constexpr Real h = 1e-3;
+  for (const std::array<Real, 2>& offsets : {std::array<Real, 2>{h, 0}, {h, -h}}) {
+    EXPECT_NEAR(slope(-1, 1, offsets, 1)[0], 3, 1e-9);  // rounding over h
+    EXPECT_NEAR(slope(-1, 0, offsets, 1)[0], 3, 1e-9);
+    EXPECT_EQ(slope(1, 1, offsets, 1), Vector::Zero(2));
+  }
+  EXPECT_EQ(slope(-1, 0, {h, 0}, h / 2), Vector::Zero(2));
+  EXPECT_NEAR(slope(0, 1, {h, -h}, 1)[0], 3, 1e-9);
+}
+
 }  // namespace
 }  // namespace isoline

@@ -1,5 +1,5 @@
-"""`isoline export --format coco` writes what COCO's post-processing reads. The rules of the format
-are written here a second time, by its documentation and its files, in the standard library alone."""
+"""`isoline export` writes what other programs read: COCO's post-processing, whose rules are written
+here a second time, by its documentation and its files, and CSV with the numbers of the records."""
 
 import csv
 import json
@@ -63,6 +63,8 @@ class Coco(unittest.TestCase):
         cls.told = subprocess.run(
             [isoline, "export", cls.results, "--format", "coco", "--out", cls.data],
             capture_output=True, text=True, check=True)
+        cls.curves = here / "curves.csv"
+        subprocess.run([isoline, "export", cls.results, "--out", cls.curves], capture_output=True, check=True)
         cls.records = [json.loads(file.read_text()) for file in (cls.results / "runs").glob("*.json")]
         with open(cls.data / "functions.csv", newline="", encoding="utf-8") as functions:
             cls.functions = {int(row["funcId"]): row for row in csv.DictReader(functions)}
@@ -136,6 +138,24 @@ class Coco(unittest.TestCase):
         for (_, evaluations, final), dat, tdat, _ in self.runs():
             self.assertEqual(evaluations, max(dat[1][-1][0], tdat[1][-1][0]))
             self.assertAlmostEqual(final, dat[1][-1][2], delta=0.06 * abs(final))
+
+    def test_a_row_of_csv_has_the_numbers_of_its_point_to_the_bit(self):
+        with open(self.curves, newline="", encoding="utf-8") as file:
+            rows = list(csv.DictReader(file))
+        self.assertEqual(len(rows), sum(len(record["curve"]["work"]) or 1 for record in self.records))
+        points = {}
+        for row in rows:
+            points.setdefault((row["cell"], row["build"]), []).append(row)
+        for record in self.records:
+            found, curve = points[record["cell"], record["build"]], record["curve"]
+            for row in found:
+                self.assertEqual(row["optimizer"], record["request"]["optimizer"]["spec"])
+                self.assertEqual(row["imported"], "false")
+            for name in ("loss", "x_error", "gradient_norm", "wall_seconds"):
+                self.assertEqual([repr(float(row[name])) for row in found if row[name] != ""],
+                                 [repr(float(value)) for value in curve[name]])
+            self.assertEqual([int(row["forward"]) for row in found if row["forward"] != ""],
+                             curve["counts"].get("forward", [0] * len(curve["work"])))
 
     def test_a_second_export_into_the_same_folder_is_refused(self):
         again = subprocess.run([sys.argv[1], "export", self.results, "--format", "coco", "--out",

@@ -55,7 +55,7 @@ class Repository(unittest.TestCase):
                 return
 
     def test_new_and_unchanged_results_pass(self):
-        self.assertEqual(list(steps()), ["unpack", "manifests", "validate", "compare", "site"])
+        self.assertEqual(list(steps()), ["unpack", "manifests", "validate", "compare", "replay", "site"])
         self.run_steps()
         self.run_in("isoline run --problem square --optimizer newton --quiet --no-report --out theirs")
         self.pack("theirs")
@@ -80,6 +80,16 @@ class Repository(unittest.TestCase):
                         f"; find . -name a.tgz -exec mv {{}} archive/"
                         f"{'mallory' if 'theirs' in make else 'ours'}.tar.gz ';'")
             self.run_steps(unpack=1)
+
+    def test_new_results_that_cannot_be_repeated_fail(self):
+        self.run_in("isoline run --problem square --optimizer newton --quiet --no-report --out theirs")
+        record = next((self.folder / "theirs/runs").glob("*.json"))
+        text = record.read_text("utf-8")
+        changed = re.sub(r'("rejected_steps": *)0', r"\g<1>1", text)
+        self.assertNotEqual(changed, text)
+        record.write_text(changed, "utf-8")
+        self.pack("theirs")
+        self.run_steps(replay=2)
 
 
 if __name__ == "__main__":

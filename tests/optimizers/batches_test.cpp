@@ -15,7 +15,7 @@
 
 #include "core/failures.h"
 #include "core/files.h"
-#include "core/foreign/call_log.h"
+#include "core/foreign/evaluations.h"
 #include "problems/features.h"
 #include "tests/clients/programs.h"
 #include "tests/optimizers/run.h"
@@ -23,18 +23,6 @@
 
 namespace isoline::optimizers {
 namespace {
-
-// A file of calls without the times of the calls, and without the checksums over them.
-std::string without_times(std::string text) {
-  constexpr std::size_t kHead = 48, kSizes = 8, kTimes = 32;
-  for (std::size_t at = text.find('\n') + 1; at + kHead <= text.size();) {
-    std::array<std::uint64_t, 3> bytes{};  // of the request, the answer and the reason
-    std::memcpy(bytes.data(), text.data() + at + kSizes, sizeof bytes);
-    std::fill_n(text.begin() + static_cast<std::ptrdiff_t>(at + kTimes), kHead - kTimes, '\0');
-    at += kHead + bytes[0] + bytes[1] + bytes[2];
-  }
-  return text;
-}
 
 using problems::Draw;
 
@@ -124,34 +112,33 @@ class Copies : public testing::Test {
         "    return [10 * (x[1] - x[0] * x[0]), 1 - x[0], 0.1 * x[1]]\n"
         "isoline.problem(forward, start)\n");
   }
-  void TearDown() override { call_log().reset(); }
+  void TearDown() override { evaluations().begin({}); }
 
   struct Result {
     Outcome outcome;
     std::int64_t failed = 0;
     Vector first_failed;
-    std::string log;
   };
   Result result_of(const std::string& method, int copies, const std::string& how = "raises",
-                   const OptionValues& features = {}) const {
+                   const OptionValues& features = {}, bool continues = false) const {
     for (const char* name : {"shared", "calls"}) std::filesystem::remove(folder.path() / name);
+    if (!continues) std::filesystem::remove_all(folder.path() / "evaluations");
     const auto failures = std::make_unique<FailedEvaluations>();
     const FailureSink sink(*failures);
-    call_log() = std::make_unique<CallLog>(log, "a run", true);
+    evaluations().begin({.folder = folder.path(), .keeps_all = true});
     const std::string command = "python3 " + script.string() + " " + how + " " +
                                 std::to_string(copies) + " " + folder.path().string();
     const Problem problem = problems::with_features(
         make(process_of(command, ",failures=1000,workers=" + std::to_string(copies))), features,
         Draw(0, "process"));
     Result result{.outcome = run(problem, method, {.iterations = 100, .work = 60, .target = 0})};
-    call_log().reset();
+    evaluations().begin({});
     result.failed = failures->total;
     if (failures->kept > 0) {
       const std::span<const Real> x = failures->point(0);
       result.first_failed = Eigen::Map<const Vector>(x.data(), std::ssize(x));
     }
-    result.log = read_text(log);
-    if (copies > 1 && how != "naps") {
+    if (copies > 1 && how != "naps" && !continues) {
       EXPECT_TRUE(std::filesystem::exists(folder.path() / "shared")) << method;
     }
     return result;
@@ -165,21 +152,17 @@ class Copies : public testing::Test {
     EXPECT_EQ(a.rounds, b.rounds) << what;
     EXPECT_EQ(one.failed, other.failed) << what;
     EXPECT_EQ(one.first_failed, other.first_failed) << what;
-    EXPECT_TRUE(without_times(one.log) == without_times(other.log))
-        << what;  // in the order of the method, not of completion
   }
 
   TemporaryFolder folder;
-  std::filesystem::path script = folder.path() / "valley.py", log = folder.path() / "log.calls";
+  std::filesystem::path script = folder.path() / "valley.py";
 };
 
 TEST_F(Copies, OfAProgramGiveTheResultsOfOne) {
   for (const char* method :
        {"cma-es", "eki", "uki", "dfo-gn", "levenberg-marquardt[jacobian=differences]"}) {
-    std::filesystem::remove(log);
     const Result one = result_of(method, 1);
     for (const int copies : {2, 3}) {
-      std::filesystem::remove(log);
       expect_same(one, result_of(method, copies), method);
     }
   }
@@ -188,9 +171,7 @@ TEST_F(Copies, OfAProgramGiveTheResultsOfOne) {
 TEST_F(Copies, OfAProgramGiveTheResultsOfOneForAnyFeature) {
   const OptionValues features{
       {"jitter", 1e-2}, {"derivatives", "central"}, {"scale", 10.0}, {"rotate", true}};
-  std::filesystem::remove(log);
   const Result one = result_of("levenberg-marquardt", 1, "naps", features);
-  std::filesystem::remove(log);
   expect_same(one, result_of("levenberg-marquardt", 2, "naps", features), "differences");
 }
 
@@ -198,7 +179,6 @@ TEST_F(Copies, OfAProgramGiveTheResultsOfOneForAnyFeature) {
 TEST_F(Copies, ThatCrashAreStartedAgainAndNoOthers) {
   const Result one = result_of("cma-es[population=12]", 1, "exits");
   ASSERT_GT(one.failed, 0);
-  std::filesystem::remove(log);
   const Result three = result_of("cma-es[population=12]", 3, "exits");
   std::map<int, std::set<int>> alive, crashed;  // processes, by copy
   std::ifstream calls(folder.path() / "calls");
@@ -213,12 +193,13 @@ TEST_F(Copies, ThatCrashAreStartedAgainAndNoOthers) {
   expect_same(one, three, "exits");
 }
 
-// A log that ends in the middle of a batch.
-TEST_F(Copies, ContinueALogThatWasCutOff) {
+// A store that ends in the middle of an entry.
+TEST_F(Copies, ContinueAStoreThatWasCutOff) {
   const Result whole = result_of("cma-es", 2);
-  for (const std::size_t share : {3U, 2U}) {
-    write_text(log, whole.log.substr(0, whole.log.size() / share));
-    expect_same(whole, result_of("cma-es", 2), "continued");
+  for (const unsigned share : {3U, 2U}) {
+    for (const auto& file : std::filesystem::directory_iterator(folder.path() / "evaluations"))
+      std::filesystem::resize_file(file, std::filesystem::file_size(file) / share);
+    expect_same(whole, result_of("cma-es", 2, "raises", {}, true), "continued");
   }
 }
 

@@ -162,5 +162,27 @@ TEST(Forward, EvolutionStrategyAdaptsToAnIllConditionedProblem) {
   expect_near(outcome.theta, Eigen::Vector2d(3, -2), 1e-6, "cma-es");
 }
 
+// --- evaluations that fail, or repeat
+
+TEST(Forward, OneXAThousandTimesEndsARun) {
+  const Problem problem = make("rosenbrock");
+  const auto trace = std::make_unique<Trace>();
+  Meter meter(problem, {.iterations = 100, .work = 100'000, .target = 0}, {Oracle::forward},
+              *trace);
+  meter.begin(problem.start());
+  const Vector x = Vector::Constant(2, 0.5);
+  int calls = 0;
+  EXPECT_THROW(
+      while (calls < 2000) {
+        meter.loss(x);
+        ++calls;
+      },
+      BudgetSpent);
+  EXPECT_EQ(calls, InARow::kMostRepeats);
+  meter.finish(problem.start(), Status::budget);
+  EXPECT_EQ(trace->status, Status::stalled);
+  EXPECT_NE(std::string(trace->message).find("1000 times"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace isoline::optimizers

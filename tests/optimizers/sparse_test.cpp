@@ -322,6 +322,13 @@ TEST(BundleFiles, AnAbsentOneIsInapplicableAndAWrongOneIsRefused) {
   EXPECT_THROW(make(spec), UsageError);
   std::ofstream(path) << "1 1 1\n0 0 3 4\n0 0 0\n";  // it ends too early
   EXPECT_THROW(make(spec), UsageError);
+  const std::string scene = "0 0 3D0 +4\n0 0 0 0 0 0 100 0 0\n0.03 0.04 -1\n";
+  std::ofstream(path) << "1 1 1\r\n" << scene;
+  EXPECT_NEAR(loss_at_start(make(spec)), 0, 1e-25);
+  for (const std::string header : {"1 1 0\n", "1 1 2\n", "1 2 1\n", "2 1 1\n", "1 1 1\n7\n"}) {
+    std::ofstream(path) << header << scene;  // numbers are left over, missing or shifted
+    EXPECT_THROW(make(spec), UsageError) << header;
+  }
   std::filesystem::remove(path);
 }
 

@@ -67,6 +67,9 @@ class Browser:
 
     def open(self, address):
         self.call("POST", "/url", {"url": address})
+        # A report begins to work when its program is there.
+        self.wait("return document.readyState === 'complete' && (document.getElementById('program') === null || "
+                  "document.documentElement.classList.contains('js'))")
 
     def run(self, script, *arguments):
         """The value of a JavaScript function's body."""

@@ -823,6 +823,23 @@ class Claims(unittest.TestCase):
             finally:
                 page.close()
 
+    def test_a_browser_that_cannot_decompress_shows_what_needs_no_scripts(self):
+        page = browser.Browser()
+        try:
+            page.call("POST", "/goog/cdp/execute", {
+                "cmd": "Page.addScriptToEvaluateOnNewDocument",
+                "params": {"source": "delete window.DecompressionStream"}})
+            page.call("POST", "/url", {"url": self.address})
+            page.wait("return document.querySelector('noscript') === null")
+            seen = page.run("return ['#detail-table tr', '.claim .chart', '.tab'].map((selector) => "
+                            "[...document.querySelectorAll(selector)].length)")
+            self.assertTrue(all(count > 2 for count in seen), seen)
+            self.assertEqual(page.run("return [...document.querySelectorAll('.tab')].filter((tab) => "
+                                      "tab.getClientRects().length === 0).length"), 0)
+            self.assertEqual(page.complaints(), [])
+        finally:
+            page.close()
+
     def test_the_first_tab_counts_the_verdicts(self):
         page = browser.Browser()
         try:

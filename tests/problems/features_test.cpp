@@ -267,5 +267,26 @@ TEST(Features, DifferencesKnowTheNoiseOfTheValues) {
   EXPECT_LE((differences - J).norm(), 0.05 * J.norm());
 }
 
+// θ = x/|x₀|, in which bounds, solution and products are those of x; x comes back to the last bit.
+TEST(ScaledUnknowns, AreOnesAtTheStartAndOtherwiseTheSameProblem) {
+  const Problem plain = featured("nist[dataset=Misra1a]", {{"bounds", std::string("wide")}});
+  const Problem scaled =
+      with_scaled_unknowns(featured("nist[dataset=Misra1a]", {{"bounds", std::string("wide")}}));
+  const Vector& x = plain.start();
+  EXPECT_EQ(scaled.start().cwiseAbs(), Vector::Ones(x.size()));
+  EXPECT_EQ(scaled.in_own_units(scaled.start()), x);
+  EXPECT_EQ(scaled.own_units().scales, x.cwiseAbs());
+  EXPECT_EQ(loss_at(scaled, scaled.start()), loss_at(plain, x));
+  EXPECT_LT((gradient_at(scaled, scaled.start()) -
+             gradient_at(plain, x).cwiseProduct(scaled.own_units().scales))
+                .norm(),
+            1e-13 * gradient_at(scaled, scaled.start()).norm());
+  EXPECT_EQ(scaled.in_own_units(scaled.bounds()->upper), plain.bounds()->upper);
+  EXPECT_EQ(scaled.in_own_units(scaled.bounds()->lower), plain.bounds()->lower);
+  EXPECT_NEAR(scaled.x_error(scaled.start()), plain.x_error(x), 1e-13 * plain.x_error(x));
+  EXPECT_EQ(scaled.x_scale(scaled.batch()), plain.x_scale(plain.batch()));
+  EXPECT_EQ(with_scaled_unknowns(make("rosenbrock")).own_units().scales.size(), 0);
+}
+
 }  // namespace
 }  // namespace isoline::problems

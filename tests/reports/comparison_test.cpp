@@ -11,6 +11,7 @@
 #include "core/results/ranking.h"
 #include "core/results/study.h"
 #include "reports/formats/formats.h"
+#include "reports/page/page.h"
 #include "reports/report.h"
 #include "reports/sections/figures.h"
 #include "reports/sections/sections.h"
@@ -459,11 +460,12 @@ TEST(OtherYardsticks, EveryFormatTellsItsMeasureAndItsTolerance) {
 
 TEST(OtherYardsticks, ThePageStartsAtTheTolerancesOfTheReport) {
   const Study study = crossed();
-  const std::string page =
-      html_report(document_of(compare_optimizers(study, yardstick_at(Measure::iterations, 1e-4))));
-  EXPECT_TRUE(has(page, "\"by\":\"iterations\"")) << "what its scripts count";
-  EXPECT_TRUE(has(page, "\"rungs\":[5,15,20]"));
-  EXPECT_TRUE(has(page, "<output id=\"tau\">1e-4</output>"));
+  const Document document =
+      document_of(compare_optimizers(study, yardstick_at(Measure::iterations, 1e-4)));
+  const std::string data = page_data(document, all_found_fields(document.comparison));
+  EXPECT_TRUE(has(data, "\"by\":\"iterations\"")) << "what its scripts count";
+  EXPECT_TRUE(has(data, "\"rungs\":[5,15,20]"));
+  EXPECT_TRUE(has(html_report(document), "<output id=\"tau\">1e-4</output>"));
 }
 
 TEST(OtherYardsticks, TimesTakenBesideOtherRunsAreMarked) {

@@ -381,8 +381,12 @@ TEST(Plots, AreFiguresForEveryReader) {
 
 TEST(Plots, HaveTheirNumbersInTheReport) {
   const Document document = document_of(compare_optimizers(four_problems()));
-  const Json written = parse_json(json_report(document), "report").at("statistics").at("plots");
+  const Json report = parse_json(json_report(document), "report");
   const std::vector<Plot>& plots = document.section("statistics").plots;
+  Json written = Json::array();
+  for (const Json& plot : report.at("plots"))
+    if (std::ranges::find(plots, plot.at("id").get<std::string>(), &Plot::id) != plots.end())
+      written.push_back(plot);
   ASSERT_EQ(written.size(), plots.size());
   for (std::size_t i = 0; i < plots.size(); ++i)
     for (std::size_t s = 0; s < plots[i].series.size(); ++s)
@@ -447,7 +451,7 @@ TEST(Contour, OfABowlIsACircle) {
 
 TEST(Contour, OfASlopeIsALineFromEdgeToEdge) {
   const PlotSeries line = isoline(sampled(5, [](Real a, Real) { return a; }), 0.5);
-  EXPECT_EQ(line.x.size(), 4U * 2 + 3) << "four segments, apart";
+  EXPECT_EQ(line.x.size(), 5U) << "four segments, joined";
   EXPECT_NEAR(length_of(line), 4, 1e-12);
   for (const Real x : line.x) EXPECT_TRUE(std::isnan(x) || std::abs(x - 0.5) < 1e-12);
 }
@@ -465,8 +469,8 @@ TEST(Contour, LeavesOutWhatIsNotFinite) {
   const PlotSeries line = isoline(holed, 1);
   EXPECT_LT(length_of(line), whole);
   EXPECT_GT(length_of(line), whole / 2);
-  for (std::size_t i = 0; i < line.x.size(); ++i)
-    EXPECT_EQ(std::isnan(line.x[i]), i % 3 == 2) << "but between segments";
+  EXPECT_EQ(std::ranges::count_if(line.x, [](Real x) { return std::isnan(x); }), 0)
+      << "what is left is one line";
 }
 
 TEST(Contour, LevelsAreThoseOfTheFigures) {

@@ -125,9 +125,9 @@ TEST(Page, IsToldTheMethodOfEachOptimizer) {
   tuned.request.rates = "learn-tuned.json";
   Study study;
   study.runs = {record_of({.optimizer = "gd[rate=0.1]"}), tuned};
-  const std::string page = html_report(document_of(compare_optimizers(study)));
-  EXPECT_TRUE(has(page, "gd, tuned"));
-  EXPECT_TRUE(has(page, "\"methods\":[\"gd\",\"gd\"]"));
+  const Document document = document_of(compare_optimizers(study));
+  EXPECT_TRUE(has(html_report(document), "gd, tuned"));
+  EXPECT_TRUE(has(page_data(document, AllFields(1)), "\"methods\":[\"gd\",\"gd\"]"));
   const std::filesystem::path scripts = ISOLINE_SOURCE_DIR "/reports/page";
   for (const auto& file : std::filesystem::directory_iterator(scripts)) {
     if (file.path().extension() != ".js") continue;
@@ -194,13 +194,18 @@ TEST(Page, ShowsEightLinesOfAProblemAtFirst) {
   }
   const Comparison c = compare_optimizers(study);
   EXPECT_EQ(shown_at_first(c, ranking(c, 0)).size(), 8U);
-  const std::string svg = curves_html(c, 0);
-  std::size_t hidden = 0;
-  for (std::size_t at = 0; (at = svg.find("class=off", at)) != std::string::npos; ++at) ++hidden;
-  std::size_t charts = 0;
-  for (std::size_t at = 0; (at = svg.find("class=\"chart", at)) != std::string::npos; ++at)
-    ++charts;
-  EXPECT_EQ(hidden, 4 * charts);
+  const auto count = [](const std::string& text, std::string_view part) {
+    std::size_t all = 0;
+    for (std::size_t at = 0; (at = text.find(part, at)) != std::string::npos; ++at) ++all;
+    return all;
+  };
+  const std::string own = curves_html(c, 0);
+  EXPECT_EQ(count(own, "<g data-s="), 8U);
+  EXPECT_EQ(count(own, "class=off"), 0U) << "the data have them";
+  const Json data = parse_json(curves_json(c, 0), "curves");
+  EXPECT_EQ(data.at("rest").size(), 1 + count(data.at("charts"), "class=\"chart"));
+  for (const auto& [name, lines] : data.at("rest").items())
+    EXPECT_EQ(count(lines, "class=off"), 4U) << name;
 }
 
 TEST(Page, TenThousandRecordsStayBelowEightMegabytes) {
@@ -592,8 +597,10 @@ TEST_F(ShownFields, AreTheSameBytesInTheDataAndInThePictures) {
   const auto& one = json.at("found").at(0);
   EXPECT_EQ(one.at("iterations"), Json({0, 50}));
   EXPECT_EQ(one.at("apart"), Json({"= 1", "= 0.1"}));
-  const std::string last = one.at("x").at(1);
-  EXPECT_NE(fields_html(c, *all).find("data-cells=\"" + last + "\""), std::string::npos);
+  EXPECT_EQ(one.at("x").at(1), letters_of(field_bytes({0.9F, 1.8F}, all->x_scale)));
+  EXPECT_EQ(fields_html(c, *all).find(radix64(field_bytes({0.9F, 1.8F}, all->x_scale))),
+            std::string::npos)
+      << "they are not written twice";
 }
 
 // --- histories
@@ -623,14 +630,11 @@ TEST_F(ShownHistory, IsDrawnFromTheBottomAndSaysSo) {
   const auto all = found(kHistory);
   ASSERT_TRUE(all);
   const std::string html = fields_html(c, *all);
-  const std::string truth = radix64("\xC0\x90");  // y* = 4, above x* = 1
-  for (const std::string& words :
-       {truth, std::string("x* to y*"), std::string("x − x* to y − y*"),
-        std::string("y at time 0.5"), std::string("speed before to speed after"),
-        std::string("top row")})
+  for (const char* words :
+       {"x* to y*", "x − x* to y − y*", "y at time 0.5", "speed before to speed after", "top row"})
     EXPECT_NE(html.find(words), std::string::npos) << words << " in " << html;
   const Json json = parse_json(fields_json(*all), "fields");
-  EXPECT_EQ(json.at("truth"), truth);
+  EXPECT_EQ(json.at("truth"), letters_of("\xC0\x90")) << "y* = 4, above x* = 1";
   EXPECT_EQ(json.at("labels"), Json({"x to y", "x − x* to y − y*"}));
 }
 

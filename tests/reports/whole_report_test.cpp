@@ -134,7 +134,11 @@ class SameFigures : public testing::Test {
     json_ = parse_json(json_report(document_), "report.json");
   }
 
-  const Json& tables() const { return json_.at("statistics").at("tables"); }
+  const Json& tables() const {
+    for (const Json& section : json_.at("sections"))
+      if (section.at("id") == "statistics") return section.at("tables");
+    return json_.at("statistics");  // throws
+  }
 
   ResultFolder folder_;
   Study study_;

@@ -197,6 +197,7 @@ const std::vector<std::pair<std::string, std::string>> kDoors = {
     {"Random123/", R"(core/random\.cpp)"},
     {"simdjson.h", R"(core/records/json_view\.(h|cpp))"},
     {"valijson/", R"(core/records/json_view\.cpp)"},
+    {"zlib.h", R"(core/compress\.cpp)"},
     {"ceres/", R"(optimizers/ceres(_tiny)?\.cpp|benchmarks/micro/.*\.cpp)"},
     {"glog/", R"(optimizers/ceres\.cpp|benchmarks/micro/.*\.cpp)"},
     {"cminpack.h", R"(optimizers/minpack\.cpp)"},
@@ -215,9 +216,10 @@ const std::vector<std::pair<std::string, std::string>> kDoors = {
 
 // Headers of C++ have no dot; these are the operating system's.
 bool is_system(const std::string& header) {
-  static const Set known = {"unistd.h",  "poll.h",   "fcntl.h",     "fnmatch.h",   "stdlib.h",
-                            "strings.h", "stdint.h", "cpuid.h",     "x86intrin.h", "dlfcn.h",
-                            "malloc.h",  "spawn.h",  "arpa/inet.h", "netinet/in.h"};
+  static const Set known = {"unistd.h",    "poll.h",       "fcntl.h",  "fnmatch.h",
+                            "stdlib.h",    "strings.h",    "stdint.h", "cpuid.h",
+                            "x86intrin.h", "dlfcn.h",      "malloc.h", "spawn.h",
+                            "arpa/inet.h", "netinet/in.h", "sched.h",  "gnu/libc-version.h"};
   return header.find('.') == std::string::npos
              ? header.find('/') == std::string::npos
              : header.starts_with("sys/") || known.contains(header);

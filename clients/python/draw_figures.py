@@ -1,0 +1,204 @@
+"""Draws the plots of a report for papers: SVG, PDF and PGF by matplotlib, and their points as CSV.
+
+    isoline figures results/quick --only curves-heat --format pdf,csv
+
+or, to change fonts and colours in a copy of this file:
+
+    python3 draw_figures.py results/quick/report/report.json --out figures --format pdf
+
+The numbers are those of report.json. Labels have 7 points and more at the width of a column.
+"""
+
+import argparse
+import csv
+import json
+import math
+import pathlib
+import re
+import shutil
+import sys
+import textwrap
+import unicodedata
+
+import isoline
+
+# Okabe and Ito (2008), as on the page.
+COLOURS = ["#0072B2", "#D55E00", "#009E73", "#B85A90", "#B57700", "#2F8FC9", "#5B4BB5", "#555555"]
+DASHES = ["-", (0, (4, 2)), (0, (1, 2)), (0, (5, 2, 1, 2))]
+GOAL, TAU = "#A8201A", "#5D666F"
+STYLE = {
+    "font.size": 8, "axes.labelsize": 8, "axes.titlesize": 8, "xtick.labelsize": 7, "ytick.labelsize": 7,
+    "legend.fontsize": 7, "axes.spines.top": False, "axes.spines.right": False, "axes.grid": True,
+    "axes.linewidth": 0.5, "grid.linewidth": 0.5, "grid.color": "#D5D8DC", "lines.linewidth": 1,
+    "svg.fonttype": "none", "svg.hashsalt": "isoline", "pdf.fonttype": 42,
+    "pgf.texsystem": "pdflatex", "pgf.rcfonts": False}
+COMMANDS = {"−": "-", "–": "--", "≤": r"\le", "≥": r"\ge", "×": r"\times", "±": r"\pm", "≈": r"\approx",
+            "‖": r"\Vert", "∇": r"\nabla", "∂": r"\partial", "·": r"\cdot", "†": r"\dagger", "‡": r"\ddagger",
+            "→": r"\to", "√": r"\surd", "∞": r"\infty", "½": r"\frac{1}{2}", "²": "^2", "⁻": "^{-}",
+            "¹": "^1", "₀": "_0", "₁": "_1", "ᵀ": "^T", "∈": r"\in", "§": r"\S", "°": r"^\circ"}
+
+
+def in_tex(text):
+    """The text for LaTeX: Greek letters and marks as mathematics, other letters without accents."""
+    shown = ""
+    for letter in text:
+        if letter.isascii():
+            shown += letter
+            continue
+        name = unicodedata.name(letter, "").split()
+        if letter in COMMANDS:
+            shown += f"${COMMANDS[letter]}$"
+        elif name[:3:2] == ["GREEK", "LETTER"]:
+            command = name[3].lower().replace("lamda", "lambda")
+            shown += f"$\\{command.capitalize() if name[1] == 'CAPITAL' else command}$"
+        elif letter == "…":
+            shown += "..."
+        else:
+            shown += "".join(one for one in unicodedata.normalize("NFKD", letter) if one.isascii())
+    return shown
+
+
+def numbers(line, name):
+    return [float(value) for value in line.get(name, [])]
+
+
+def names_of(line):
+    """What a reader may call its method: with its options and marks, or without."""
+    return {line["name"], re.split(r"[\[ ,]", line["name"])[0]}
+
+
+def shown_lines(plot, methods):
+    """The lines of these methods, with or without their options; else those that the page shows."""
+    if methods:
+        return [line for line in plot["series"] if names_of(line) & methods]
+    return [line for line in plot["series"] if not line.get("hidden")] or plot["series"]
+
+
+def add_line(axes, plot, line, place):
+    x, y = numbers(line, "x"), numbers(line, "y")
+    colour, is_stair = COLOURS[place % len(COLOURS)], plot["join"] == "steps"
+    if is_stair and plot["kind"] == "steps" and x:  # the last value holds
+        x, y = [*x, plot["window"][1]], [*y, y[-1]]
+    low, high = numbers(line, "low"), numbers(line, "high")
+    if low and low != high and len(low) == len(line["x"]):
+        axes.fill_between(numbers(line, "x"), low, high, color=colour, alpha=0.15, linewidth=0,
+                          step="post" if is_stair else None)
+    if plot["join"] == "none" or sum(map(math.isfinite, y)) == 1:
+        return axes.plot(x, y, "o", markersize=2, color=colour, zorder=3)[0]
+    return axes.plot(x, y, drawstyle="steps-post" if is_stair else "default", color=colour,
+                     linestyle=DASHES[place % len(DASHES)], zorder=3)[0]
+
+
+def add_published(axes, mark):
+    x, y = numbers(mark, "x"), numbers(mark, "y")
+    if len(x) > 1 and y:
+        axes.plot(x, y, color=GOAL, linestyle=(0, (3, 3)), linewidth=0.5)
+    elif len(x) == 1 and y:
+        low, high = numbers(mark, "low") or [math.nan], numbers(mark, "high") or [math.nan]
+        if math.isfinite(low[0]) and math.isfinite(high[0]):
+            axes.vlines(x, low, high, color=GOAL, linewidth=1.5, zorder=4)
+        axes.plot(x, y, "o", markersize=3, color=GOAL, zorder=4)
+
+
+def limits(low, high, is_log):
+    """A logarithmic axis begins above zero."""
+    return (low if low > 0 else high * 1e-6, high) if is_log else (low, high)
+
+
+def drawn(pyplot, plot, width, methods, text):
+    """A figure of one plot: axes, lines, published values, and names below."""
+    lines = shown_lines(plot, methods)
+    names = [text(textwrap.shorten(line["name"], 50, placeholder="…")) for line in lines]
+    columns = 2 if all(len(name) <= 22 for name in names) else 1
+    below = 0.42 + 0.14 * math.ceil(len(names) / columns)  # inches for the axis and the names
+    height = below + 0.54 * width + 0.2
+    figure = pyplot.figure(figsize=(width, height))
+    axes = figure.add_axes([0.5 / width, below / height, 1 - 0.6 / width, 0.54 * width / height])
+    left, right, bottom, top = map(float, plot["window"])
+    axes.set_xscale("log" if plot["log_x"] else "linear")
+    axes.set_yscale("log" if plot["log_y"] else "linear")
+    for line in plot.get("ground", []):
+        axes.plot(numbers(line, "x"), numbers(line, "y"), color=TAU, linestyle=(0, (1, 2)), linewidth=0.5)
+    if "goal" in plot:
+        axes.axhline(plot["goal"], color=TAU, linewidth=0.5)
+    handles = [add_line(axes, plot, line, place) for place, line in enumerate(lines)]
+    for mark in plot.get("published", []):
+        add_published(axes, mark)
+    axes.set_xlim(*limits(left, right, plot["log_x"]))
+    axes.set_ylim(*limits(bottom, top, plot["log_y"]))
+    if plot.get("to_scale"):
+        axes.set_aspect("equal", adjustable="datalim")
+    if plot["kind"] == "steps":
+        axes.yaxis.set_major_formatter(lambda share, _: text(f"{100 * share:.0f} %"))
+    axes.set_xlabel(text(plot["x_label"]))
+    axes.set_title(text(plot["y_label"]), loc="left")
+    figure.legend(handles, names, loc="lower left", ncol=columns, frameon=False, borderaxespad=0.2,
+                  labelspacing=0.15)
+    return figure
+
+
+def write_points(file, plot):
+    with open(file, "w", newline="", encoding="utf-8") as out:
+        rows = csv.writer(out)
+        rows.writerow(["line", "x", "y", "low", "high"])
+        published = [{**mark, "name": f"published, {mark['name']}"} for mark in plot.get("published", [])]
+        for line in [*plot["series"], *published]:
+            columns = [numbers(line, name) for name in ("x", "y", "low", "high")]
+            for i in range(len(columns[0])):
+                cells = [column[i] if i < len(column) else math.nan for column in columns]
+                rows.writerow([line["name"], *("" if math.isnan(value) else repr(value) for value in cells)])
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.split("\n", maxsplit=1)[0])
+    parser.add_argument("report", help="report.json of a report")
+    parser.add_argument("--format", default="svg", help="svg, pdf, pgf and csv, between commas")
+    parser.add_argument("--only", default="", help="plots whose names contain this text")
+    parser.add_argument("--methods", default="", help="methods, by name, between commas")
+    parser.add_argument("--width", type=float, default=3.2, help="width in inches")
+    parser.add_argument("--out", default="figures", help="output folder")
+    parser.add_argument("--list", action="store_true", help="list names and titles, and write nothing")
+    parser.add_argument("--quiet", action="store_true", help="print nothing")
+    given = parser.parse_args()
+    report = json.loads(pathlib.Path(given.report).read_text(encoding="utf-8"))
+    plots = [plot for plot in report["plots"] if given.only in plot["name"]]
+    if not report["plots"] and not given.quiet:
+        sys.exit("these results have no figures")
+    if not plots and report["plots"]:
+        sys.exit(f"--only {given.only}: none of the {len(report['plots'])} figure names contains this text; "
+                 "--list prints their names")
+    if given.list:
+        for plot in plots:
+            print(f"{plot['name']:40} {plot['title']}")
+        return
+    formats = given.format.split(",")
+    if "pgf" in formats and shutil.which("pdflatex") is None:
+        sys.exit("--format pgf: matplotlib measures the texts of PGF by pdflatex, which is not installed; on Debian, "
+                 "`apt-get install texlive-latex-base texlive-pictures` installs it")
+    methods = {name for name in given.methods.split(",") if name}
+    unknown = methods - {name for plot in plots for line in plot["series"] for name in names_of(line)}
+    if unknown:
+        sys.exit(f"--methods {min(unknown)}: these figures have no line of this name")
+    out = pathlib.Path(given.out)
+    out.mkdir(parents=True, exist_ok=True)
+    drawings = [name for name in formats if name != "csv"]
+    if drawings:
+        matplotlib = isoline.package("matplotlib", "python3-matplotlib")
+        matplotlib.use("agg")
+        from matplotlib import pyplot
+        pyplot.rcParams.update(STYLE)
+    for plot in plots:
+        if "csv" in formats:
+            write_points(out / f"{plot['name']}.csv", plot)
+        for name in drawings:
+            figure = drawn(pyplot, plot, given.width, methods, in_tex if name == "pgf" else lambda text: text)
+            plain = {"svg": {"Date": None, "Title": plot["title"]},
+                     "pdf": {"CreationDate": None, "Title": plot["title"]}}
+            figure.savefig(out / f"{plot['name']}.{name}", metadata=plain.get(name))
+            pyplot.close(figure)
+    if not given.quiet:
+        print(f"{out}: {len(plots)} figure{'' if len(plots) == 1 else 's'} as {', '.join(formats)}")
+
+
+if __name__ == "__main__":
+    main()
