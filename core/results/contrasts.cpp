@@ -2,7 +2,6 @@
 #include "core/results/contrasts.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numeric>
 
@@ -10,16 +9,6 @@
 
 namespace isoline::results {
 namespace {
-
-// P(X ≥ k) of n trials with the probability q.
-Real tail(std::size_t k, std::size_t n, Real q) {
-  Real sum = 0;
-  for (std::size_t i = k; i <= n; ++i)
-    sum += std::exp(std::lgamma(Real(n) + 1) - std::lgamma(Real(i) + 1) -
-                    std::lgamma(Real(n - i) + 1)) *
-           std::pow(q, Real(i)) * std::pow(1 - q, Real(n - i));
-  return sum;
-}
 
 // Where a function that increases from below 0 over (0, 1) passes it.
 template <class Function>
@@ -86,10 +75,19 @@ Real detectable_factor(std::size_t families, Real deviation) {
   return kNever;
 }
 
+Real binomial_tail(std::size_t k, std::size_t n, Real q) {
+  Real sum = 0;
+  for (std::size_t i = k; i <= n; ++i)
+    sum += std::exp(std::lgamma(Real(n) + 1) - std::lgamma(Real(i) + 1) -
+                    std::lgamma(Real(n - i) + 1)) *
+           std::pow(q, Real(i)) * std::pow(1 - q, Real(n - i));
+  return sum;
+}
+
 Interval exact_share(std::size_t k, std::size_t n) {
   constexpr Real kSide = 0.025;
-  return {k == 0 ? 0 : root_of([&](Real q) { return tail(k, n, q) - kSide; }),
-          k == n ? 1 : root_of([&](Real q) { return kSide - (1 - tail(k + 1, n, q)); })};
+  return {k == 0 ? 0 : root_of([&](Real q) { return binomial_tail(k, n, q) - kSide; }),
+          k == n ? 1 : root_of([&](Real q) { return kSide - (1 - binomial_tail(k + 1, n, q)); })};
 }
 
 }  // namespace isoline::results

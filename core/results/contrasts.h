@@ -41,6 +41,9 @@ Real contrast_power(Real factor, std::size_t families, Real deviation = kUsualDe
 // none is.
 Real detectable_factor(std::size_t families, Real deviation = kUsualDeviation);
 
+// P(X ≥ k) of n trials that each succeed with the probability q.
+Real binomial_tail(std::size_t k, std::size_t n, Real q);
+
 // 95 % of the probability of which k of n trials were successes. Clopper, Pearson (1934).
 Interval exact_share(std::size_t successes, std::size_t trials);
 

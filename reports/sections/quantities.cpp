@@ -9,6 +9,7 @@
 
 #include "core/json.h"
 #include "core/records/sheet.h"
+#include "core/results/contrasts.h"
 #include "core/results/statistics.h"
 #include "reports/sections/claims.h"
 #include "reports/sections/figures.h"
@@ -503,16 +504,6 @@ std::optional<std::vector<Real>> scaled_values(const Measurement& measured, cons
     if (!std::isfinite(values.back())) return std::nullopt;
   }
   return values;
-}
-
-// P(X ≥ k) of n trials that each succeed with the probability q.
-Real binomial_tail(std::size_t k, std::size_t n, Real q) {
-  Real sum = 0;
-  for (std::size_t i = k; i <= n; ++i)
-    sum += std::exp(std::lgamma(Real(n) + 1) - std::lgamma(Real(i) + 1) -
-                    std::lgamma(Real(n - i) + 1)) *
-           std::pow(q, Real(i)) * std::pow(1 - q, Real(n - i));
-  return sum;
 }
 
 // Whether the share of successes lies above q, by its exact one-sided bound, or below it.
