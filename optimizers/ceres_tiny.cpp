@@ -92,6 +92,7 @@ void register_ceres_tiny(OptimizerRegistry& registry) {
                 .kind = Kind::least_squares,
                 .formula = "θ ← θ − (JᵀJ + D²/Δ)⁻¹ Jᵀ r,  D² = diag(JᵀJ)",
                 .source = "Ceres 2.1, tiny_solver.h; Madsen, Nielsen, Tingleff (2004)",
+                .note = kFailedNote,
                 .needs = {Oracle::forward, Oracle::jacobian},
                 .needs_same_samples = true,
                 .most_unknowns = 1024,

@@ -107,6 +107,7 @@ void register_libdogleg(OptimizerRegistry& registry) {
                 .kind = Kind::least_squares,
                 .formula = "θ ← θ + d,  d on the path from −α Jᵀr to −(JᵀJ)⁻¹ Jᵀr,  ‖d‖ ≤ Δ",
                 .source = "libdogleg 0.15; Powell (1970)",
+                .note = kFailedNote,
                 .needs = {Oracle::forward, Oracle::jacobian},
                 .needs_same_samples = true,
                 .most_unknowns = 4096,

@@ -137,6 +137,7 @@ void register_minpack(OptimizerRegistry& registry) {
        .title = "Levenberg-Marquardt (MINPACK lmder)",
        .formula = "min ‖r + J d‖² over ‖D d‖ ≤ Δ,  Dᵢ the largest ‖J eᵢ‖ so far",
        .source = kSource,
+       .note = kFailedNote,
        .needs = {Oracle::forward, Oracle::jacobian},
        .most_unknowns = 4096}));
   registry.add(minpack_entry<LmdifOptions>(
@@ -144,7 +145,7 @@ void register_minpack(OptimizerRegistry& registry) {
        .title = "Levenberg-Marquardt by differences (MINPACK lmdif)",
        .formula = "min ‖r + J d‖² over ‖D d‖ ≤ Δ,  J by forward differences",
        .source = kSource,
-       .note = "A Jacobian costs n forward solves.",
+       .note = std::string("A Jacobian costs n forward solves. ") + kFailedNote,
        .needs = {Oracle::forward},
        .most_unknowns = 256}));
 }
