@@ -14,7 +14,7 @@ install(DIRECTORY clients/python DESTINATION share/isoline COMPONENT program FIL
         PATTERN "*.py")
 install(DIRECTORY clients/peers DESTINATION share/isoline COMPONENT program PATTERN __pycache__ EXCLUDE)
 install(DIRECTORY benchmarks/published DESTINATION share/isoline COMPONENT program FILES_MATCHING
-        PATTERN "*.json" PATTERN unfinished EXCLUDE)
+        PATTERN "*.json" PATTERN unfinished EXCLUDE PATTERN conduct.json EXCLUDE)
 install(DIRECTORY docs DESTINATION share/doc/isoline COMPONENT program)
 install(FILES README.md CHANGELOG.md DESTINATION share/doc/isoline COMPONENT program)
 include(cmake/Package.cmake)

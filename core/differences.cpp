@@ -12,6 +12,8 @@
 #include <utility>
 #include <vector>
 
+#include "core/errors.h"
+#include "core/numbers.h"
 #include "core/random.h"
 
 namespace isoline {
@@ -120,19 +122,23 @@ Vector last_places(const std::vector<Vector>& values, const std::vector<Index>& 
 
 }  // namespace
 
-Real noise_of_calls(const Vector& y0, const std::function<Vector(Real t)>& y) {
-  constexpr Real kNear = 1e-8, kFar = 1e-3, kNotSmooth = 0.5;
+Real noise_of_calls(const Vector& y0, const std::function<Vector(Real t)>& y, Vector* slope) {
+  const auto [far, twice, thrice, near] = kNoiseSteps;
+  constexpr Real kNotSmooth = 0.5;
   constexpr Real kBent = 1e-4;  // of the change: a smooth y bends less over so small a step
   constexpr std::size_t kMostRows = 1000;
   const Real size = y0.norm();
   Real noise = std::numeric_limits<Real>::epsilon();
   if (!(size > 0) || !std::isfinite(size)) return noise;
   std::vector<Vector> values{y0};
-  const Vector near = y(kNear), nearer = y(2 * kNear);
-  const Real bend = (nearer - 2 * near + y0).norm() / std::sqrt(6.0);
-  if (std::isfinite(bend) && bend > kBent * (near - y0).norm())
-    noise = std::max(noise, bend / size);
-  for (const Real t : {kFar, 2 * kFar, 3 * kFar}) values.push_back(y(t));
+  for (const Real t : {far, twice, thrice}) values.push_back(y(t));
+  const Vector first = (-11 * y0 + 18 * values[1] - 9 * values[2] + 2 * values[3]) / (6 * far);
+  const Vector once = y(near);
+  const Real change = (once - y0).norm();
+  if (!((once - y0 - near * first).norm() <= kBent * change)) {
+    const Real bend = (y(2 * near) - 2 * once + y0).norm() / std::sqrt(6.0);
+    if (std::isfinite(bend) && bend > kBent * change) noise = std::max(noise, bend / size);
+  }
   const Vector second = values[2] - 2 * values[1] + y0;
   const Real third = (values[3] - 3 * values[2] + 3 * values[1] - y0).norm();
   if (!std::isfinite(third)) return noise;
@@ -140,8 +146,9 @@ Real noise_of_calls(const Vector& y0, const std::function<Vector(Real t)>& y) {
   std::vector<Index> rows;
   for (Index i = 0; i < y0.size() && rows.size() < kMostRows; ++i)
     if (values[3][i] != y0[i]) rows.push_back(i);
-  if (rows.empty()) return noise;
-  return std::max(noise, last_places(values, rows).norm() / size);
+  if (!rows.empty()) noise = std::max(noise, last_places(values, rows).norm() / size);
+  if (slope != nullptr && noise == std::numeric_limits<Real>::epsilon()) *slope = first;
+  return noise;
 }
 
 Vector line_inside(const Vector& start, const Vector& sizes, const Vector* lower,
@@ -172,6 +179,37 @@ std::array<Real, 2> difference_offsets(Real h, bool is_central, Real up, Real do
 
 Real forward_step(Real noise) { return std::pow(8.0, 0.25) * std::sqrt(noise); }
 Real central_step(Real noise) { return std::cbrt(3 * noise); }
+
+Real GivenSteps::of(Index j, Index n, Real size, Real otherwise) const {
+  if (steps.empty()) return otherwise * size;
+  require(steps.size() == 1 || std::ssize(steps) == n, [&] {
+    return fmt::format("difference-step has {} steps for {} unknowns", steps.size(), n);
+  });
+  const Real step = steps.size() == 1 ? steps[0] : steps[static_cast<std::size_t>(j)];
+  return are_absolute ? step : step * size;
+}
+
+GivenSteps given_steps(const std::string& text) {
+  constexpr std::string_view kAbsolute = " absolute";
+  GivenSteps given;
+  if (text.empty()) return given;
+  given.are_absolute = text.ends_with(kAbsolute);
+  std::string_view left = text;
+  if (given.are_absolute) left.remove_suffix(kAbsolute.size());
+  while (true) {
+    const std::size_t end = std::min(left.find(':'), left.size());
+    const std::optional<Real> step = number_in(left.substr(0, end));
+    require(step && *step > 0 && std::isfinite(*step), [&] {
+      return fmt::format(
+          "difference-step must be one positive number, or one for each unknown as "
+          "1e-3:0.1, got '{}'",
+          text);
+    });
+    given.steps.push_back(*step);
+    if (end == left.size()) return given;
+    left.remove_prefix(end + 1);
+  }
+}
 
 Vector sizes_of_unknowns(const Vector& start) {
   constexpr Real kNothing = 1e-8;  // of the largest, from which fits differ by up to 1e7: rounding

@@ -26,16 +26,38 @@ Vector noise_of_values(const std::function<Vector(Real t)>& f);
 Real forward_step(Real noise);
 Real central_step(Real noise);
 
+// Steps as a user gives them: one number, or one for each unknown with colons between, relative to
+// the sizes of the unknowns; or in their units, where "absolute" follows: "1e-3", "0.1:2 absolute".
+struct GivenSteps {
+  std::vector<Real> steps = {};  // none: they follow from the noise
+  bool are_absolute = false;
+
+  // h of unknown j of n, of which there are as many steps or one; `otherwise` where none is given,
+  // in sizes. UsageError for another number of steps.
+  Real of(Index j, Index n, Real size, Real otherwise) const;
+};
+GivenSteps given_steps(const std::string& text);  // UsageError for any other text
+inline constexpr const char* kStepHelp =
+    "of differences: the step, relative to the size of each unknown, or in its units as "
+    "\"0.1 absolute\"; one number, or one for each unknown as 1e-3:0.1:1e-3; empty: it follows from "
+    "the noise of y";
+
 // The size of each unknown: |x₀|, or that of the largest, at most 1, where x₀ = 0.
 Vector sizes_of_unknowns(const Vector& start);
 
-// The noise of y in a call, relative to ‖y‖, at least rounding: by five calls y(t) at t > 0 along a
-// line through the point where y is `y0`; t in sizes of the unknowns. What is left at two steps
-// near the point, and what is not smooth at three steps farther away, as of an adaptive solver,
-// whose values jump where the number of its steps does; the larger one holds. And the last place of
-// values that were printed with few digits or are of single precision, which small steps do not
-// show.
-Real noise_of_calls(const Vector& y0, const std::function<Vector(Real t)>& y);
+// The noise of y in a call, relative to ‖y‖, at least rounding: by four or five calls y(t) at t > 0
+// along a line through the point where y is `y0`; t in sizes of the unknowns. What near calls
+// differ by from a smooth y, and what is not smooth at three steps farther away, as of an adaptive
+// solver, whose values jump where the number of its steps does; the larger one holds. And the last
+// place of values that were printed with few digits or are of single precision, which small steps
+// do not show. `slope`: dy/dt at 0, (m), by the steps farther away; empty where y is not smooth
+// there.
+Real noise_of_calls(const Vector& y0, const std::function<Vector(Real t)>& y,
+                    Vector* slope = nullptr);
+// t of the first calls: no round numbers, at which y would seem printed with few digits.
+inline constexpr Real kNoiseStep = 1.0471975511965976e-3;
+inline constexpr std::array<Real, 4> kNoiseSteps = {kNoiseStep, 2 * kNoiseStep, 3 * kNoiseStep,
+                                                    1e-8};
 
 // The direction of those calls, (n), in sizes of the unknowns; towards the inside at a bound. No
 // bounds: nullptr.

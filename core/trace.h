@@ -124,6 +124,10 @@ struct Trace {
   double x_scale = std::numeric_limits<double>::quiet_NaN();  // nan where no solution is known
   double x_floor = 0;
   double noise_level = std::numeric_limits<double>::quiet_NaN();  // δ; nan where not known
+  // The noise of y in a call by the last differences, relative to ‖y‖, and their step, relative
+  // to the sizes of the unknowns; nan: J is not by differences.
+  double difference_noise = std::numeric_limits<double>::quiet_NaN();
+  double difference_step = std::numeric_limits<double>::quiet_NaN();
   bool is_bounded = false;
   double start_loss = std::numeric_limits<double>::quiet_NaN();
   double best_loss = std::numeric_limits<double>::infinity();

@@ -1,7 +1,7 @@
 // J of residuals without derivatives, for methods of least squares: by differences whose steps
 // follow from the noise of the calls, with rank-one updates between; Broyden (1965). The noise is
-// measured once, by five calls or by ECNoise's tables, and is at least rounding. M₂ of h = 8^¼
-// √(ε_f/M₂), a bound on the second derivative along an unknown, is ‖y‖ over the square of the
+// measured once, by four or five calls or by ECNoise's tables, and is at least rounding. M₂ of h =
+// 8^¼ √(ε_f/M₂), a bound on the second derivative along an unknown, is ‖y‖ over the square of the
 // unknown's size; Moré, Wild (2012), ACM TOMS 38.
 #pragma once
 
@@ -9,6 +9,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -22,7 +23,7 @@ namespace isoline::optimizers {
 inline const Choices kJacobians{"exact", "differences", "central", "ecnoise"};
 inline constexpr const char* kJacobianHelp =
     "exact: as the problem offers it; differences, central: by forward or central differences of "
-    "r, which cost n or 2n forward solves, with steps that follow from the noise of y, which five "
+    "r, which cost n or 2n forward solves, with steps that follow from the noise of y, which four or five "
     "calls at the start measure; ecnoise: by forward differences with the noise by ECNoise, 8 to 29 "
     "calls at the start";
 
@@ -32,8 +33,12 @@ class DifferenceJacobian {
   // kJacobians.
   void renew(Meter& f, const Vector& theta, std::string_view kind, Linearization& at) {
     const bool is_central = kind == "central";
-    if (sizes_.size() == 0) measure(f, theta, kind == "ecnoise", at);
+    Vector line, slope;  // of y along the line, which the first J needs not measure again
+    if (sizes_.size() == 0) measure(f, theta, kind == "ecnoise", at, line, slope);
     const Index n = theta.size();
+    Index known = n;  // the column that follows from the slope
+    if (slope.size() > 0 && !is_central && !line.isZero(0) && given_.steps.empty())
+      line.cwiseQuotient(sizes_).cwiseAbs().maxCoeff(&known);
     y_ = at.y().reshaped();
     J_.setZero(y_.size(), n);
     const Real step = is_central ? central_step(noise_) : forward_step(noise_);
@@ -42,8 +47,9 @@ class DifferenceJacobian {
     Index calls = 0;
     for (Index j = 0; j < n; ++j) {
       const Room room = room_of(f, theta, j);
-      const Real h = step * size_of(theta, j);
+      const Real h = step_of(theta, j, step);
       offsets.push_back(difference_offsets(h, is_central, room.up, room.down));
+      if (j == known) continue;
       for (const Real offset : offsets.back()) {
         if (offset == 0) continue;
         points.col(calls) = theta;
@@ -52,10 +58,11 @@ class DifferenceJacobian {
     }
     f.announce(points.leftCols(calls));
     for (Index j = 0; j < n; ++j)
-      J_.col(j) = column(f, theta, j, offsets[static_cast<std::size_t>(j)]);
+      if (j != known) J_.col(j) = column(f, theta, j, offsets[static_cast<std::size_t>(j)]);
+    if (known < n) J_.col(known) = (slope - J_ * line) / line[known];
     constexpr Real kLarger = 30;  // an unknown that does not show is tried once more
     for (Index j = 0; j < n; ++j) {
-      const Real h = step * size_of(theta, j);
+      const Real h = step_of(theta, j, step);
       if (shows(j, h)) continue;
       const Room room = room_of(f, theta, j);
       J_.col(j) =
@@ -64,28 +71,53 @@ class DifferenceJacobian {
     theta_ = theta;
     is_fresh_ = true;
     at.set_jacobian(J_);
-    f.know_jacobian(theta, J_, noise_);
+    is_central_ = is_central;
+    f.know_jacobian(theta, J_,
+                    {.noise = noise_,
+                     .step = given_.steps.empty() ? step : std::nan(""),
+                     .is_central = is_central});
+    f.recall_paid_loss(at.loss());
   }
-  // Broyden's update: J moves least so that J Δθ = Δy.
-  void update(const Vector& theta, Linearization& at) {
-    const Vector moved = theta - theta_;
-    const Real squares = moved.squaredNorm();
-    if (squares > 0)
-      J_ += (Vector(at.y().reshaped()) - y_ - J_ * moved) * (moved / squares).transpose();
+  // Broyden's update at an evaluated point that θ moves to: J moves least, in the norm of ‖J D⁻¹‖,
+  // so that J Δθ = Δy.
+  void update(const Vector& theta, const Vector& D, Linearization& at) {
+    learn(theta, at.y().reshaped(), D);
     theta_ = theta;
     y_ = at.y().reshaped();
-    is_fresh_ = false;
     at.set_jacobian(J_);
   }
+  // The same by a point that was evaluated and left again: `at` is that of the last J.
+  void learn(const Vector& theta, const Vector& y, const Vector& D, Linearization& at) {
+    learn(theta, y, D);
+    at.set_jacobian(J_);
+  }
+  // In place of those that follow from the noise. Absolute ones are in the problem's own units.
+  void take_steps(const std::string& text, const Meter& f) {
+    given_ = given_steps(text);
+    own_scales_ = f.problem().own_units().scales;
+  }
+  // As another one has measured it near θ.
+  void know_noise(const Vector& theta, Real noise) {
+    sizes_ = sizes_of_unknowns(theta);
+    noise_ = noise;
+  }
   bool is_fresh() const { return is_fresh_; }  // not yet updated
-  Real noise() const { return noise_; }        // of y in a call, relative to ‖y‖
+  bool is_central() const { return is_central_; }
+  Real noise() const { return noise_; }  // of y in a call, relative to ‖y‖
   bool is_noisy() const { return noise_ > std::numeric_limits<Real>::epsilon(); }
-  bool has_jacobian() const { return J_.size() > 0; }
-  void persist(Archive& archive) { archive(J_, theta_, y_, sizes_, noise_, is_fresh_); }
+  // An unknown may end far smaller than it starts, and y bend as far as its new size.
+  Real size_of(const Vector& theta, Index j) const {
+    constexpr Real kLeast = 1e-3;  // of its size at the start
+    return std::max(std::abs(theta[j]), (is_noisy() ? 1 : kLeast) * sizes_[j]);
+  }
+  void persist(Archive& archive) {
+    archive(J_, theta_, y_, sizes_, noise_, is_fresh_, is_central_);
+  }
 
  private:
-  Real size_of(const Vector& theta, Index j) const {
-    return std::max(std::abs(theta[j]), sizes_[j]);
+  Real step_of(const Vector& theta, Index j, Real otherwise) const {
+    const Real h = given_.of(j, theta.size(), size_of(theta, j), otherwise);
+    return given_.are_absolute && own_scales_.size() > 0 ? h / own_scales_[j] : h;
   }
   static Room room_of(const Meter& f, const Vector& theta, Index j) {
     const Bounds* const bounds = f.bounds();
@@ -95,18 +127,29 @@ class DifferenceJacobian {
   // Whether the column is more than noise.
   bool shows(Index j, Real h) const { return J_.col(j).norm() * h > 2 * noise_ * y_.norm(); }
 
+  void learn(const Vector& theta, const Vector& y, const Vector& D) {
+    const Vector moved = theta - theta_, dual = D.cwiseAbs2().cwiseProduct(moved);
+    const Real squares = moved.dot(dual);
+    if (squares > 0) J_ += (y - y_ - J_ * moved) * (dual / squares).transpose();
+    is_fresh_ = false;
+  }
   // Along a line through θ, inside the bounds.
-  void measure(Meter& f, const Vector& theta, bool by_tables, Linearization& at) {
+  void measure(Meter& f, const Vector& theta, bool by_tables, Linearization& at, Vector& line,
+               Vector& slope) {
     sizes_ = sizes_of_unknowns(theta);
     const Bounds* const bounds = f.bounds();
-    const Vector line = line_inside(theta, sizes_, bounds ? &bounds->lower : nullptr,
-                                    bounds ? &bounds->upper : nullptr);
+    line = line_inside(theta, sizes_, bounds ? &bounds->lower : nullptr,
+                       bounds ? &bounds->upper : nullptr);
     const auto y = [&](Real t) -> Vector {
       f.linearize(theta + t * line, other_);
       return other_.y().reshaped();
     };
     if (!by_tables) {
-      noise_ = noise_of_calls(at.y().reshaped(), y);
+      Matrix points = theta.replicate(1, kNoiseSteps.size());
+      for (std::size_t i = 0; i < kNoiseSteps.size(); ++i)
+        points.col(static_cast<Index>(i)) += kNoiseSteps[i] * line;
+      f.announce(points);
+      noise_ = noise_of_calls(at.y().reshaped(), y, &slope);
       return;
     }
     const Real level = noise_of_values(y).norm() / at.y().norm();
@@ -126,8 +169,10 @@ class DifferenceJacobian {
   Vector theta_, moved_, sizes_;  // (n)
   Vector y_;                      // (m), at θ
   Real noise_ = 0;                // of y in a call, relative to ‖y‖
-  bool is_fresh_ = false;
+  bool is_fresh_ = false, is_central_ = false;
   Linearization other_;
+  GivenSteps given_;
+  Vector own_scales_;  // (n), or empty
 };
 
 }  // namespace isoline::optimizers

@@ -15,7 +15,6 @@ namespace isoline::optimizers {
 
 std::string doubt_of(const LeastSquaresPoint& at) {
   constexpr Real kRounding = std::numeric_limits<Real>::epsilon();
-  constexpr Real kEnough = 5e-7;   // of an unknown: half of 1e-6, as the step is of first order
   constexpr Real kSure = 4;        // standard deviations
   constexpr Real kOfSpread = 0.1;  // of its standard deviation: more noise leaves it undetermined
   std::vector<Index> free;
@@ -27,7 +26,9 @@ std::string doubt_of(const LeastSquaresPoint& at) {
   if (!is_finite(J) || !is_finite(at.residual)) return "its Jacobian is not finite";
   const Vector D = J.colwise().norm();                                           // (n)
   const Real error = at.noise * at.size_of_y / std::sqrt(static_cast<Real>(m));  // of an entry of y
-  const Real step = at.has_exact_jacobian ? 1 : std::sqrt(at.noise);  // of its differences
+  const Real step = at.has_exact_jacobian ? 1  // of its differences
+                    : at.is_central       ? central_step(at.noise)
+                                          : std::sqrt(at.noise);
   const auto size_of = [&](Index i) {
     return std::max(std::abs(at.theta[free[i]]), at.sizes[free[i]]);
   };
@@ -56,11 +57,17 @@ std::string doubt_of(const LeastSquaresPoint& at) {
   for (Index i = 0; i < n; ++i)
     slope_error = std::max(slope_error, error / (step * size_of(i)) * r / D[i]);
   for (Index i = 0; i < n; ++i) {
+    const Real enough_of_unknown =
+        kEnoughOfUnknown * least_size(at.theta[free[i]], at.sizes[free[i]]);
     const Real length = root.row(i).norm() / D[i];
-    const Real noise = kSure * (error * length + slope_error * square.row(i).norm() / D[i]);
-    const Real of_noise = at.forgives_noise ? std::min(noise, kOfSpread * spread * length) : 0;
-    const Real enough = std::max(kEnough * size_of(i), of_noise);
-    if (!(std::abs(move[i]) <= enough))
+    const Real unsure = error * length + slope_error * square.row(i).norm() / D[i];
+    const bool forgives = at.forgives_noise || at.is_central;
+    const Real of_noise = forgives ? std::min(kSure * unsure, kOfSpread * spread * length) : 0;
+    const Real known = std::max(enough_of_unknown, at.enough_of_deviation * spread * length);
+    const Real enough = std::max(known, of_noise);
+    const bool is_blurred =
+        !forgives && !at.has_exact_jacobian && std::sqrt(static_cast<Real>(m)) * unsure > known;
+    if (is_blurred || !(std::abs(move[i]) <= enough))
       return fmt::format("gradient not small: the Gauss-Newton step moves {} by {:.2g}",
                          name_of_unknown(at.names, free[i]), move[i]);
   }

@@ -2,12 +2,23 @@
 // the status `converged`, as opposed to `unconfirmed`.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <string>
 #include <vector>
 
 #include "core/array.h"
 
 namespace isoline::optimizers {
+
+// Gauss-Newton steps that are too small to count: of an unknown, half of 1e-6, since it is of
+// first order; and of its standard deviation, which says how many of its digits the data determine.
+inline constexpr Real kEnoughOfUnknown = 4e-7, kEnoughOfDeviation = 5e-7;
+// The size that it is compared with: an unknown may be far smaller than at its start, or 0.
+inline Real least_size(Real theta, Real size_at_start) {
+  constexpr Real kOfStart = 1e-6;
+  return std::max(std::abs(theta), kOfStart * size_at_start);
+}
 
 struct LeastSquaresPoint {
   const Matrix& J;                        // (m, n)
@@ -19,11 +30,13 @@ struct LeastSquaresPoint {
   Real size_of_y = 0;                     // ‖y‖
   Real noise = 0;                         // of y in a call, relative to it
   bool has_exact_jacobian = true;         // else by differences, whose error is of √noise
-  bool forgives_noise = true;             // a step that the noise makes counts as none
+  bool is_central = false;                // of differences, whose error is less
+  Real enough_of_deviation = kEnoughOfDeviation;
+  bool forgives_noise = true;  // a step that the noise makes counts as none
 };
 
 // Empty where J has full rank over the unknowns that no bound holds and the Gauss-Newton step there
-// is below 1e-6 of each unknown, or below what the noise makes of it; else the reason.
+// is that small, or below what the noise makes of it; else the reason.
 std::string doubt_of(const LeastSquaresPoint& at);
 
 }  // namespace isoline::optimizers

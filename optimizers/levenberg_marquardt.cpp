@@ -2,11 +2,12 @@
 // rule of Nielsen (1999): d = argmin ‖J d + r‖² + μ‖D d‖², Dⱼ the largest norm the j-th
 // column of J has had. Steps that do not lower ‖r‖ are rejected and the damping is raised. After a
 // step that gained little, d gets a term of second order. On fresh samples at every step J and r
-// are those of the step's own. With damping=fixed, the rule of mini-batches that cannot be
-// compared: θ ← θ − η Jᵀ (K + μ)⁻¹ r, K = JJᵀ, μ a share of the mean diagonal of K, and every step
-// is taken; absolute: the same with μ added to JJᵀ/B. With a small μ it is the energy natural
-// gradient of Müller, Zeinhofer (2023), in the form of Guzmán-Cordero et al. (2025) where J is
-// wide.
+// are those of the step's own. Where J comes by differences, μ follows from a radius, ‖D d‖ ≤ Δ, as
+// Moré has it: there a rejected step is dear, and J is updated by Broyden's formula between. With
+// damping=fixed, the rule of mini-batches that cannot be compared: θ ← θ − η Jᵀ (K + μ)⁻¹ r, K =
+// JJᵀ, μ a share of the mean diagonal of K, and every step is taken; absolute: the same with μ
+// added to JJᵀ/B. With a small μ it is the energy natural gradient of Müller, Zeinhofer (2023), in
+// the form of Guzmán-Cordero et al. (2025) where J is wide.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -19,6 +20,7 @@
 #include "core/decompose.h"
 #include "core/product.h"
 #include "optimizers/differences.h"
+#include "optimizers/examination.h"
 #include "optimizers/optimizer.h"
 #include "optimizers/sparse_least_squares.h"
 #include "optimizers/spectral_step.h"
@@ -128,6 +130,7 @@ class DampedLeastSquares {
   }
   void push_dense(const Vector& d, Vector& Jd) const { Jd.noalias() = J_ * d; }
   Real misfit() const { return 0.5 * right_.squaredNorm(); }  // ½‖b‖²
+  const Vector& scale() const { return scale_; }              // (n) D
   Real squared_length(const Vector& d) const { return scale_.cwiseProduct(d).squaredNorm(); }
   void persist(Archive& archive) {
     archive(rows_, is_layered_, J_, right_, scale_, inverse_, order_);
@@ -268,19 +271,25 @@ bool has_own_jacobian(const Problem& problem) {
 struct LevenbergMarquardt {
   Real initial_damping = 1e-4, rate = 1, acceleration = 0.75;
   std::string damping = "adaptive", factorization = "auto", scaling = "more", line_search;
-  std::string jacobian = "exact";
+  std::string jacobian = "exact", difference_step;
   bool broyden = true;
+  Real accuracy = 0;
 
   struct State {
     DampedLeastSquares squares;
     DifferenceJacobian differences;
     SpectralStep spectral;
     NielsenDamping damping;
+    bool is_fine = false;     // what steps gain is little beside errors of forward differences
+    bool is_retried = false;  // a step was rejected, and J updated by it, since J was fresh
     bool has_point = false;
-    Real gain = 1;  // actual over predicted decrease of the last step, 0 where rejected
+    Real radius = 0;  // Δ, of steps by differences
+    Real gain = 1;    // actual over predicted decrease of the last step, 0 where rejected
     Linearization at, trial;
     Vector step, candidate, bend;   // (n), of the acceleration
     Vector Jd, residual, Jbend;     // (m·B)
+    Vector last_step;               // (n) D d of the last Gauss-Newton step; empty: another one
+    Real last_factor = 1;           // that it was multiplied by
     Real last_length = kUnbounded;  // ‖D d‖ of the last step that only rounding could judge
     std::string jacobian;           // as the option has it; by differences where none is offered
 
@@ -291,12 +300,15 @@ struct LevenbergMarquardt {
     s.spectral.persist(archive);
     s.damping.persist(archive);
     s.differences.persist(archive);
-    archive(s.has_point, s.gain, s.last_length, s.residual);
+    archive(s.is_fine, s.has_point, s.is_retried, s.radius, s.gain, s.last_length, s.residual,
+            s.last_step, s.last_factor);
   }
 
   State init(Meter& f, const Vector&) const {
     State s;
     s.jacobian = jacobian == "exact" && !has_own_jacobian(f.problem()) ? "differences" : jacobian;
+    s.differences.take_steps(difference_step, f);
+    if (accuracy > 0) f.take_as_enough(accuracy);
     s.squares.start(f);
     s.damping.mu = initial_damping;
     s.spectral = SpectralStep(spectral_factorization(factorization));
@@ -312,9 +324,13 @@ struct LevenbergMarquardt {
       f.linearize(theta, s.at);
       accept(f, theta, s);
     }
+    if (s.jacobian != "exact" && !f.has_fresh_batches()) return step_within(f, theta, s);
+    if (accuracy > 0 && s.squares.solve(kUndamped, factorization, s.step, s.Jd) &&
+        leaves_enough(s, theta))
+      return Status::converged;
     if (!s.squares.solve(s.damping.mu, factorization, s.step, s.Jd)) return Status::stalled;
     Real predicted = predicted_decrease(s);
-    const bool accelerates = acceleration > 0 && s.gain < kPoorGain && !s.differences.is_noisy();
+    const bool accelerates = acceleration > 0 && s.gain < kPoorGain;
     if (accelerates && !accelerate(f, theta, s)) return reject(f, theta, s);
     s.candidate = theta + s.step;
     if (f.bounds() && !f.bounds()->hold(s.candidate)) predicted = project(f, theta, s);
@@ -338,24 +354,163 @@ struct LevenbergMarquardt {
     return Status::running;
   }
 
-  Status reject(Meter& f, const Vector& theta, State& s) const {
+  Status reject(Meter& f, const Vector&, State& s) const {
     f.reject_step();
     s.gain = 0;
-    return s.has_updated_jacobian() ? renew(f, theta, s)
-                                    : s.damping.reject();  // it may be to blame
+    return s.damping.reject();
   }
-  // A J of updates does not tell that no step is left.
+  // A J of updates does not tell that no step is left, nor forward differences the sixth digit of
+  // what they hardly determine.
   Status stop(Meter& f, const Vector& theta, State& s) const {
-    return s.has_updated_jacobian() ? renew(f, theta, s) : Status::converged;
+    if (s.has_updated_jacobian()) return renew(f, theta, s);
+    s.is_fine = s.jacobian == "differences" && !s.differences.is_noisy() &&
+                !s.differences.is_central() && is_blurred(f, theta, s);
+    return s.is_fine ? renew(f, theta, s) : Status::converged;
+  }
+  bool is_blurred(const Meter& f, const Vector& theta, State& s) const {
+    const Problem& problem = f.problem();
+    const Matrix& J = s.at.jacobian();
+    const Vector slope = -J.transpose() * s.residual;
+    LeastSquaresPoint at{.J = J,
+                         .residual = -s.residual,
+                         .theta = theta,
+                         .sizes = sizes_of_unknowns(problem.standard_start()),
+                         .is_held = std::vector<bool>(static_cast<std::size_t>(theta.size())),
+                         .names = problem.names(),
+                         .size_of_y = s.at.y().norm(),
+                         .noise = s.differences.noise(),
+                         .has_exact_jacobian = false,
+                         .is_central = s.differences.is_central(),
+                         .enough_of_deviation = std::max(accuracy, kEnoughOfDeviation),
+                         .forgives_noise = false};
+    for (Index i = 0; f.bounds() && i < theta.size(); ++i)
+      at.is_held[static_cast<std::size_t>(i)] =
+          f.bounds()->is_active(theta, slope, i) || f.bounds()->lower[i] == f.bounds()->upper[i];
+    return !doubt_of(at).empty();
   }
   Status renew(Meter& f, const Vector& theta, State& s) const {
-    s.differences.renew(f, theta, s.jacobian, s.at);
+    s.differences.renew(f, theta, s.is_fine ? "central" : s.jacobian, s.at);
     s.squares.set(f, s.at, theta, s.residual, scaling);
+    s.is_retried = false;
     return Status::running;
   }
 
-  // Up to a gain of 1/4, Moré (1978) reduces the radius: r is far from linear in d.
-  static constexpr Real kPoorGain = 0.25;
+  // A step within the radius, by a J of differences.
+  Status step_within(Meter& f, Vector& theta, State& s) const {
+    constexpr Real kSettled = 1e-8;  // of ½‖r‖², that the Gauss-Newton step would gain
+    constexpr Real kFirst = 0.1, kLonger = 1.1, kShorter = 0.9;
+    Vector sizes(theta.size()), least(theta.size());
+    for (Index j = 0; j < theta.size(); ++j) {
+      sizes[j] = s.differences.size_of(theta, j);
+      least[j] = least_size(theta[j], sizes[j]);
+    }
+    if (!s.squares.solve(kUndamped, factorization, s.step, s.Jd)) return stalled(f, theta, s);
+    const Real share = s.step.cwiseQuotient(least).lpNorm<Eigen::Infinity>();
+    const bool is_settled = 0.5 * s.Jd.squaredNorm() <= kSettled * s.squares.misfit();
+    const bool is_enough = share <= kEnoughOfUnknown || leaves_enough(s, theta);
+    if (is_enough || (is_settled && s.has_updated_jacobian())) return stop(f, theta, s);
+    if (s.radius == 0) s.radius = kFirst * std::sqrt(s.squares.squared_length(sizes));
+    const bool is_limited = length_of(s) > kLonger * s.radius;
+    if (is_limited && !shorten(s)) return stalled(f, theta, s);
+    is_limited || s.has_updated_jacobian() ? s.last_step.resize(0) : lengthen(s);
+    s.candidate = theta + s.step;
+    if (f.bounds()) s.candidate = f.bounds()->nearest(s.candidate);
+    if (s.candidate == theta) return stop(f, theta, s);
+    s.step = s.candidate - theta;
+    s.squares.push_dense(s.step, s.Jd);
+    const Real slope = s.residual.dot(s.Jd), predicted = slope - 0.5 * s.Jd.squaredNorm();
+    f.linearize(s.candidate, s.trial);
+    const Real misfit = s.squares.misfit();
+    const Real actual = misfit - 0.5 * (s.trial.y() - f.target()).squaredNorm();
+    const Real length = length_of(s), rounding = rounding_of_misfit(f, s);
+    const bool is_rounding =
+        std::abs(predicted) <= rounding && std::abs(actual) <= rounding;  // false for NaN
+    if (is_rounding && (s.has_updated_jacobian() || !(length <= kShorter * s.last_length)))
+      return stop(f, theta, s);
+    if (is_rounding) s.last_length = length;
+    s.gain = is_rounding ? 1 : std::isfinite(actual) && predicted > 0 ? actual / predicted : -1;
+    const bool is_fresh = !s.has_updated_jacobian();
+    if (s.gain < kPoorGain && is_fresh) {
+      s.radius = shrinkage(actual, slope) * std::min(s.radius, length);
+    } else if (s.gain > 1 - kPoorGain || !is_limited) {
+      s.radius = std::max(s.radius, 2 * length);
+    }
+    constexpr Real kAccepted = 1e-4;
+    if (s.gain > kAccepted) {
+      theta = s.candidate;
+      std::swap(s.at, s.trial);
+      accept(f, theta, s);
+      return Status::running;
+    }
+    f.reject_step();
+    if (is_fresh) return s.radius > 0 ? Status::running : Status::converged;
+    constexpr Real kFar = 99;  // of ½‖r‖²: such a point tells little of J
+    if (s.is_retried || !(-actual <= kFar * misfit)) return renew(f, theta, s);
+    s.is_retried = true;
+    s.radius = 0.5 * std::min(s.radius, length);
+    s.differences.learn(s.candidate, s.trial.y().reshaped(), s.squares.scale(), s.at);
+    s.squares.set(f, s.at, theta, s.residual, scaling);
+    return Status::running;
+  }
+  // ‖J d‖ in units of ‖r‖/√(m − n) is at least |dⱼ| in standard deviations of unknown j.
+  bool leaves_enough(const State& s, const Vector& theta) const {
+    const Real share = std::max(kEnoughOfDeviation, accuracy);
+    const auto freedom = static_cast<Real>(s.residual.size() - theta.size());
+    return freedom > 0 && freedom * s.Jd.squaredNorm() <= share * share * s.residual.squaredNorm();
+  }
+  Status stalled(Meter& f, const Vector& theta, State& s) const {
+    return s.has_updated_jacobian() ? renew(f, theta, s) : Status::stalled;
+  }
+  static Real length_of(const State& s) { return std::sqrt(s.squares.squared_length(s.step)); }
+  // The μ at which ‖D d‖ is the radius to a tenth, by the secant of 1/‖D d‖, which is nearly linear
+  // in μ; within a bracket. False where no step is finite.
+  bool shorten(State& s) const {
+    constexpr int kMostTries = 60;
+    constexpr Real kToTheRadius = 0.1;
+    Real low = 0, high = kUnbounded, mu = 0.5 * s.Jd.squaredNorm() / (s.radius * s.radius);
+    Real last_mu = 0, last = 1 / length_of(s);  // as good as undamped
+    for (int i = 0; i < kMostTries; ++i) {
+      if (!s.squares.solve(mu, factorization, s.step, s.Jd)) return false;
+      const Real length = length_of(s);
+      if (std::abs(length - s.radius) <= kToTheRadius * s.radius) return true;
+      (length > s.radius ? low : high) = mu;
+      const Real change = (1 / length - last) / (mu - last_mu);
+      Real next = mu + (1 / s.radius - 1 / length) / change;
+      last_mu = mu;
+      last = 1 / length;
+      if (!(next > low && next < high))
+        next = high == kUnbounded ? 10 * mu : low == 0 ? high / 10 : std::sqrt(low * high);
+      mu = next;
+    }
+    return true;
+  }
+  // Where residuals remain at the solution, Gauss-Newton steps shrink, or alternate, by a factor ρ:
+  // one that is parallel to the last one ends where all that follow would; Aitken (1926).
+  static void lengthen(State& s) {
+    constexpr Real kParallel = 0.9, kLeast = 0.1;
+    const Vector scaled = s.squares.scale().cwiseProduct(s.step);
+    const Vector last = std::exchange(s.last_step, scaled);
+    const Real by = std::exchange(s.last_factor, 1);
+    if (last.size() == 0) return;
+    const Real ratio = scaled.dot(last) / last.squaredNorm();
+    if (!(std::abs(ratio) * last.norm() >= kParallel * scaled.norm())) return;
+    const Real rest = (1 - ratio) / by;  // 1 − ρ
+    if (!(rest >= kLeast && rest <= 2 - kLeast)) return;
+    s.last_factor = 1 / rest;
+    s.step *= s.last_factor;
+  }
+  // The share of the radius after a poor step: where the parabola through ½‖r‖² at both ends, with
+  // the slope at the first one, is least.
+  static Real shrinkage(Real actual, Real slope) {
+    constexpr Real kLeast = 0.1, kMost = 0.5, kBlind = 0.25;
+    if (!std::isfinite(actual)) return kBlind;
+    return actual >= 0 ? kMost : std::clamp(0.5 * slope / (slope - actual), kLeast, kMost);
+  }
+
+  // Up to a gain of 1/4, Moré (1978) reduces the radius: r is far from linear in d. A J is updated
+  // after a gain of 1/10 by a fresh one, and of 0.3 to 1.7 by an updated one.
+  static constexpr Real kUndamped = 1e-30;  // μ
+  static constexpr Real kPoorGain = 0.25, kLeastGain = 0.1, kOff = 0.7;
 
   Status step_fixed(Meter& f, Vector& theta, State& s) const {
     f.linearize(theta, s.at);
@@ -377,14 +532,17 @@ struct LevenbergMarquardt {
   // J, −r and D at the point just accepted.
   void accept(Meter& f, const Vector& theta, State& s) const {
     s.residual = (f.target() - s.at.y()).reshaped();
+    const bool is_first = !std::exchange(s.has_point, true) || f.has_fresh_batches();
     if (s.jacobian != "exact") {
-      if (broyden && s.differences.has_jacobian() && s.gain >= kPoorGain)
-        s.differences.update(theta, s.at);
-      else
-        s.differences.renew(f, theta, s.jacobian, s.at);
+      const bool is_fresh = s.differences.is_fresh();
+      const bool is_good = s.gain >= kLeastGain && (is_fresh || std::abs(s.gain - 1) <= kOff);
+      if (is_first || !broyden || !is_good) {
+        renew(f, theta, s);
+        return;
+      }
+      s.differences.update(theta, s.squares.scale(), s.at);
     }
     s.squares.set(f, s.at, theta, s.residual, scaling);
-    s.has_point = true;
   }
 
   // The candidate, moved onto the bounds, and the decrease of ½‖r‖² that J predicts for it.
@@ -459,6 +617,11 @@ void fields(LevenbergMarquardt& o, auto& field) {
         "for damping=adaptive, the diagonal of D: more: the largest norm that each column of J "
         "has had; fading: the same, but halved at each step; none: 1; jacobian: the current norms");
   field("jacobian", o.jacobian, kJacobians, kJacobianHelp);
+  field("difference-step", o.difference_step, {}, kStepHelp);
+  field(
+      "accuracy", o.accuracy, between(0, 1),
+      "for damping=adaptive: a run ends where the next step is predicted to change no unknown by more "
+      "than this share of its standard deviation; 0: at 1e-6 of the unknown");
   field("broyden", o.broyden,
         "of a J by differences and damping=adaptive: after steps with a gain above 1/4 J is "
         "updated by Broyden's formula");

@@ -160,15 +160,15 @@ void Meter::exhaust() {
   throw BudgetSpent();
 }
 
-// A point that was paid for when it was judged is not paid for twice.
+// A point that was paid for when it was judged, or by the last call, is not paid for twice.
 void Meter::charge_forward(VectorRef theta) {
   in_a_row_.known = trace_.failures.total;  // also those of the harness's own evaluations
+  bool is_paid = is_prepaid_ && theta.size() == judged_theta_.size() && theta == judged_theta_;
   if (!problem_.is_learned() && !problem_.jitter()) {
     in_a_row_.add(theta);
     if (in_a_row_.is_of_one_x()) exhaust();
+    is_paid = is_paid || in_a_row_.repeats > 0;
   }
-  const bool is_paid =
-      is_prepaid_ && theta.size() == judged_theta_.size() && theta == judged_theta_;
   const bool is_announced =
       next_announced_ < announced_.cols() && announced_.col(next_announced_) == theta;
   next_announced_ = is_announced ? next_announced_ + 1 : announced_.cols();
@@ -322,9 +322,9 @@ void Meter::persist(Archive& archive) {
   archive(counts_, work_, spared_, disturbed_, iteration_, next_kept_, best_loss_, next_target_,
           target_loss_, target_x_error_, targets_met_, stall_loss_, stall_iteration_, status_,
           batch_loss_, batch_x_error_, judged_.loss, judged_theta_, paid_loss_, is_prepaid_,
-          previous_, wall, processor, refined_, known_theta_, known_J_, known_noise_,
-          start_gradient_, origin_, in_a_row_.x, in_a_row_.repeats, in_a_row_.failed,
-          in_a_row_.known);
+          previous_, wall, processor, refined_, known_theta_, known_J_, known_by_.noise,
+          known_by_.step, known_by_.is_central, enough_of_deviation_, start_gradient_, origin_,
+          in_a_row_.x, in_a_row_.repeats, in_a_row_.failed, in_a_row_.known);
   const bool are_spectra_wanted =
       trace_.spectra.are_wanted;        // the caller decides this, not the file
   archive.raw(&trace_, sizeof trace_);  // plain data; no reader waits for its atomics
@@ -441,7 +441,7 @@ bool Meter::know_jacobian_at_end() {
   if (offers_it && !has.are_differences && !knows_exact_) {
     problem_.jacobian(known_J_, judged_);
     known_theta_ = judged_theta_;
-    known_noise_ = std::numeric_limits<Real>::epsilon();
+    known_by_ = {};
     return knows_exact_ = true;
   }
   if (are_same(known_theta_, judged_theta_)) return true;
@@ -455,12 +455,15 @@ bool Meter::know_jacobian_at_end() {
       counts_[static_cast<std::size_t>(Oracle::jacobian)] += calls;
       work_ += calls * price;
       known_theta_ = judged_theta_;
-      known_noise_ = std::max(known_noise_, has.noise);
+      known_by_.noise = std::max(known_by_.noise, has.noise);
+      trace_.difference_noise = has.noise;
+      trace_.difference_step = has.step;
       return true;
     }
     Linearization at;
     DifferenceJacobian differences;
     const Vector theta = judged_theta_;
+    if (known_J_.size() > 0) differences.know_noise(theta, known_by_.noise);
     linearize(theta, at);
     differences.renew(*this, theta, "central", at);
     return true;
@@ -491,12 +494,14 @@ std::string Meter::doubt() {
                        .is_held = std::vector<bool>(static_cast<std::size_t>(n)),
                        .names = problem_.names(),
                        .size_of_y = judged_.y.norm(),
-                       .noise = known_noise_,
-                       .has_exact_jacobian = !is_by_method && !problem_.products().are_differences};
+                       .noise = known_by_.noise,
+                       .has_exact_jacobian = !is_by_method && !problem_.products().are_differences,
+                       .is_central = known_by_.is_central,
+                       .enough_of_deviation = std::max(enough_of_deviation_, kEnoughOfDeviation)};
   for (Index i = 0; i < n; ++i) at.is_held[static_cast<std::size_t>(i)] = is_held(i, slope);
   std::string why = doubt_of(at);
   constexpr Real kRounding = 1e-12;  // with what a steep y makes of it
-  if (!why.empty() || !is_by_method || known_noise_ > kRounding) return why;
+  if (!why.empty() || !is_by_method || known_by_.noise > kRounding) return why;
   at.forgives_noise = false;  // forward differences do not show six digits of a steep y
   why = doubt_of(at);
   if (why.empty() || !was_known || work_ + 2 * n > budget_.work) return why;

@@ -191,12 +191,22 @@ class Meter {
   // about 1/‖r‖ at the start where unknowns are scaled; else 1.
   Real residual_unit() const;
   void reject_step() { ++trace_.rejected_steps; }
-  // A method's own J (m·B, n) at θ, by differences, and the relative noise of y that it measured.
-  void know_jacobian(VectorRef theta, const Matrix& J, Real noise) {
+  // A method's own J (m·B, n) at θ, by differences.
+  struct Differences {
+    Real noise = std::numeric_limits<Real>::epsilon();  // of y in a call, relative to ‖y‖
+    Real step = 0;  // relative to the sizes of the unknowns; NaN where the user gave others
+    bool is_central = false;
+  };
+  void know_jacobian(VectorRef theta, const Matrix& J, const Differences& by) {
     known_theta_ = theta;
     known_J_ = J;
-    known_noise_ = noise;
+    known_by_ = by;
+    trace_.difference_noise = by.noise;
+    trace_.difference_step = by.step;
   }
+  // The share of the standard deviation of each unknown that a step may leave undone, where the
+  // user asks for no more.
+  void take_as_enough(Real share) { enough_of_deviation_ = share; }
   // The loss of the last point that the method has paid for. An adapter that keeps it with the
   // point can recall it before the point is judged; another loss changes nothing.
   Real paid_loss() const { return paid_loss_; }
@@ -338,7 +348,8 @@ class Meter {
   Vector known_theta_;        // (n)
   Matrix known_J_;            // (m·B, n) there
   bool knows_exact_ = false;  // known_J_ is the problem's own, at the returned point
-  Real known_noise_ = std::numeric_limits<Real>::epsilon();
+  Differences known_by_;      // of that J
+  Real enough_of_deviation_ = 0;
   Real start_gradient_ = 0;                 // ‖∇L‖
   const problems::Refinement* refinement_;  // nullptr: none
   problems::Refinement::State refined_;

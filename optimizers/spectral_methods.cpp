@@ -34,7 +34,7 @@ namespace {
 struct GaussNewton {
   static constexpr bool kIsOnResidual = true;  // w = y − y*, else ∂L/∂y
   Real rate = 1, cutoff = 0;
-  std::string factorization = "orthogonal", jacobian = "exact";
+  std::string factorization = "orthogonal", jacobian = "exact", difference_step;
   KrylovLimits krylov;
 
   SpectralFilter filter(Index longest) const {
@@ -81,6 +81,7 @@ struct Spectral : Options {
     State s;
     s.spectral = SpectralStep(factorization_named(this->factorization), this->krylov);
     s.spectral.start(f);
+    if constexpr (Options::kIsOnResidual) s.differences.take_steps(this->difference_step, f);
     if (f.is_sparse()) s.sparse.start(*f.sparse_pattern());
     return s;
   }
@@ -135,6 +136,7 @@ void fields(GaussNewton& o, auto& field) {
         "thin SVD of J; by QR and the SVD of R; by the smaller Gram matrix of J; or by JJᵀ formed "
         "layer by layer");
   field("jacobian", o.jacobian, kJacobians, kJacobianHelp);
+  field("difference-step", o.difference_step, {}, kStepHelp);
 }
 
 void first_fields(auto& o, auto& field) {

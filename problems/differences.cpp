@@ -25,11 +25,12 @@ struct Inside final : Scratch {
 class Differenced final : public Physics {
  public:
   // `start`: where the noise is measured, once, before the first product.
-  Differenced(std::unique_ptr<Physics> inside, const std::string& derivatives, Vector start,
-              std::optional<Bounds> bounds)
+  Differenced(std::unique_ptr<Physics> inside, const std::string& derivatives, GivenSteps steps,
+              Vector start, std::optional<Bounds> bounds)
       : inside_(std::move(inside)),
         is_central_(derivatives == "central"),
         has_products_(derivatives != "none"),
+        given_(std::move(steps)),
         start_(std::move(start)),
         sizes_(sizes_of_unknowns(start_)),
         bounds_(std::move(bounds)) {}
@@ -49,7 +50,8 @@ class Differenced final : public Physics {
             .pullback_price = calls * inputs(),
             .are_differences = has_products_,
             .are_at_once = has_products_,
-            .noise = noise_};
+            .noise = noise_,
+            .step = given_.steps.empty() && noise_ > 0 ? step() : std::nan("")};
   }
   void keep_inverse() { has_inverse_ = true; }
   Inverse inverse_kind() const override {
@@ -96,13 +98,17 @@ class Differenced final : public Physics {
   }
 
  private:
+  Real step() const { return is_central_ ? central_step(noise_) : forward_step(noise_); }
   // Inside the bounds, for all samples.
   std::array<Real, 2> offsets_along(const Inside& own, BatchRef v, Room& room) const {
     measure_noise(own);
     const Matrix& x = own.w.x;
     const Vector sizes = x.rowwise().lpNorm<Eigen::Infinity>().cwiseMax(sizes_);
-    const Real length = (v.array().colwise() / sizes.array()).abs().maxCoeff();
-    const Real step = is_central_ ? central_step(noise_) : forward_step(noise_);
+    Vector steps = sizes;
+    for (Index i = 0; i < steps.size() && !given_.steps.empty(); ++i)
+      steps[i] = given_.of(i, steps.size(), sizes[i], 0);
+    const Real length = (v.array().colwise() / steps.array()).abs().maxCoeff();
+    const Real step = given_.steps.empty() ? this->step() : 1;
     for (Index b = 0; bounds_ && b < x.cols(); ++b)
       for (Index i = 0; i < x.rows(); ++i) {
         if (v(i, b) == 0) continue;
@@ -157,6 +163,7 @@ class Differenced final : public Physics {
 
   std::unique_ptr<Physics> inside_;
   bool is_central_, has_products_, has_inverse_ = false;
+  GivenSteps given_;
   Vector start_, sizes_;  // (k)
   std::optional<Bounds> bounds_;
   mutable Real noise_ = 0;  // 0: not yet measured
@@ -180,9 +187,11 @@ Real relative_noise(const Problem& problem, const Vector& x) {
   return noise_of_calls(y(0), y);
 }
 
-void replace_derivatives(ProblemParts& parts, const std::string& derivatives, bool keeps_inverse) {
-  auto physics = std::make_unique<Differenced>(std::move(parts.physics), derivatives,
-                                               parts.start.standard, parts.bounds);
+void replace_derivatives(ProblemParts& parts, const std::string& derivatives, bool keeps_inverse,
+                         const std::string& steps) {
+  auto physics =
+      std::make_unique<Differenced>(std::move(parts.physics), derivatives, given_steps(steps),
+                                    parts.start.standard, parts.bounds);
   if (parts.jitter) physics->set_jitter(*parts.jitter, parts.target);
   if (keeps_inverse) physics->keep_inverse();
   parts.physics = std::move(physics);

@@ -14,8 +14,8 @@ Real relative_noise(const Problem& problem, const Vector& x);
 // `derivatives`: "none", or "forward" or "central" differences of forward solves, which cost what
 // they call: k or 2k for J. Six further calls at
 // the start measure the noise of y. They see the jitter of the calls. No sparse J
-// remains, and an inverse only where it is kept.
+// remains, and an inverse only where it is kept. `steps`: of given_steps().
 void replace_derivatives(ProblemParts& parts, const std::string& derivatives,
-                         bool keeps_inverse = false);
+                         bool keeps_inverse = false, const std::string& steps = "");
 
 }  // namespace isoline::problems

@@ -516,13 +516,14 @@ Problem with_features(Problem plain, const OptionValues& options, const Draw& dr
   const Features features =
       read_options<Features>(complete_options(option_table<Features>(), "features", options));
   require(!plain.is_learned(),
-          "noise, model, scale, rotate, digits, tikhonov, order, fail, jitter and derivatives "
-          "require mode=direct");
+          "noise, model, scale, rotate, digits, tikhonov, order, fail, jitter, derivatives "
+          "and difference-step require mode=direct");
   Problem featured = with_other_data(std::move(plain), features, draw, target);
   if (features.jitter == 0 && features.derivatives == "exact") return featured;
   ProblemParts parts = std::move(featured).parts();
   if (features.jitter > 0) parts.jitter = {features.jitter, draw.stream("jitter")};
-  if (features.derivatives != "exact") replace_derivatives(parts, features.derivatives);
+  if (features.derivatives != "exact")
+    replace_derivatives(parts, features.derivatives, false, features.difference_step);
   return Problem(std::move(parts));
 }
 

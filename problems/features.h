@@ -5,6 +5,7 @@
 
 #include <optional>
 
+#include "core/differences.h"
 #include "core/options.h"
 #include "problems/problem.h"
 
@@ -20,7 +21,7 @@ struct Features {
   Index order = 0;
   std::string bounds = "none";
   Real jitter = 0;
-  std::string derivatives = "exact";
+  std::string derivatives = "exact", difference_step;
   Real fail = 0;
 };
 inline void fields(Features& o, auto& field) {
@@ -43,6 +44,7 @@ inline void fields(Features& o, auto& field) {
   field("derivatives", o.derivatives, {"exact", "forward", "central", "none"},
         "those of the problem; by forward or central differences, at the cost of their calls; or "
         "none");
+  field("difference-step", o.difference_step, {}, kStepHelp);
   field(
       "fail", o.fail, between(0, 0.5),
       "share of all x at which the evaluation fails: parallel layers that hold neither x₀ nor x*");

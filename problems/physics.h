@@ -94,6 +94,7 @@ struct Products {
   bool are_differences = false;  // quotients of forwards, of some eight digits
   bool are_at_once = false;      // by forwards none of which needs the result of another
   Real noise = 0;  // of y in a call, relative to ‖y‖, where differences have found it
+  Real step = std::numeric_limits<Real>::quiet_NaN();  // of those, relative to the unknowns' sizes
 };
 
 class Physics {

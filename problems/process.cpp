@@ -311,8 +311,8 @@ class ProcessPhysics final : public ByJacobian {
   std::optional<Bounds> bounds_;
 };
 
-ProblemParts process_parts(const ProblemHandshake& said, const std::shared_ptr<Session>& session,
-                           const Draw& draw) {
+ProblemParts process_parts(const SimulatorOptions& given, const ProblemHandshake& said,
+                           const std::shared_ptr<Session>& session, const Draw& draw) {
   const Vector standard = vector_of(said.start);
   const StartScale scale = said.has_own_scale ? StartScale::own : StartScale::at_least_one;
   ProblemParts parts{.physics = std::make_unique<ProcessPhysics>(session, said),
@@ -339,7 +339,8 @@ ProblemParts process_parts(const ProblemHandshake& said, const std::shared_ptr<S
   const bool has_products = said.oracles.contains(Oracle::pushforward) ||
                             said.oracles.contains(Oracle::pullback) ||
                             said.oracles.contains(Oracle::jacobian);
-  if (said.are_differences && !has_products) replace_derivatives(parts, "central", true);
+  if (said.are_differences && !has_products)
+    replace_derivatives(parts, "central", true, given.difference_step);
   return parts;
 }
 
@@ -351,7 +352,7 @@ Problem make_process(const OptionValues& options, const Draw& draw) {
   if (!said.drawn.empty() && draw.start_seed() != draw.instance_seed()) {  // it samples its starts
     said.drawn = Session(given, draw.start_seed(), declared).said().drawn;
   }
-  return Problem(process_parts(said, session, draw));
+  return Problem(process_parts(given, said, session, draw));
 }
 
 Foreign introduce(const OptionValues& options) {

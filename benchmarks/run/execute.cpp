@@ -313,6 +313,8 @@ void add_verdicts(const Trace& trace, Record& record) {
   record.x_scale = known(trace.x_scale);
   record.x_floor = trace.x_floor;
   record.noise_level = known(trace.noise_level);
+  if (!std::isnan(trace.difference_noise))
+    record.differences = {trace.difference_noise, known(trace.difference_step)};
   for (const auto& [name, tau] : kVerified) {
     auto &verified = record.verified[name], &found = record.found[name];
     if (record.minimum) verified = meets(trace.last.loss, trace.minimum + tau * trace.scale);

@@ -70,7 +70,8 @@ std::string duration_text(double seconds) {
 }
 
 std::string progress_bar(double part, std::size_t columns, bool has_colour) {
-  const auto done = static_cast<std::size_t>(std::clamp(part, 0.0, 1.0) * columns);
+  const auto done =
+      static_cast<std::size_t>(std::clamp(part, 0.0, 1.0) * static_cast<double>(columns));
   std::string text = has_colour ? kGreen : "";
   for (std::size_t i = 0; i < done; ++i) text += "█";
   if (has_colour) text += kUsualColour;

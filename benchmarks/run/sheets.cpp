@@ -442,7 +442,8 @@ MeasuredPrices measure_prices(const Problem& problem, const std::string& build) 
     measured.oracles.push_back(price_of(name_of(Oracle::forward), 1, first, {{first}, {1}, 1}));
     return measured;
   }
-  if (problem.is_elsewhere()) evaluations().begin({});  // the others are made, and timed
+  if (problem.is_elsewhere()) evaluations().begin({});
+  const Afresh afresh;  // the others are made, and timed
   const double once = std::max(seconds_of(problem, 1, solve), 1e-9);
   Rounds alone = rounds_of(problem, {once, once});
   const double forward = at_share(alone.forward_seconds, 0.5);

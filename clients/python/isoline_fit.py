@@ -462,7 +462,8 @@ class Fit:
         if np.any(self._held):
             messages.append("held at a bound: " + ", ".join(np.array(self.names)[model.free][self._held]))
         self.message = "; ".join(filter(None, [*messages, self._record["message"]]))
-        self.basins, self.calls = self._basins(), model.calls
+        nothing = 1e-10 * np.nanmax([float(record["summary"]["start_loss"]) for record, *_ in ends])  # zero residuals
+        self.basins, self.calls = self._basins(nothing), model.calls
 
     def _why_not(self):
         """Why the point has no uncertainty; empty if it has one. Sets p."""
@@ -520,11 +521,11 @@ class Fit:
         self.interval = np.array([low, high]).T
         self.correlation = c / np.outer(self.sd, self.sd)
 
-    def _basins(self):
-        """Ends whose losses agree to 1e-4 and whose unknowns agree to 1e-2 are one minimum."""
+    def _basins(self, nothing):
+        """Ends whose losses agree to 1e-4, or by the loss `nothing`, and whose unknowns agree to 1e-2 are one minimum."""
         found, size = [], 1e-9 * max(abs(self._model.x0))
         for *_, loss, x in self.runs:
-            same = [each for each in found if abs(loss - each[1]) <= 1e-4 * each[1] and np.allclose(x, each[2], 1e-2, size)]
+            same = [each for each in found if abs(loss - each[1]) <= 1e-4 * each[1] + nothing and np.allclose(x, each[2], 1e-2, size)]
             found += [] if same else [[0, loss, x]]
             (same or found[-1:])[0][0] += 1
         return [tuple(basin) for basin in found]

@@ -1,9 +1,12 @@
 // The store of evaluations: what calls to problems in other programs answered, in the files
 // `evaluations/*.calls` of a result folder. Any later call for the same numbers, bit for bit, is
-// answered from it: of another method or budget, of a check, of a run that was killed.
+// answered from it: of another method or budget, of a check, of a run that was killed. And, without
+// files, the last calls of this process, however quick they were: a method and its judge ask for
+// one point.
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -48,25 +51,35 @@ class Evaluations {
   // From now on; what is open is closed.
   void begin(Settings settings);
 
-  // The answer that is stored, and why the call failed, empty if it did not. A call that was late
-  // is no answer where more time is allowed now.
+  // The answer of one of the last calls, or the one that is stored, and why the call failed, empty
+  // if it did not. A call that was late is no answer where more time is allowed now.
   std::optional<std::string> find(const EvaluationKey& key, Verb verb, Numbers request,
                                   std::span<Real> answer, double most_seconds);
   bool has(const EvaluationKey& key, Verb verb, Numbers request);
-  // Stores it where it took long enough.
+  // For the next calls, if it is remembered; stores it where it took long enough.
   void keep(const EvaluationKey& key, Verb verb, Numbers request, std::span<const Real> answer,
-            const std::string& why, double seconds, bool is_late);
+            const std::string& why, double seconds, bool is_late, bool is_remembered = true);
   double answered_seconds() const { return answered_seconds_; }  // that they took when made
 
  private:
   struct Head;
   struct File;
   struct Stored;
+  struct Recent {
+    std::uint64_t place;
+    std::string stem, request, why;
+    std::vector<Real> answer;
+  };
   Stored& stored(const EvaluationKey& key);
   static void read_on(Stored& of, const std::filesystem::path& folder);
   bool open_for_writing(Stored& of, const EvaluationKey& key);
 
+  const Recent* recent(const EvaluationKey& key, Verb verb, std::string_view request) const;
+  void remember(Recent call);
+
   Settings settings_;
+  std::deque<Recent> recent_;  // forward calls, the last one first
+  std::size_t recent_numbers_ = 0;
   std::map<std::string, std::shared_ptr<Stored>> stored_;  // by stem
   double answered_seconds_ = 0;
 };

@@ -240,6 +240,11 @@ void fields(Like<FieldFrames> auto& frames, auto& field) {
   field("digest", frames.digest, kDigestLaw);
 }
 
+void fields(Like<Differences> auto& differences, auto& field) {
+  field("noise", differences.noise, kCountLaw);
+  field.optional("step", differences.step, kCountLaw);
+}
+
 void fields(Like<AnswerPoints> auto& answer, auto& field) {
   field("unknowns", answer.unknowns, kCountLaw);
   field.optional("names", answer.names,
@@ -365,6 +370,9 @@ void fields(Like<Record> auto& record, auto& field) {
                  R"({"description": "Of a least-squares solution: x and its covariance"})");
   field.optional("answer", record.answer,
                  R"({"description": "θ = x of a direct problem, as returned and of least loss"})");
+  field.optional(
+      "differences", record.differences,
+      R"({"description": "Of a J by differences: noise of y in a call, and step, relative"})");
   field.optional("calls", record.calls, R"({"description": "To a problem of another program"})");
   field.optional("failures", record.failures, R"({"description": "Evaluations that failed"})");
   field("privileges", record.privileges);

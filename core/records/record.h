@@ -115,6 +115,13 @@ struct Uncertainty {
   Real condition = 0;                   // number of J, its columns scaled to norm 1
 };
 
+// The noise of y in a call, by differences, relative to ‖y‖, and the step that followed from
+// it, relative to the sizes of the unknowns; none where the options give the steps.
+struct Differences {
+  Real noise = 0;
+  std::optional<Real> step;
+};
+
 // θ = x of a direct problem, which is what its user wants: as the run returned it, and the point of
 // least loss where that is another one. Beyond kInline unknowns, the numbers stand beside the
 // record in CELL-BUILD.x.npy: float64 of the shape (points, unknowns).
@@ -210,7 +217,8 @@ struct Record {
   // The scales of errors in x, if a solution is known: ‖x*‖, and the floor that the data impose.
   std::optional<Real> x_scale;
   Real x_floor = 0;
-  std::optional<Real> noise_level;  // δ, the expected ‖y* − P(x*)‖, where it is known
+  std::optional<Differences> differences;  // by which J came
+  std::optional<Real> noise_level;         // δ, the expected ‖y* − P(x*)‖, where it is known
   std::map<std::string, std::optional<bool>> found;  // by τ: error in x ≤ max(τ‖x*‖, 1.1 x_floor)
   std::string criterion;  // digest of what success is measured by; older: none
   OracleCounts counts{};

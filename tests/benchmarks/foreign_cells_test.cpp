@@ -368,7 +368,7 @@ TEST_F(ForeignCells, AreRunOnlyWhereTheProblemIsCertified) {
   const std::string sign = complaint("has-a-wrong-sign"), random = complaint("is-random");
   EXPECT_NE(sign.find("falls as h²"), std::string::npos) << sign;
   EXPECT_NE(random.find("gives the same bits"), std::string::npos) << random;
-  EXPECT_NE(complaint("raises").find("mesh is tangled"), std::string::npos) << "the reason";
+  EXPECT_NE(complaint("always-raises").find("mesh is tangled"), std::string::npos) << "the reason";
   EXPECT_NE(complaint("two-answers").find("cannot be checked"), std::string::npos)
       << "no certificate, no cells";
   EXPECT_EQ(complaint("is-sound"), "");
@@ -471,7 +471,7 @@ TEST_F(SlowProgram, MakesTheAnnouncedCallsThoseOfItsCellAndOneForTheVerifier) {
     const std::vector<std::size_t> made = calls();
     ASSERT_EQ(made.size(), 3U) << derivatives << ": the checks, the cell and the verifier";
     EXPECT_LE(made[0], count) << derivatives;
-    EXPECT_GE(made[0] + 1, count) << derivatives << ": differences may ask for a point twice";
+    EXPECT_GE(made[0] + 3, count) << derivatives << ": differences may ask for a point twice";
     EXPECT_EQ(made[2], 1U) << derivatives;
     if (derivatives.empty()) {
       EXPECT_EQ(made[1], 10U) << "the checks have made the call at the start";

@@ -296,7 +296,7 @@ TEST(Manual, HasEveryVerbAndOptionAndIsCleanRoff) {
   std::istringstream verbs(kVerbs);
   for (std::string verb; verbs >> verb;) EXPECT_TRUE(contains(page, ".SS isoline " + verb));
   EXPECT_TRUE(contains(page, ".TP\n\\fB\\-\\-shard\\fR TEXT\n"));
-  EXPECT_TRUE(contains(page, "Values: csv, coco."));
+  EXPECT_TRUE(contains(page, "Values: csv, runs, coco."));
   if (shell("command -v groff").exit_code != 0) return;
   const Finished shown = shell.expect("groff -man -Kutf8 -Tutf8 -P-cbou -ww isoline.1",
                                       {.out = {"NAME", "--keep-state"}});

@@ -48,7 +48,7 @@ def misbehave(x):
         line.sendall(head(99, 0, 16) + bytes(16))
     elif mode == "two-answers":
         line.sendall(2 * (head(2, 0, 16) + bytes(16)))
-    elif mode == "raises":
+    elif mode in ("raises", "always-raises"):
         raise ValueError("the mesh is tangled")
     elif mode == "raises-at-length":
         raise ValueError("the mesh is tangled" + "\ud800" + 100_000 * "x")
@@ -70,7 +70,7 @@ def misbehave(x):
 def forward(x):
     global calls
     calls += 1
-    if calls == 3:  # after the handshake and a check
+    if calls == 3 or (mode == "always-raises" and calls > 1):  # after the handshake and a check
         misbehave(x)
     if mode == "is-random":
         state[0] += 1e-9

@@ -83,6 +83,17 @@ TEST_F(StoreOfEvaluations, AnswersInAnyOrderSlowCallsAndFailuresAlone) {
   EXPECT_FALSE(find(later, 1).why) << "of another seed";
 }
 
+TEST_F(StoreOfEvaluations, AnswersTheLastCallsHoweverQuick) {
+  Evaluations store;
+  for (int i = 0; i <= 64; ++i) keep(store, i, i == 2 ? "no mesh" : "", 0);
+  EXPECT_FALSE(find(store, 0).why) << "64 calls follow it";
+  EXPECT_EQ(find(store, 1).y, (std::array<Real, 2>{2, -1}));
+  EXPECT_EQ(find(store, 2).why, "no mesh");
+  EXPECT_FALSE(find(store, 1, Verb::pullback).why) << "another program may have to know the point";
+  store.begin({});
+  EXPECT_FALSE(find(store, 1).why);
+}
+
 TEST_F(StoreOfEvaluations, MakesALateCallAgainWhereMoreTimeIsAllowed) {
   Evaluations store = opened();
   keep(store, 1, "late", 5, true);

@@ -458,6 +458,27 @@ TEST(NoiseOfCalls, SeesJumpsThatSmallStepsDoNot) {
   EXPECT_GT(noise_of_calls(y(0), y), 1e-5);
 }
 
+TEST(Differences, TakeTheStepsOfAUser) {
+  EXPECT_EQ(given_steps("").of(0, 2, 5, 1e-3), 5e-3);
+  EXPECT_EQ(given_steps("0.1").of(1, 2, 5, 1e-3), 0.5);
+  EXPECT_EQ(given_steps("0.1:2").of(1, 2, 5, 1e-3), 10);
+  EXPECT_EQ(given_steps("0.1:2 absolute").of(1, 2, 5, 1e-3), 2);
+  EXPECT_THROW(given_steps("0.1:2").of(0, 3, 5, 1e-3), UsageError);
+  for (const char* wrong : {"0", "-1", "1:", "x", "absolute", "1 2", "inf"})
+    EXPECT_THROW(given_steps(wrong), UsageError) << wrong;
+}
+
+TEST(NoiseOfCalls, GivesTheSlopeOfASmoothFunctionAlone) {
+  const auto smooth = [](Real t) -> Vector { return calls_of(t, [](Real y) { return y; }); };
+  const auto printed = [&](Real t) -> Vector { return smooth(t).cast<float>().cast<Real>(); };
+  Vector slope, none;
+  noise_of_calls(smooth(0), smooth, &slope);
+  const Real h = 1e-5;
+  EXPECT_LT((slope - (smooth(h) - smooth(-h)) / (2 * h)).norm(), 1e-8 * slope.norm());
+  noise_of_calls(printed(0), printed, &none);
+  EXPECT_EQ(none.size(), 0);
+}
+
 TEST(Differences, StayInsideTheirRoomAndAreOfSecondOrderThere) {
   const auto y = [](Real t) { return Vector::Constant(1, std::exp(t)); };
   for (const auto& [up, down] : {std::pair<Real, Real>{1, 1}, {0, 1}, {1, 0}, {1e-5, 1e-4}}) {

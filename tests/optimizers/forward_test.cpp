@@ -86,10 +86,13 @@ TEST(Forward, CentralDifferencesGiveTheStepsOfExactDerivatives) {
     expect_same(by_differences, ", problem");
     EXPECT_TRUE(std::isnan(by_differences.trace->last.gradient_norm)) << "it would take calls";
     EXPECT_FALSE(std::isnan(one.trace->last.gradient_norm));
-    expect_same(
-        run(exact, "levenberg-marquardt[jacobian=central,broyden=false]", iterations(kSteps)),
-        ", method");
   }
+  const Problem tridiagonal = make("broyden-tridiagonal");
+  const Outcome one = run(tridiagonal, "gauss-newton", iterations(kSteps));
+  const Outcome other = run(tridiagonal, "gauss-newton[jacobian=central]", iterations(kSteps));
+  ASSERT_EQ(one.path.size(), other.path.size());
+  for (std::size_t i = 0; i < one.path.size(); ++i)
+    expect_near(other.path[i], one.path[i], 1e-5, "by the method");
 }
 
 // A repeated call of rounded values has the same bits; the noise is that of their last place.
@@ -98,7 +101,7 @@ TEST(Forward, DifferencesFindTheStepForNoiseThatRepeats) {
     const Problem problem = featured(spec, {{"digits", 7.0}});
     const auto loss = [&](const std::string& kind) {
       return run(problem, "levenberg-marquardt[jacobian=" + kind + "]",
-                 {.iterations = 1000, .work = 300, .target = 0})
+                 {.iterations = 1000, .work = 600, .target = 0})
           .trace->best_loss;
     };
     const Real least =
@@ -106,6 +109,48 @@ TEST(Forward, DifferencesFindTheStepForNoiseThatRepeats) {
     for (const char* kind : {"ecnoise", "differences", "central"})
       EXPECT_LE(loss(kind), (1 + 1e-3) * least) << spec << ", " << kind;
   }
+}
+
+// Far fewer than J at each step would take, which is n calls an iteration.
+TEST(Forward, UpdatesOfTheJacobianSaveCalls) {
+  for (const std::string set : {"Misra1a", "Thurber", "Kirby2", "Lanczos2"}) {
+    const std::string spec = "nist[dataset=" + set + ",start=2]";
+    const Problem problem = featured(spec, {{"derivatives", std::string("none")}});
+    const Budget budget{.iterations = 1000, .work = 1000, .target = 0};
+    const Outcome updated = run(problem, "levenberg-marquardt", budget);
+    const Outcome renewed = run(problem, "levenberg-marquardt[broyden=false]", budget);
+    EXPECT_EQ(updated.status, Status::converged) << set;
+    EXPECT_LT(updated.trace->last.x_error, 1e-6) << set;
+    EXPECT_LE(updated.trace->last.work, renewed.trace->last.work + 10) << set;
+  }
+}
+
+TEST(Forward, AccuracyEndsARunWithinItsShareOfTheStandardDeviations) {
+  constexpr Real kAccuracy = 0.01;
+  const Budget budget{.iterations = 1000, .work = 2000, .target = 0};
+  for (const std::string derivatives : {"exact", "none"}) {
+    const Problem problem = featured("nist[dataset=Thurber]", {{"derivatives", derivatives}});
+    const Outcome whole = run(problem, "levenberg-marquardt", budget);
+    const Outcome enough = run(problem, "levenberg-marquardt[accuracy=0.01]", budget);
+    EXPECT_EQ(enough.status, Status::converged) << derivatives << ": " << enough.trace->message;
+    EXPECT_LT(enough.trace->last.work, whole.trace->last.work) << derivatives;
+    const auto& deviations = whole.trace->uncertainty.deviation;
+    for (Index i = 0; i < whole.theta.size(); ++i)
+      EXPECT_LT(std::abs(enough.theta[i] - whole.theta[i]), 2 * kAccuracy * deviations[i]) << i;
+  }
+}
+
+// In place of the one that follows from the noise.
+TEST(Forward, AGivenStepIsTaken) {
+  const Problem problem = featured("brown-dennis", {{"derivatives", std::string("none")}});
+  for (const std::string step : {"0.01", "0.01:0.02:0.01:0.02", "0.1 absolute"}) {
+    const Outcome outcome = run(problem, "levenberg-marquardt[difference-step=" + step + "]",
+                                {.iterations = 1000, .work = 1000, .target = 0});
+    EXPECT_LT(outcome.trace->best_loss, 1.001 * 42911.1) << step;
+    EXPECT_TRUE(std::isnan(outcome.trace->difference_step)) << "the option says it";
+  }
+  const Outcome outcome = run(problem, "levenberg-marquardt", {.iterations = 5, .target = 0});
+  EXPECT_NEAR(outcome.trace->difference_step, 2.5e-8, 1e-8);
 }
 
 TEST(Forward, WithoutDerivativesOnlyMethodsThatNeedNoneApply) {

@@ -384,7 +384,7 @@ TEST(Words, AreThoseThatSourcesName) {
   const auto has = [&](const std::string& text) { return sources.find(text) != std::string::npos; };
   static const std::regex part(
       R"((.+)\.(title|caption|columns|meanings|align|x|y|lead|otherwise|reading))"),
-      beginning(R"(([a-z]+\.).+)");
+      beginning(R"(([a-z]+[.-]).+)");
   std::smatch match;
   for (const auto& [key, sentence] : all_sentences()) {
     const bool is_part = std::regex_match(key, match, part) && has('"' + match[1].str() + '"');

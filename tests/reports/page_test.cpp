@@ -91,6 +91,7 @@ Json answer_in_page(const Record& record) {
 TEST(Page, HasTheFirstTwentyUnknownsOfARun) {
   constexpr std::size_t kUnknowns = 25;
   Record record = record_of({.seed = 3});
+  record.status = Status::converged;  // else it has no deviations
   EXPECT_TRUE(answer_in_page(record).is_null());
   record.answer = AnswerPoints{.unknowns = kUnknowns,
                                .units = std::vector<std::string>(kUnknowns, "N/m"),
@@ -98,7 +99,8 @@ TEST(Page, HasTheFirstTwentyUnknownsOfARun) {
                                .x = {std::vector<Real>(kUnknowns, 0.5)},
                                .at_upper = {1},
                                .residual_norm = 0.25};
-  record.uncertainty = Uncertainty{.x = {}, .standard_deviation = {0.125}, .correlation = {}};
+  record.uncertainty = Uncertainty{
+      .x = {}, .standard_deviation = {0.125}, .correlation = {}, .degrees_of_freedom = 3};
   Json found = answer_in_page(record);
   EXPECT_EQ(found.at("seed"), 3);
   EXPECT_EQ(found.at("unknowns"), kUnknowns);
