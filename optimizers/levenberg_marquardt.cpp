@@ -577,6 +577,7 @@ struct LevenbergMarquardt {
     const Real error = kEpsilon * s.Jbend.norm() / (kShare * kShare);
     if (error > kAccurate * s.Jd.norm()) return true;
     s.candidate = theta + kShare * s.step;
+    if (f.bounds() && !f.bounds()->hold(s.candidate)) return true;  // d is projected as it is
     f.linearize(s.candidate, s.trial);
     s.Jbend = (s.Jd - (s.trial.y().reshaped() - s.Jbend) / kShare) / kShare;
     if (!is_finite(s.Jbend)) return false;

@@ -396,6 +396,8 @@ Vector Meter::finish(VectorRef theta, Status verdict) {
   watch_.pause();
   if (trace_.last.iteration != iteration_ || judged_theta_ != theta || !judged_.batch)
     look_at(theta);
+  else if (!problem_.is_learned())
+    measure_series();  // those of the calls since then
   knows_exact_ = false;
   leave_failed_point(verdict);
   if (in_a_row_.is_of_one_x() && verdict == Status::budget) {
@@ -553,11 +555,15 @@ void Meter::measure(VectorRef theta) {
     last.batch_loss[i] = batch_loss_.mean(TracePoint::kWindows[i]);
     last.batch_x_error[i] = batch_x_error_.mean(TracePoint::kWindows[i]);
   }
+  measure_series();
+}
+
+void Meter::measure_series() {
   const problems::Series& series = problem_.series();
   if (series.names.empty()) return;
   Vector values(static_cast<Index>(series.names.size()));
-  series.evaluate(problem_, theta, judged_, values);
-  std::copy_n(values.data(), values.size(), last.series);
+  series.evaluate(problem_, judged_theta_, judged_, values);
+  std::copy_n(values.data(), values.size(), trace_.last.series);
 }
 
 bool Meter::has_stalled() {
@@ -574,7 +580,9 @@ bool Meter::has_stalled() {
 Status Meter::judge(VectorRef theta) {
   constexpr Real kDivergence = 1e12;
   const Real loss = judged_.loss;
-  if (!is_finite(theta) || !std::isfinite(loss) || loss > kDivergence * trace_.start_loss)
+  const bool has_scale = trace_.start_loss > 0;  // not where the start is the solution
+  if (!is_finite(theta) || !std::isfinite(loss) ||
+      (has_scale && loss > kDivergence * trace_.start_loss))
     return Status::diverged;
   if (std::isnan(batch_loss_.last())) return Status::diverged;
   if (is_target_met()) return Status::target;

@@ -280,6 +280,7 @@ class Meter {
   void keep_returned();
   void reach(Real loss);          // records the targets that `loss` meets
   void measure(VectorRef theta);  // fills trace_.last, off the clock
+  void measure_series();          // of the problem, at the point that was judged last
   void keep_point();
   bool is_spectrum_due(bool is_last) const;
   void keep_spectrum(bool is_last);

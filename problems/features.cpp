@@ -538,9 +538,11 @@ Problem with_scaled_unknowns(Problem plain) {
   map.box = parts.bounds;
   parts.x_scale = x_scale;
   const auto names = parts.names, units = parts.units;
+  const Series series = parts.series;  // a problem with such an option has it of its calls alone
   wrap(parts, std::move(map), {}, Features{});
   parts.names = names;
   parts.units = units;
+  parts.series = series;
   return Problem(std::move(parts));
 }
 

@@ -242,10 +242,11 @@ AuditedOptimizer audit_optimizer(const Catalog& catalog, const std::string& text
   } else {
     return audited;
   }
-  // Declared of rescaled inputs, component by component: the first of the changes. To keep more
-  // than was declared is no false declaration.
+  // Declared of rescaled inputs, component by component, at default options: the first of the
+  // changes. To keep more than was declared is no false declaration.
   const Real found = audited.deviations.front();
-  if (entry.is_input_scale_invariant && found > kInvariantDeviation)
+  const bool has_defaults = options_of(spec).empty();
+  if (entry.is_input_scale_invariant && has_defaults && found > kInvariantDeviation)
     audited.flags.push_back(fmt::format(
         "declares that rescaled inputs do not change its path, but they move it by {:.2g}", found));
   return audited;

@@ -68,7 +68,8 @@ const std::map<std::string, std::string_view>& builtin_rates();
 const std::map<std::string, std::string_view>& builtin_claims();
 const std::map<std::string, std::string_view>& builtin_schemas();
 
-std::string_view embedded_best();  // benchmarks/best.json
+std::string_view embedded_best();     // benchmarks/best.json
+std::string_view embedded_conduct();  // benchmarks/published/conduct.json, isoline.audit/1
 
 // Digests of the sources that compute a run. A record is found by its request and by these digests;
 // an edit of one component runs its own cells again, and no others.

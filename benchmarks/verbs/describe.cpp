@@ -14,6 +14,7 @@
 #include "core/spec.h"
 #include "core/text.h"
 #include "networks/network_entry.h"
+#include "reports/report.h"
 
 namespace isoline::benchmarks {
 
@@ -192,6 +193,21 @@ void print(const Sheet& sheet) {
                                 : fmt::format("{}", fmt::join(sheet.privileges, "; "))));
 }
 
+// Each rule that the measured conduct of the method, at its defaults, breaks, and the reason.
+void print_conduct(const Sheet& sheet) {
+  static const std::vector<AuditedOptimizer> all =
+      audit_from_text(std::string(embedded_conduct()), "conduct.json");
+  const auto found = std::ranges::find(all, sheet.name, &AuditedOptimizer::name);
+  if (sheet.kind == "problem" || found == all.end()) return;
+  const char* heading = "Conduct";
+  for (const ConductCell& cell : found->conduct) {
+    if (cell.holds.value_or(true)) continue;
+    say(stdout, fmt::format("{:11} ✗ {}: {}. {}\n", heading, cell.column, cell.figures,
+                            reports::conduct_text(cell.column, "reason")));
+    heading = "";
+  }
+}
+
 int list(const DescribeArguments& given, Session& session) {
   const Json all = listing(session, given.name);
   if (given.as_json)
@@ -215,6 +231,7 @@ int run(const DescribeArguments& given, Session& session) {
     return kGood;
   }
   print(found.sheet);
+  print_conduct(found.sheet);
   print_options(found.table, found.options);
   return kGood;
 }

@@ -36,7 +36,12 @@ void report_on(const fs::path& out, const RunArguments& given, Session& session)
   reports::Study study = reports::read_study({out});
   if (study.runs.empty()) return;  // interrupted before the first record
   if (given.no_report) return print_view(study, {.name = given.view});
+  std::vector<AuditedOptimizer> before = std::move(study.audits);
   study.audits = audit_of(session.catalog(), study);
+  for (AuditedOptimizer& audited : study.audits)  // `isoline audit --conduct` has measured it
+    if (const auto known = std::ranges::find(before, audited.name, &AuditedOptimizer::name);
+        known != before.end())
+      audited.conduct = std::move(known->conduct);
   write_audit(study.audits, out / "audit.json");
   if (!given.quiet) say(stdout, "\n");
   write_and_print(study, out / "report", session, {.is_quiet = given.quiet || !given.view.empty()});

@@ -66,8 +66,9 @@ def start_of(file, need):
 def built(source):
     """The program of this source, built where the cache lacks it."""
     text = source.read_bytes()
+    headers = sorted({HERE / "peer.h", *source.parent.glob("*.h")})
     flags = re.search(r"^// flags: (.*)$", text.decode(), re.MULTILINE)
-    digest = hashlib.sha256(text + (HERE / "peer.h").read_bytes()).hexdigest()[:16]
+    digest = hashlib.sha256(text + b"".join(each.read_bytes() for each in headers)).hexdigest()[:16]
     program = CACHE / f"{source.stem}-{digest}"
     if not program.exists():
         CACHE.mkdir(parents=True, exist_ok=True)

@@ -147,9 +147,17 @@ void fields(Like<Approach> auto& approach, auto& field) {
   field("is_exact", approach.is_exact);
 }
 
+void fields(Like<ConductCell> auto& cell, auto& field) {
+  field("column", cell.column);
+  field.optional("holds", cell.holds);
+  field("figures", cell.figures);
+  field("records", cell.records);
+}
+
 void fields(Like<AuditedOptimizer> auto& audited, auto& field) {
   field("name", audited.name);
   field("spec", audited.spec);
+  field.optional("conduct", audited.conduct);
   field("reason", audited.reason);
   if (!audited.reason.empty()) return;
   field.optional("network", audited.network);

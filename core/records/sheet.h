@@ -126,10 +126,20 @@ struct Approach {
   bool is_exact = false;                       // ends within rounding of x*
 };
 
+// A cell of the table of conduct: whether the rule of its column holds, the figures beside the
+// mark, and the files of the records that they are from.
+struct ConductCell {
+  std::string column;         // "own counter"
+  std::optional<bool> holds;  // empty: the column does not apply, and the figures say why
+  std::string figures;
+  std::vector<std::string> records;
+};
+
 struct AuditedOptimizer {
   std::string name, spec;
-  std::string reason;   // why nothing was measured; empty if something was
-  std::string network;  // it was taught to, where θ = x makes no sense; else empty
+  std::vector<ConductCell> conduct;  // in the order of the columns; empty: it was not measured
+  std::string reason;                // why nothing was measured; empty if something was
+  std::string network;               // it was taught to, where θ = x makes no sense; else empty
   std::array<ScalingLaw, kScalingNames.size()> scalings;
   std::array<Real, kChangeNames.size()> deviations{};     // of the path, relative to its extent
   Approach regular, singular;                             // J regular, or singular, at x*

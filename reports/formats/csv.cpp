@@ -105,11 +105,12 @@ std::string csv_report(const Document& document) {
 
 std::string statistics_csv(const Document& document) {
   std::string text = "table,row,column,value\n";
-  for (const Table& table : document.section("statistics").tables)
-    for (const auto& row : table.rows)
-      for (std::size_t i = 1; i < row.size(); ++i)
-        text += fmt::format("{},{},{},{}\n", table.id, csv_field(row[0].text),
-                            csv_field(table.columns[i]), csv_field(row[i].text));
+  for (const char* section : {"statistics", "conduct"})
+    for (const Table& table : document.section(section).tables)
+      for (const auto& row : table.rows)
+        for (std::size_t i = 1; i < row.size(); ++i)
+          text += fmt::format("{},{},{},{}\n", table.id, csv_field(row[0].text),
+                              csv_field(table.columns[i]), csv_field(row[i].text));
   return text;
 }
 

@@ -315,6 +315,12 @@ std::string properties_html(const Comparison& c, std::size_t s) {
       if (answers[i])
         html += fmt::format("<li><b class={}>{}</b> {}: {}</li>", *answers[i] ? "yes" : "no",
                             *answers[i] ? "✓" : "✗", kProperties[i].name, kProperties[i].meaning);
+    for (const ConductCell& cell : audited.conduct)
+      if (cell.holds)
+        html +=
+            fmt::format("<li><b class={}>{}</b> {}: {}{}</li>", *cell.holds ? "yes" : "no",
+                        *cell.holds ? "✓" : "✗", html_text(cell.column), html_text(cell.figures),
+                        *cell.holds ? "" : html_text(". " + conduct_text(cell.column, "advice")));
   }
   return html.empty() ? "" : "<ul class=properties>" + html + "</ul>";
 }

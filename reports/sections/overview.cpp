@@ -32,6 +32,7 @@ Document document_of(Comparison comparison, std::vector<Judgement> claims) {
                        spectra_section(c),
                        claims_section(document.claims),
                        properties_section(c.study->audits),
+                       conduct_section(c.study->audits),
                        tuning_section(c),
                        statistics_section(c),
                        failures_section(c),

@@ -29,6 +29,10 @@ Section amortized_section(const Comparison& comparison);  // training once, or s
 Section sweeps_section(const Comparison& comparison);     // two options at a time, as heat maps
 Section spectra_section(const Comparison& comparison);    // of J, where runs kept them
 Section properties_section(const Audits& audits);
+// A text on a column: what is "measured", its "rule", the "reason" why it may not hold, and the
+// "advice" then.
+std::string conduct_text(const std::string& column, const char* part);
+Section conduct_section(const Audits& audits);  // counts, statuses, points and bounds, as measured
 Section tuning_section(const Comparison& comparison);  // the origin of rates, and their gain
 Section statistics_section(const Comparison& comparison);
 Section failures_section(const Comparison& comparison);

@@ -177,6 +177,10 @@ class Conduct(unittest.TestCase):
             conduct.page(TABLE, copy.name)
             self.assertEqual(pathlib.Path(copy.name).read_text(), PAGE.read_text())
 
+    def test_the_page_shows_the_published_table_of_our_own_methods(self):
+        own = json.loads(conduct.PUBLISHED.read_text())["optimizers"]
+        self.assertIn("\n".join(conduct.own_lines(own)) + "\n<!-- end of own conduct -->", PAGE.read_text())
+
     def test_the_table_is_as_large_as_promised(self):
         table = json.loads(TABLE.read_text())
         self.assertGreaterEqual(len(table["methods"]), 20)

@@ -557,6 +557,35 @@ TEST(AuditTable, IsInEveryFormatAndForeignTextIsHarmless) {
   EXPECT_FALSE(has(markdown, "<b>|x|"));
 }
 
+TEST(ConductTable, HasMarksFiguresAndAdviceInEveryFormat) {
+  Study study;
+  study.audits = samples();
+  EXPECT_TRUE(conduct_section(study.audits).is_empty());
+  study.audits[0].conduct = {
+      {.column = "own counter", .holds = true, .figures = "7 of 7", .records = {"a-b.json"}},
+      {.column = "outside the bounds", .holds = false, .figures = "3 of 9 <b>|x|", .records = {}},
+      {.column = "loose bound", .holds = {}, .figures = "no bounds", .records = {}}};
+  EXPECT_EQ(audit_to_json(audit_from_text(audit_to_json(study.audits).dump(), "it")),
+            audit_to_json(study.audits));
+  const Document document = document_of(compare_optimizers(study));
+  const Section& section = document.section("conduct");
+  ASSERT_EQ(section.tables.size(), 2U);
+  EXPECT_EQ(section.tables[0].rows.size(), 3U);
+  EXPECT_EQ(section.tables[0].rows[1][4].text, "0, 1, 0");
+  EXPECT_EQ(section.tables[1].rows.size(), 1U);  // kfac was not measured
+  EXPECT_EQ(section.tables[1].columns.size(), section.tables[1].meanings.size());
+  const std::string html = section_html(section), markdown = markdown_report(document),
+                    csv = statistics_csv(document);
+  for (const std::string& text : {html, markdown, csv, terminal_section(section)}) {
+    EXPECT_TRUE(has(text, "✓ 7 of 7"));
+    EXPECT_TRUE(has(text, "✗ 3 of 9"));
+    EXPECT_TRUE(has(text, "– no bounds"));
+  }
+  EXPECT_TRUE(has(html, "a-b.json"));
+  EXPECT_TRUE(has(html, conduct_text("outside the bounds", "advice")));
+  EXPECT_FALSE(has(html, "<b>|x|"));
+}
+
 TEST(AuditTable, SaysWhatDoesNotApplyToWhatTeachesANetwork) {
   AuditedOptimizer teacher = sample();
   teacher.network = "mlp";

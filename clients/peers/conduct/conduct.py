@@ -4,6 +4,8 @@
                                                      with names, the other rows of the file stay
     python3 conduct.py page FILE.json PAGE.md        writes the table between the marks of the page
     python3 conduct.py csv FILE.json                 prints it as CSV
+    python3 conduct.py publish AUDIT.json PAGE.md    the table of Isoline's own methods, from `isoline audit --conduct`:
+                                                     into benchmarks/published/conduct.json and the page
 
 Each column is a function; its text has what is measured, the rule for ✓, and what to do at ✗. It returns whether the
 rule holds, none where it cannot apply, and figures.
@@ -28,6 +30,8 @@ import inputs
 import methods
 import numpy
 
+ROOT = pathlib.Path(__file__).resolve().parents[3]
+PUBLISHED = ROOT / "benchmarks/published/conduct.json"
 SECONDS = 60  # of one run
 BUDGET = 10
 FAR = 1e6
@@ -308,7 +312,7 @@ def versions():
     """Of the packages, as Debian names them."""
     names = ("python3-scipy", "python3-lmfit", "python3-iminuit", "libpetsc-real3.18", "libnlopt0", "libcminpack1",
              "liblbfgs0", "coinor-libipopt1v5", "r-base-core", "r-cran-minpack.lm", "r-cran-nloptr", "r-cran-minqa",
-             "octave", "octave-optim", "libdlib19.1", "libalglib3.19")
+             "octave", "octave-optim", "libdlib19.1", "libalglib3.19", "libgsl27", "libceres3", "libpagmo8")
     command = ["dpkg-query", "-W", "-f", "${Package} ${Version}\n", *names]
     asked = subprocess.run(command, capture_output=True, text=True)
     return dict(line.split() for line in asked.stdout.splitlines())
@@ -362,10 +366,44 @@ def page(file, page):
     for method, row in table["methods"].items():
         cells = [f"{row[name]['mark']} {row[name]['figures']}" for name in table["rules"]]
         lines.append(f"| {method} | {' | '.join(cells)} |")
-    begin, end = "<!-- conduct -->", "<!-- end of conduct -->"
+    put(page, "conduct", lines)
+
+
+def put(page, name, lines):
+    """The lines, between the marks of this name."""
+    begin, end = f"<!-- {name} -->", f"<!-- end of {name} -->"
     text = pathlib.Path(page).read_text()
     before, after = text.split(begin)[0], text.split(end)[1]
     pathlib.Path(page).write_text(f"{before}{begin}\n" + "\n".join(lines) + f"\n{end}{after}")
+
+
+def own_lines(methods):
+    """The rules, whose text is in reports/words/conduct.txt, and the marks of Isoline's own methods."""
+    columns = [cell["column"] for cell in methods[0]["conduct"]]
+    text = re.sub(r"\n  ", " ", (ROOT / "reports/words/conduct.txt").read_text())
+    part = lambda column, name: re.search(
+        rf"^conduct-{column.replace(' ', '-')}:\n(?:\..*\n)*?\.{name}: (.*)$", text, re.MULTILINE)[1]
+    mark = lambda cell: {True: "✓", False: "✗", None: "–"}[cell.get("holds")]
+    lines = ["| column | what is measured | ✓ | why it may not hold | what to do at ✗ | ✓, ✗, – |", "|---|---|---|---|---|---|"]
+    for i, column in enumerate(columns):
+        marks = [mark(method["conduct"][i]) for method in methods]
+        words = " | ".join(part(column, name) for name in ("measured", "rule", "reason", "advice"))
+        lines.append(f"| {column} | {words} | {', '.join(str(marks.count(each)) for each in '✓✗–')} |")
+    lines += ["", f"| method | {' | '.join(columns)} |", "|---|" + "---|" * len(columns)]
+    for method in methods:
+        cells = [f"{mark(cell)} {cell['figures']}" for cell in method["conduct"]]
+        lines.append(f"| {method['name']} | {' | '.join(cells)} |")
+    return lines
+
+
+def publish(file, page):
+    audit = json.loads(pathlib.Path(file).read_text())
+    methods = [each for each in audit["optimizers"] if each.get("conduct")]
+    audit["optimizers"] = [{"name": each["name"], "spec": each["name"], "conduct": each["conduct"],
+                            "reason": "conduct alone"} for each in methods]
+    text = json.dumps(audit, ensure_ascii=False, separators=(",", ":")).replace('},{"name"', '},\n{"name"')
+    PUBLISHED.write_text(text + "\n")
+    put(page, "own conduct", own_lines(methods))
 
 
 def print_csv(file):
@@ -378,4 +416,4 @@ def print_csv(file):
 
 if __name__ == "__main__":
     verb, file, *more = sys.argv[1:]
-    {"measure": lambda: measure(file, more), "page": lambda: page(file, *more), "csv": lambda: print_csv(file)}[verb]()
+    {"measure": lambda: measure(file, more), "page": lambda: page(file, *more), "publish": lambda: publish(file, *more), "csv": lambda: print_csv(file)}[verb]()

@@ -35,9 +35,9 @@ class Input:
             raise Endless
 
     def residual(self, x):
-        r = math.sqrt(self.factor) * self.r(numpy.asarray(x, float))
-        self.note(x, 0.5 * float(r @ r))
-        return r
+        x = numpy.asarray(x, float)
+        self.note(x, self.loss_at(x))
+        return math.sqrt(self.factor) * self.r(x)
 
     def value(self, x):
         loss = self.loss_at(numpy.asarray(x, float))
@@ -48,11 +48,13 @@ class Input:
         if self.own_loss:
             return self.factor * self.own_loss(x)
         r = self.r(x)
-        return 0.5 * self.factor * float(r @ r)
+        with numpy.errstate(over="ignore", invalid="ignore"):  # a warning is no text of the library
+            return 0.5 * self.factor * float(r @ r)
 
     def gradient(self, x):
         x = numpy.asarray(x, float)
-        return self.factor * (self.own_slope(x) if self.own_slope else self.J(x).T @ self.r(x))
+        with numpy.errstate(over="ignore", invalid="ignore"):
+            return self.factor * (self.own_slope(x) if self.own_slope else self.J(x).T @ self.r(x))
 
     def jacobian(self, x):
         return math.sqrt(self.factor) * self.J(numpy.asarray(x, float))

@@ -1,43 +1,12 @@
 // Methods of dlib and ALGLIB by their defaults. Values come by lines on standard input; each is one
 // call of the callback. flags: -ldlib -lblas -lalglib
+#include "methods.h"
+
 #include <dlib/optimization.h>
 #include <libalglib/optimization.h>
 
-#include <iostream>
-#include <sstream>
-#include <string>
-#include <vector>
-
-using Vector = std::vector<double>;
 using Point = dlib::matrix<double, 0, 1>;
 using alglib::real_1d_array;
-
-struct {
-  std::size_t n, m, limit;
-  bool has_bounds;
-  Vector x, lower, upper;
-} given;
-
-Vector read() {
-  std::string line;
-  std::getline(std::cin, line);
-  std::istringstream words(line);
-  Vector numbers;
-  for (std::string word; words >> word;) numbers.push_back(std::strtod(word.c_str(), nullptr));
-  return numbers;
-}
-
-Vector ask(const char* verb, const double* x) {
-  std::printf("%s", verb);
-  for (std::size_t i = 0; i < given.n; ++i) std::printf(" %.17g", x[i]);
-  std::puts("");
-  std::fflush(stdout);
-  return read();
-}
-
-void finish(bool success, const std::string& own, const std::string& code, const double* x) {
-  ask(("done " + std::to_string(success) + " " + own + " " + code).c_str(), x);
-}
 
 void residual(const real_1d_array& x, real_1d_array& r, void*) {
   const Vector found = ask("residual", &x[0]);
@@ -113,17 +82,6 @@ void run_dlib(const std::string& method) {
 
 int main(int, char** words) {
   const std::string package = words[1], method = words[2];
-  const Vector begun = read();
-  given = {std::size_t(begun[0]),
-           std::size_t(begun[1]),
-           std::size_t(begun[2]),
-           begun[3] == 1,
-           {},
-           {},
-           {}};
-  const auto part = [&](std::size_t i) {
-    return Vector(&begun[4 + i * given.n], &begun[4 + i * given.n] + given.n);
-  };
-  given.x = part(0), given.lower = part(1), given.upper = part(2);
+  begin();
   package == "dlib" ? run_dlib(method) : run_alglib(method);
 }

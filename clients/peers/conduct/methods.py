@@ -345,6 +345,16 @@ def of_cpp(p, limit, name):
     return of_program([built(HERE / "methods.cpp").resolve(), package, name.replace("find_min_", "")], p, limit)
 
 
+@add("GSL multifit_nlinear lm", "GSL multifit_nlinear lmaccel", "GSL multifit_nlinear dogleg", package="c++ gsl",
+     takes="residuals", differences=True, has_limit=False)
+@add("GSL multimin bfgs2", package="c++ gsl", takes="loss", has_limit=False)
+@add("Ceres", package="c++ ceres", takes="residuals", differences=True, keeps_bounds=True, has_limit=False)
+@add("pagmo de", "pagmo cmaes", package="c++ pagmo", takes="loss", differences=True, keeps_bounds=True, has_limit=False)
+def of_more_cpp(p, limit, name):
+    package = {"Ceres": "ceres", "de": "pagmo", "cmaes": "pagmo"}.get(name, "gsl")
+    return of_program([built(HERE / "more_methods.cpp").resolve(), package, name], p, limit)
+
+
 def of_program(command, p, limit):
     numbers = lambda values: " ".join(map(repr, map(float, values)))
     answers = {"value": lambda x: [p.value(x)], "residual": p.residual, "gradient": p.gradient}

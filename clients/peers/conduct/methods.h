@@ -1,0 +1,54 @@
+// The lines between a library and conduct.py: the input on standard input, then a line for each
+// call of the callback and its answer.
+#pragma once
+
+#include <cstdio>
+#include <cstdlib>
+#include <iostream>
+#include <sstream>
+#include <string>
+#include <vector>
+
+using Vector = std::vector<double>;
+
+inline struct {
+  std::size_t n, m, limit;
+  bool has_bounds;
+  Vector x, lower, upper;
+} given;
+
+inline Vector read() {
+  std::string line;
+  std::getline(std::cin, line);
+  std::istringstream words(line);
+  Vector numbers;
+  for (std::string word; words >> word;) numbers.push_back(std::strtod(word.c_str(), nullptr));
+  return numbers;
+}
+
+inline Vector ask(const char* verb, const double* x) {
+  std::printf("%s", verb);
+  for (std::size_t i = 0; i < given.n; ++i) std::printf(" %.17g", x[i]);
+  std::puts("");
+  std::fflush(stdout);
+  return read();
+}
+
+inline void finish(bool success, const std::string& own, const std::string& code, const double* x) {
+  ask(("done " + std::to_string(success) + " " + own + " " + code).c_str(), x);
+}
+
+inline void begin() {
+  const Vector begun = read();
+  given = {std::size_t(begun[0]),
+           std::size_t(begun[1]),
+           std::size_t(begun[2]),
+           begun[3] == 1,
+           {},
+           {},
+           {}};
+  const auto part = [&](std::size_t i) {
+    return Vector(&begun[4 + i * given.n], &begun[4 + i * given.n] + given.n);
+  };
+  given.x = part(0), given.lower = part(1), given.upper = part(2);
+}
