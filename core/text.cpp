@@ -151,6 +151,34 @@ std::string nearest_name(std::string_view wrong, const std::vector<std::string>&
   return nearest;
 }
 
+namespace {
+
+// Names of which it is a part between hyphens, or of which it begins the initials: "lm" of ceres-lm
+// and levenberg-marquardt.
+std::vector<std::string> names_by_part(std::string_view wrong,
+                                       const std::vector<std::string>& known) {
+  constexpr std::size_t kFew = 5;
+  std::vector<std::string> meant;
+  for (const std::string& name : known) {
+    std::string initials, part;
+    bool is_part = false;
+    for (const char letter : name + "-") {
+      if (letter != '-') {
+        part += letter;
+        continue;
+      }
+      is_part = is_part || part == wrong;
+      initials += part.substr(0, 1);
+      part.clear();
+    }
+    if (is_part || (wrong.size() > 1 && initials.starts_with(wrong))) meant.push_back(name);
+  }
+  if (meant.size() > kFew) meant.clear();
+  return meant;
+}
+
+}  // namespace
+
 std::string unknown_name(std::string_view what, std::string_view wrong,
                          const std::vector<std::string>& known) {
   if ((what == "problem" || what == "optimizer") && wrong.find_first_of(" ./") != wrong.npos)
@@ -159,6 +187,9 @@ std::string unknown_name(std::string_view what, std::string_view wrong,
   const std::string nearest = nearest_name(wrong, known);
   if (!nearest.empty())
     return fmt::format("unknown {} '{}'; did you mean '{}'?", what, wrong, nearest);
+  if (const std::vector<std::string> meant = names_by_part(wrong, known); !meant.empty())
+    return fmt::format("unknown {} '{}'; did you mean '{}'?", what, wrong,
+                       fmt::join(meant, "' or '"));
   constexpr std::size_t kMostListed = 30;
   if (known.size() > kMostListed)
     return fmt::format("unknown {} '{}'; `isoline describe` prints the {} known names", what, wrong,

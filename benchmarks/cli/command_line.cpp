@@ -180,6 +180,13 @@ std::string argument_complaint(const CLI::App& verb, const std::string& unexpect
   if (!unexpected.starts_with('-'))
     return fmt::format("{}: unexpected argument '{}'", verb.get_name(), unexpected);
   const std::string name = unexpected.substr(0, unexpected.find('='));
+  for (const CLI::Option* option : verb.get_options()) {  // what has no name stands alone
+    std::string place = option->get_positional() ? option->get_single_name() : "";
+    std::ranges::transform(place, place.begin(), [](unsigned char c) { return std::tolower(c); });
+    if ("--" + place == name)
+      return fmt::format("unknown option {}; give its value alone: {} {}", name, verb.get_name(),
+                         option->get_single_name());
+  }
   const std::string nearest = nearest_name(name, option_names(verb));
   return fmt::format("unknown option {}{}", name,
                      nearest.empty() ? "" : fmt::format("; did you mean {}?", nearest));
@@ -290,9 +297,17 @@ std::string CommandLine::help_text() const {
 
 void CommandLine::require_verb(const std::string& name) const {
   std::vector<std::string> known;
-  for (const Verb& verb : verbs_) known.push_back(verb.name);
-  require(std::ranges::find(known, name) != known.end(),
-          [&] { return unknown_name("command", name, known); });
+  std::string meant;  // the command that its summary says to do this
+  for (const Verb& verb : verbs_) {
+    known.push_back(verb.name);
+    if (meant.empty() && name.size() > 3 && verb.summary.find(name) != std::string::npos)
+      meant = verb.name;
+  }
+  require(std::ranges::find(known, name) != known.end(), [&] {
+    return nearest_name(name, known).empty() && !meant.empty()
+               ? fmt::format("unknown command '{}'; did you mean '{}'?", name, meant)
+               : unknown_name("command", name, known);
+  });
 }
 
 std::string CommandLine::complaint(const CLI::ParseError& error) const {

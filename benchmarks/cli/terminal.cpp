@@ -96,6 +96,13 @@ int run_script(const std::string& name, std::vector<std::string> arguments) {
   return WIFEXITED(status) && WEXITSTATUS(status) == 0 ? kGood : kUsage;
 }
 
+reports::Columns output_columns() {
+  constexpr std::size_t kFewest = 60;
+  if (isatty(STDOUT_FILENO) == 0) return {};
+  const std::size_t columns = std::max(kFewest, terminal_width(STDOUT_FILENO));
+  return {.prose = columns, .table = columns};
+}
+
 Listener progress_on_terminal(const char* what) {
   if (Progress::style_of(STDERR_FILENO) != Progress::Style::live) return {};
   return [what, line = std::shared_ptr<Progress>()](std::size_t done, std::size_t all) mutable {
@@ -194,7 +201,7 @@ void write_and_print(const reports::Study& study, const std::filesystem::path& o
   document.out = out.string();
   reports::write_report(document, out);
   if (!how.is_quiet)
-    say(stdout, fmt::format("{}\nreport: {}\n", reports::terminal_table(document),
+    say(stdout, fmt::format("{}\nreport: {}\n", reports::terminal_table(document, output_columns()),
                             (out / "index.html").string()));
 }
 

@@ -13,6 +13,9 @@ namespace isoline::benchmarks {
 
 struct Outcome;
 
+// The columns of a terminal at standard output, 60 at least; those of a pipe elsewhere.
+reports::Columns output_columns();
+
 // A live line with the progress, on a terminal only.
 Listener progress_on_terminal(const char* what);
 

@@ -24,6 +24,18 @@ void TimeLeft::Cells::add(std::optional<double> predicted_seconds) {
 void TimeLeft::finish(std::optional<double> predicted_seconds, double now) {
   done_.add(predicted_seconds);
   last_ = now;
+  ends_.emplace_back(now, now + at(now).value_or(0));
+}
+
+bool TimeLeft::is_steady() const {
+  constexpr double kShare = 0.1, kMost = 1.2;
+  if (ends_.empty() || last_ < kShare * ends_.back().second) return false;
+  double low = ends_.back().second, high = low;
+  for (auto one = ends_.rbegin(); one != ends_.rend() && 2 * one->first >= last_; ++one) {
+    low = std::min(low, one->second);
+    high = std::max(high, one->second);
+  }
+  return high <= kMost * low;
 }
 
 // Between two ends it counts down.
@@ -104,16 +116,14 @@ void Progress::finished(std::optional<double> predicted_seconds) {
 
 std::string Progress::line() const {
   const std::int64_t done = already_ + done_;
-  std::string text = fmt::format("{} {}/{}", what_, done, total_);
+  std::string text = total_ > 0 ? fmt::format("{} {}/{}", what_, done, total_) : what_;
   const double elapsed = seconds_since(begun_);
   if (done_ > 0 && elapsed > 0) {
     const double rate = static_cast<double>(done_) / elapsed;
     text += fmt::format("  {:.3g}/s", rate);
-    const std::optional<double> predicted = time_left_.at(elapsed);
-    const double left = predicted.value_or(static_cast<double>(total_ - done) / rate);
-    if (done < total_)
-      text +=
-          left > 0 || !predicted ? "  " + duration_text(left) + " left" : "  longer than predicted";
+    const std::optional<double> left = time_left_.at(elapsed);
+    if (done < total_ && left && time_left_.is_steady())
+      text += *left > 0 ? "  " + duration_text(*left) + " left" : "  longer than predicted";
   }
   return current_.empty() ? text : text + "  " + current_;
 }

@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace isoline::benchmarks {
 
@@ -20,6 +22,9 @@ class TimeLeft {
   // None before the first cell has ended, and where none was expected; 0 where it takes longer than
   // predicted.
   std::optional<double> at(double now) const;
+  // Whether a tenth of the work is done, and the predicted end has moved by at most a fifth since
+  // half of the time until now.
+  bool is_steady() const;
 
  private:
   struct Cells {
@@ -28,7 +33,8 @@ class TimeLeft {
     void add(std::optional<double> predicted_seconds);
   };
   Cells expected_, done_;
-  double last_ = 0;  // when the last of them ended
+  double last_ = 0;                              // when the last of them ended
+  std::vector<std::pair<double, double>> ends_;  // when each ended, and the end predicted then
 };
 
 class Progress {

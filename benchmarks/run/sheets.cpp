@@ -319,7 +319,7 @@ class SheetWriter {
               const Certificates& certificates)
       : catalog_(catalog),
         store_(store),
-        progress_(style, "sheets", 0, 0),
+        progress_(style, "measures costs of", 0, 0),
         certificates_(certificates) {}
 
   void write_problem(const Component& component) {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "benchmarks/cli/terminal.h"
 #include "benchmarks/cli/verb.h"
 #include "benchmarks/plan/catalog.h"
 #include "core/files.h"
@@ -38,8 +39,14 @@ void declare(VerbArguments& verb, AuditArguments& given) {
 
 int run(const AuditArguments& given, Session& session) {
   const Catalog& catalog = session.catalog();
-  for (const std::string& name : given.names)
+  for (const std::string& name : given.names) {
+    require(!catalog.problems.ready().contains(name), [&] {
+      return fmt::format(
+          "{0} is a problem, and audit measures optimizers; for a problem: isoline check {0}",
+          name);
+    });
     complete_optimizer(catalog, parse_spec(name));  // or says what is wrong
+  }
   if (!given.out.empty()) make_output_folder(given.out);
   std::vector<AuditedOptimizer> all =
       audit_all(catalog, given.names.empty() ? catalog.optimizers.ready().names() : given.names);
@@ -49,11 +56,12 @@ int run(const AuditArguments& given, Session& session) {
                     given.out.empty() ? hidden.path() : fs::path(given.out) / "conduct");
   }
   if (!given.out.empty()) write_audit(all, fs::path(given.out) / "audit.json");
-  say(stdout, given.as_json ? audit_text(all)
-                            : reports::terminal_section(
-                                  given.measures_conduct ? reports::conduct_section(all)
-                                                         : reports::properties_section(all),
-                                  given.lists_all ? reports::kAllRows : reports::kFewRows));
+  say(stdout, given.as_json
+                  ? audit_text(all)
+                  : reports::terminal_section(
+                        given.measures_conduct ? reports::conduct_section(all)
+                                               : reports::properties_section(all),
+                        given.lists_all ? reports::kAllRows : reports::kFewRows, output_columns()));
   const bool has_flags = std::ranges::any_of(
       all, [](const AuditedOptimizer& audited) { return !audited.flags.empty(); });
   return has_flags ? kWorse : kGood;

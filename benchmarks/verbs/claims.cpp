@@ -89,10 +89,13 @@ Outcome run_missing(const ClaimArguments& given, const std::vector<Claim>& claim
 
 // The evidence of a single claim, or the verdicts of several.
 std::string terminal_text_of(const std::vector<reports::Judgement>& judgements, bool lists_all) {
-  if (judgements.size() == 1) return reports::terminal_claim(reports::claim_section(judgements[0]));
-  const std::string text =
-      lists_all ? reports::terminal_section(reports::claims_section(judgements))
-                : reports::terminal_section(reports::claims_summary(judgements), reports::kFewRows);
+  if (judgements.size() == 1)
+    return reports::terminal_claim(reports::claim_section(judgements[0]), output_columns());
+  const std::string text = lists_all
+                               ? reports::terminal_section(reports::claims_section(judgements),
+                                                           reports::kAllRows, output_columns())
+                               : reports::terminal_section(reports::claims_summary(judgements),
+                                                           reports::kFewRows, output_columns());
   return text + "`isoline claims ID` shows the evidence of one claim.\n";
 }
 

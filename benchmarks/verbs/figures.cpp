@@ -22,7 +22,7 @@ struct FiguresArguments {
   std::vector<std::string> folders, formats = {"svg"};
   std::vector<std::string> methods;
   std::string out, only;
-  double width = 3.2;
+  double width = 3.2, tau = 1e-6;
   bool is_list = false;
 };
 
@@ -38,6 +38,9 @@ void declare(VerbArguments& verb, FiguresArguments& given) {
       .between_commas();
   constexpr double kLeast = 1, kMost = 20;
   verb.real("--width", given.width, between(kLeast, kMost), "Width in inches").shown();
+  verb.real("--tau", given.tau, between(1e-10, 1),
+            "Tolerance of the figures, as --tolerance of report")
+      .shown("1e-6");
   verb.text("--out", given.out, "Output folder (default: figures/ in the first DIR)");
   verb.flag("--list", given.is_list, "List the names and titles, and write nothing");
 }
@@ -47,7 +50,9 @@ int run(const FiguresArguments& given, Session& session) {
   say_left_out(study.unreadable);
   const HiddenFolder folder;
   const fs::path report = folder.path() / "report.json";
-  write_text(report, reports::json_report(document_of_report(study, session)));
+  write_text(report,
+             reports::json_report(document_of_report(
+                 study, session, reports::yardstick_at(reports::Measure::work, given.tau))));
   const fs::path out =
       given.out.empty() ? given.folders.front() / fs::path("figures") : fs::path(given.out);
   if (!given.is_list) make_output_folder(out);

@@ -260,7 +260,8 @@ std::string tuning_text(const TuningResult& result, bool lists_all) {
   for (const TunedOption& tuned : result.tuned) table.rows.push_back(tuning_row(tuned));
   if (!result.left_out_rows->empty()) table = left_out_table(*result.left_out_rows);
   if (!table.rows.empty()) section.tables.push_back(std::move(table));
-  return reports::terminal_section(section, lists_all ? reports::kAllRows : reports::kFewRows);
+  return reports::terminal_section(section, lists_all ? reports::kAllRows : reports::kFewRows,
+                                   output_columns());
 }
 
 int run(const TuneArguments& given, Session& session) {

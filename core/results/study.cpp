@@ -242,8 +242,9 @@ Study read_study(const std::vector<std::string>& folders, const Listener& listen
       return folder.string() +
              " is a file and not a result folder; if it is an archive, unpack it with tar -xf";
     });
-    require(fs::is_directory(folder, unknown),
-            [&] { return folder.string() + ": no such result folder"; });
+    require(fs::is_directory(folder, unknown), [&] {
+      return folder.string() + ": no such result folder; `isoline run --out FOLDER` creates one";
+    });
   }
   Study study;
   study.folders = folders;

@@ -2,7 +2,12 @@
 // statistics.
 #include <fmt/format.h>
 
+#include <charconv>
+#include <cmath>
 #include <functional>
+#include <limits>
+#include <string_view>
+#include <utility>
 
 #include "core/oracle.h"
 #include "core/seeds.h"
@@ -32,6 +37,7 @@ CsvColumns columns_of_runs(const Yardstick& yardstick) {
   };
   add("problem", [](const Record& record) { return record.request.problem.spec; });
   add("optimizer", [](const Record& record) { return record.request.optimizer.spec; });
+  add("method", [](const Record& record) { return record.request.optimizer.name; });
   add("seed", [](const Record& record) { return std::to_string(record.request.seed); });
   add("instance",
       [](const Record& record) { return std::to_string(instance_of(record.request.seed)); });
@@ -71,6 +77,7 @@ CsvColumns columns_of_runs(const Yardstick& yardstick) {
 std::string planned_text(const PlannedCell& cell, const std::string& column) {
   if (column == "problem") return csv_field(cell.problem);
   if (column == "optimizer") return csv_field(cell.optimizer);
+  if (column == "method") return csv_field(cell.optimizer.substr(0, cell.optimizer.find('[')));
   if (column == "seed") return std::to_string(cell.seed);
   if (column == "instance") return std::to_string(instance_of(cell.seed));
   if (column == "start") return std::to_string(start_of(cell.seed));
@@ -103,14 +110,71 @@ std::string csv_report(const Document& document) {
   return csv;
 }
 
+namespace {
+
+struct CellNumbers {
+  Real value = std::numeric_limits<Real>::quiet_NaN(), low = value, high = value, n = value;
+  std::string_view unit = "";
+};
+
+// "38 [19–73] (3/3)", "3 : 6.33 [6.2–6.5]" of a declared and a measured cost, "44 %", "13/16",
+// "0.1–0.9"; nothing of any other text. Of counts "3/5" alone the value is 3 of n = 5.
+CellNumbers numbers_of(std::string_view text) {
+  CellNumbers all;
+  const auto skip = [&](std::string_view mark) {
+    const bool is_there = text.starts_with(mark);
+    if (is_there) text.remove_prefix(mark.size());
+    return is_there;
+  };
+  const auto number = [&] {
+    Real value = std::numeric_limits<Real>::quiet_NaN();
+    if (skip("✗")) return kNever;
+    if (const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+        error == std::errc{})
+      text.remove_prefix(static_cast<std::size_t>(end - text.data()));
+    return value;
+  };
+  all.value = number();
+  if (skip(" : ")) {
+    all.unit = "forward solves";
+    all.value = number();
+  }
+  if (std::isnan(all.value)) return {};
+  if (skip(" %")) all.unit = "%";
+  if (skip("/")) all.n = number();
+  if (skip("–")) {
+    all.low = std::exchange(all.value, all.n);
+    all.high = number();
+  }
+  if (skip(" [")) {
+    all.low = number();
+    if (skip("–")) all.high = number();
+    skip("]");
+  }
+  if (skip(" (") && !std::isnan(number()) && skip("/")) {
+    all.n = number();
+    skip(")");
+  }
+  return text.empty() ? all : CellNumbers{};
+}
+
+std::string number_field(Real value) { return std::isnan(value) ? "" : exact_figure(value); }
+
+}  // namespace
+
+// The numbers of each cell, and its text as every format has it.
 std::string statistics_csv(const Document& document) {
-  std::string text = "table,row,column,value\n";
+  std::string text = "table,row,column,value,low,high,n,unit,text\n";
   for (const char* section : {"statistics", "conduct"})
     for (const Table& table : document.section(section).tables)
       for (const auto& row : table.rows)
-        for (std::size_t i = 1; i < row.size(); ++i)
-          text += fmt::format("{},{},{},{}\n", table.id, csv_field(row[0].text),
-                              csv_field(table.columns[i]), csv_field(row[i].text));
+        for (std::size_t i = 1; i < row.size(); ++i) {
+          const CellNumbers all = numbers_of(row[i].text);
+          text += fmt::format("{},{},{},{},{},{},{},{},{}\n", table.id, csv_field(row[0].text),
+                              csv_field(table.columns[i]), number_field(all.value),
+                              number_field(all.low), number_field(all.high), number_field(all.n),
+                              all.unit, csv_field(row[i].text));
+        }
   return text;
 }
 

@@ -32,12 +32,19 @@ inline constexpr Format kFormats[] = {  // all that `isoline report` writes
     {"report.json", json_report}, {"report.md", markdown_report},
     {"report.tex", latex_report}, {"statistics.csv", statistics_csv}};
 
+// The width of a text: in a pipe, prose has 80 columns and tables are whole.
+struct Columns {
+  std::size_t prose = 80, table = static_cast<std::size_t>(-1);
+};
 std::string terminal_table(const Document& document);  // standings, or every cell of a small study
-// Within a hundred columns: what it says, then its tables, so many rows of all of them.
+std::string terminal_table(const Document& document, const Columns& columns);
+// The sentences of a section, then its tables, so many rows of all of them.
 inline constexpr std::size_t kAllRows = static_cast<std::size_t>(-1), kFewRows = 20;
-std::string terminal_section(const Section& section, std::size_t most_rows = kAllRows);
-std::string terminal_claim(const Section& claim);  // one whole: readings, tables
-inline constexpr std::size_t kSummaryRows = 60;    // of a table, so that a summary stays a summary
+std::string terminal_section(const Section& section, std::size_t most_rows = kAllRows,
+                             const Columns& columns = {});
+// One whole: readings, tables.
+std::string terminal_claim(const Section& claim, const Columns& columns = {});
+inline constexpr std::size_t kSummaryRows = 60;  // of a table, so that a summary stays a summary
 std::string markdown_section(const Section& section, std::size_t most_rows = kSummaryRows);
 
 nlohmann::json section_json(const Section& section);                   // its sentences and tables

@@ -1,5 +1,5 @@
-// Plain text with at most 100 columns: the ranking and the best method of each problem, every cell
-// of a small study, and any section.
+// Plain text within the columns of its reader: the ranking and the best method of each problem,
+// every cell of a small study, and any section.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,7 +13,6 @@
 namespace isoline::reports {
 namespace {
 
-constexpr std::size_t kWidest = 100;    // columns
 constexpr std::size_t kFewCells = 40;   // so many are shown in full
 constexpr std::size_t kMostNames = 40;  // characters of a name before it is cut
 
@@ -46,14 +45,22 @@ std::string label_of(const ProblemAxis& problem) {
          (problem.is_foreign ? " ‡" : "");
 }
 
+// The end of a word; a command between backticks is one.
+std::size_t word_end(const std::string& text, std::size_t at) {
+  bool is_command = false;
+  for (; at < text.size() && (is_command || text[at] != ' '); ++at)
+    if (text[at] == '`') is_command = !is_command;
+  return at;
+}
+
 // Breaks between words.
-std::string wrapped(const std::string& text) {
+std::string wrapped(const std::string& text, std::size_t columns) {
   std::string out;
   std::size_t column = 0;
   for (std::size_t at = 0; at < text.size();) {
-    const std::size_t end = std::min(text.find(' ', at), text.size());
+    const std::size_t end = word_end(text, at);
     const std::string word = text.substr(at, end - at);
-    if (column > 0 && column + 1 + width_of(word) > kWidest) {
+    if (column > 0 && column + 1 + width_of(word) > columns) {
       out += "\n";
       column = 0;
     }
@@ -65,7 +72,7 @@ std::string wrapped(const std::string& text) {
 }
 
 // "sine             sip † 2", two a line where they fit. Empty if no least loss is known.
-std::string best_of_each(const Comparison& c) {
+std::string best_of_each(const Comparison& c, const Columns& columns) {
   if (std::ranges::all_of(c.problems, &ProblemAxis::lacks_least_loss)) return "";
   std::vector<std::string> lines;
   std::size_t width = 0, longest = 0;
@@ -80,14 +87,16 @@ std::string best_of_each(const Comparison& c) {
                                                                 : "none";
     lines.push_back("  " + left(label_of(c.problems[p]), width) + "  " + best);
     longest = std::max(longest, width_of(lines.back()));
+    if (width_of(lines.back()) > columns.table)
+      lines.back() = "  " + label_of(c.problems[p]) + "\n    " + best;
   }
-  const std::size_t half = 2 * longest + 2 <= kWidest ? (lines.size() + 1) / 2 : lines.size();
+  const std::size_t half = 2 * longest + 2 <= columns.prose ? (lines.size() + 1) / 2 : lines.size();
   std::string text = fmt::format("\nSmallest median {}\n", counted_to_tau(c));
   for (std::size_t i = 0; i < half; ++i) {
     const bool is_pair = half < lines.size() && i + half < lines.size();
     text += (is_pair ? left(lines[i], longest + 2) + lines[i + half] : lines[i]) + "\n";
   }
-  return text + "\n" + wrapped(success_text(c));
+  return text + "\n" + wrapped(success_text(c), columns.prose);
 }
 
 std::string line_of(const Comparison& c, std::size_t p, std::size_t s, std::size_t width) {
@@ -107,7 +116,7 @@ std::string line_of(const Comparison& c, std::size_t p, std::size_t s, std::size
          "\n";
 }
 
-std::string every_cell(const Comparison& c) {
+std::string every_cell(const Comparison& c, std::size_t columns) {
   std::size_t width = 10;
   for (const OptimizerAxis& each : c.optimizers) width = std::max(width, width_of(label_of(each)));
   std::string text;
@@ -131,10 +140,10 @@ std::string every_cell(const Comparison& c) {
   if (std::ranges::any_of(c.problems, &ProblemAxis::lacks_least_loss))
     marks += "; ?: least loss unknown";
   if (c.is_any_timed_together) marks += "; ≈: timed while other runs used the machine";
-  return text + "\n" + wrapped(marks + ".");
+  return text + "\n" + wrapped(marks + ".", columns);
 }
 
-std::string failure_lines(const Comparison& c) {
+std::string failure_lines(const Comparison& c, std::size_t columns) {
   constexpr std::size_t kMost = 10;
   std::vector<std::string> lines;
   for (const std::size_t run : c.failures) {
@@ -147,7 +156,7 @@ std::string failure_lines(const Comparison& c) {
     lines.push_back(fmt::format("unreadable: {}: {}", file.file, file.reason));
   std::string text;
   for (std::size_t i = 0; i < lines.size() && i < kMost; ++i)
-    text += terminal_text(lines[i]) + "\n";
+    text += wrapped(terminal_text(lines[i]), columns);
   if (lines.size() > kMost) text += fmt::format("and {} more\n", lines.size() - kMost);
   return text.empty() ? "" : "\n" + text;
 }
@@ -202,7 +211,33 @@ std::string paragraph(const Table& table, std::size_t row) {
   return text;
 }
 
-std::string table_text(const Table& table, RowLimit& limit) {
+// The columns of a part in so many pieces that each has room, all with the names of the rows.
+std::vector<Part> pieces_of(const Table& table, const Part& part, std::size_t rows,
+                            std::size_t columns) {
+  const auto width = [&](std::size_t i) {
+    std::size_t most = width_of(terminal_text(table.columns[i]));
+    for (const auto& row : std::span(table.rows).first(rows))
+      if (i < row.size() && row.size() == table.columns.size())
+        most = std::max(most, width_of(terminal_text(row[i].text)));
+    return most + 2;
+  };
+  const Part names(part.begin(), part.begin() + std::ptrdiff_t(std::min(table.names, part.size())));
+  std::size_t taken = 0;
+  for (const std::size_t i : names) taken += width(i);
+  std::vector<Part> pieces = {names};
+  std::size_t at = taken;
+  for (std::size_t k = names.size(); k < part.size(); ++k) {
+    if (at + width(part[k]) - 2 > columns && pieces.back().size() > names.size()) {
+      pieces.push_back(names);
+      at = taken;
+    }
+    pieces.back().push_back(part[k]);
+    at += width(part[k]);
+  }
+  return pieces;
+}
+
+std::string table_text(const Table& table, RowLimit& limit, const Columns& columns) {
   std::string body;
   std::size_t shown = 0;  // columns, whose meanings follow
   if (table.is_wordy()) {
@@ -212,36 +247,39 @@ std::string table_text(const Table& table, RowLimit& limit) {
     for (const Part& part : table_parts(table, table.columns.size())) {
       const std::size_t rows = limit.take(table.rows.size());
       if (rows == 0 && !table.rows.empty()) continue;
-      body += block(table, part, rows);
+      for (const Part& piece : pieces_of(table, part, rows, columns.table))
+        body += block(table, piece, rows);
       shown = part.back() + 1;
     }
   }
   if (body.empty()) return "";
   std::string text = table.title.empty() ? "" : terminal_text(table.title) + "\n";
-  if (!table.reading.empty()) text += wrapped(terminal_text(table.reading));
+  if (!table.reading.empty()) text += wrapped(terminal_text(table.reading), columns.prose);
   text += body;
   for (std::size_t i = 1; i < std::min(shown, table.meanings.size()); ++i)
     text += fmt::format("  {}: {}\n", table.columns[i], table.meanings[i]);
-  return text + (table.caption.empty() ? "" : wrapped(table.caption));
+  return text + (table.caption.empty() ? "" : wrapped(table.caption, columns.prose));
 }
 
-std::string table_text(const Table& table) {
+std::string table_text(const Table& table, const Columns& columns) {
   RowLimit all;
-  return table_text(table, all);
+  return table_text(table, all, columns);
 }
 
 }  // namespace
 
-std::string terminal_section(const Section& section, std::size_t most_rows) {
+std::string terminal_section(const Section& section, std::size_t most_rows,
+                             const Columns& columns) {
   if (section.is_empty()) return section.otherwise + "\n";
   std::string text;
   for (const Reading& reading : section.readings)
     text +=
-        wrapped((reading.title.empty() ? "" : reading.title + ": ") + terminal_text(reading.text));
-  if (!section.lead.empty()) text += wrapped(section.lead);
+        wrapped((reading.title.empty() ? "" : reading.title + ": ") + terminal_text(reading.text),
+                columns.prose);
+  if (!section.lead.empty()) text += wrapped(section.lead, columns.prose);
   RowLimit limit{.left = most_rows};
   for (const Table& table : section.tables) {
-    if (const std::string its = table_text(table, limit); !its.empty()) text += "\n" + its;
+    if (const std::string its = table_text(table, limit, columns); !its.empty()) text += "\n" + its;
     while (text.ends_with("\n\n")) text.pop_back();
   }
   if (limit.hidden == 0) return text;
@@ -249,41 +287,47 @@ std::string terminal_section(const Section& section, std::size_t most_rows) {
                             limit.hidden == 1 ? "" : "s");
 }
 
-std::string terminal_claim(const Section& claim) {
-  std::string text = wrapped(terminal_text(claim.title)) + "\n";
+std::string terminal_claim(const Section& claim, const Columns& columns) {
+  std::string text = wrapped(terminal_text(claim.title), columns.prose) + "\n";
   for (const Reading& reading : claim.readings)
-    text += wrapped(fmt::format("{}: {}", reading.title, terminal_text(reading.text)));
+    text +=
+        wrapped(fmt::format("{}: {}", reading.title, terminal_text(reading.text)), columns.prose);
   text += "\n";
   constexpr std::size_t kFewRuns = 24;
   for (const Table& table : claim.tables)
     text += table.is_folded && table.rows.size() > kFewRuns
                 ? fmt::format("{}: {}; --json lists them with their records.\n\n", table.title,
                               table.rows.size())
-                : table_text(table);
+                : table_text(table, columns);
   return text + (claim.command.empty() ? "" : fmt::format("To repeat it: {}\n", claim.command));
 }
 
-std::string terminal_table(const Document& document) {
+std::string terminal_table(const Document& document) { return terminal_table(document, {}); }
+
+std::string terminal_table(const Document& document, const Columns& columns) {
   const Comparison& c = document.comparison;
   std::size_t cells = 0;
   for (const auto& row : c.cells)
     cells += static_cast<std::size_t>(
         std::ranges::count_if(row, [](const Cell& cell) { return cell.planned > 0; }));
   const std::vector<Table>& tables = document.section("standings").tables;
-  std::string text = document.headline + "\n";
+  std::string text = wrapped(document.headline, columns.prose);
   if (!document.incomplete.empty())
-    text += wrapped("INCOMPLETE: " + terminal_text(document.incomplete));
+    text += wrapped("INCOMPLETE: " + terminal_text(document.incomplete), columns.prose);
   if (cells <= kFewCells)
-    text += every_cell(c);
+    text += every_cell(c, columns.prose);
   else
-    text += "\n" + (tables.empty() ? "" : table_text(tables[0])) + best_of_each(c) + "\n";
+    text += "\n" + (tables.empty() ? "" : table_text(tables[0], columns)) +
+            best_of_each(c, columns) + "\n";
   for (const Reading& sentence : document.section("standings").readings)
-    text += wrapped(terminal_text(sentence.text));
+    text += wrapped(terminal_text(sentence.text), columns.prose);
   const Section& claims = document.section("claims");
   if (!c.study->plan.suites.empty() || !document.claims.empty())
-    text += wrapped(claims.readings.empty() ? claims.otherwise : claims.readings[0].text);
-  if (const std::string legend = marks_legend(c); !legend.empty()) text += wrapped(legend);
-  return text + failure_lines(c);
+    text += wrapped(claims.readings.empty() ? claims.otherwise : claims.readings[0].text,
+                    columns.prose);
+  if (const std::string legend = marks_legend(c); !legend.empty())
+    text += wrapped(legend, columns.prose);
+  return text + failure_lines(c, columns.prose);
 }
 
 }  // namespace isoline::reports

@@ -24,9 +24,38 @@ std::string row(const char* term, const std::string& content) {
   return content.empty() ? "" : fmt::format("<dt>{}</dt><dd>{}</dd>", term, content);
 }
 
+// The reason why most runs of a cell miss the goal, as a key, and the quantity that decides, its
+// median at the end, and its goal.
+std::pair<std::string, std::string> shortfall(const Comparison& c, std::size_t p,
+                                              const Cell& cell) {
+  const Real tau = c.yardstick.tightest().tau, least = c.problems[p].least_goal;
+  const bool is_of_x = c.problems[p].aim == Aim::x;
+  std::map<std::string, std::size_t> causes;
+  std::vector<Real> values;
+  for (const std::size_t one : cell.runs) {
+    const Record& record = *c.runs[one].record;
+    const std::vector<Real> left = losses_left(c.runs[one]);
+    const Real gap = left.empty() ? kNever : left.back(),
+               value = is_of_x ? record.summary.x_error / record.x_scale.value_or(1) : gap;
+    values.push_back(value);
+    if (value <= std::max(tau, is_of_x ? least : 0)) continue;
+    ++causes[is_of_x && gap <= tau ? "deed.undetermined"
+             : record.status == Status::budget || record.status == Status::running ? "deed.budget"
+             : record.status == Status::converged                                  ? "deed.minimum"
+                                                  : "deed.stalled"];
+  }
+  const auto most =
+      std::ranges::max_element(causes, {}, [](const auto& one) { return one.second; });
+  const Real middle = median_of(values);
+  return {most == causes.end() ? "deed.stalled" : most->first,
+          is_of_x ? words("deed.error", figure(middle), figure(std::max(tau, least)))
+                  : words("deed.gap", figure(middle), figure(tau))};
+}
+
 // The problems of a method by their results, each list in the order of the problems.
 std::string deeds_html(const Comparison& c, std::size_t s) {
-  std::string won, unsolved, failed, inapplicable;
+  std::string won, failed, inapplicable;
+  std::map<std::string, std::string> unsolved;  // by cause
   for (std::size_t p = 0; p < c.problems.size(); ++p) {
     const Cell& cell = c.cell(p, s);
     const auto add = [&](std::string& list, const std::string& remark) {
@@ -48,16 +77,17 @@ std::string deeds_html(const Comparison& c, std::size_t s) {
         if (is_failure(c.runs[run].record->status)) message = c.runs[run].record->message;
       add(failed, fmt::format("{} of {} runs: {}", cell.failed, cell.runs.size(), message));
     } else if (!work.is_solved() && !c.problems[p].lacks_least_loss()) {
-      add(unsolved, fmt::format("{}; lowest final loss {}", status_text(cell.statuses),
-                                figure(cell.loss.low)));
+      const auto [cause, text] = shortfall(c, p, cell);
+      add(unsolved[cause], text);
     }
   }
   std::string html;
   for (const auto& [term, items] : {std::pair("least work on", &won),
-                                    {"does not solve", &unsolved},
                                     {"failed on", &failed},
                                     {"not applicable to", &inapplicable}})
     if (!items->empty()) html += row(term, "<ul>" + *items + "</ul>");
+  for (const auto& [cause, items] : unsolved)
+    html += row(words("deed.unsolved", words(cause)).c_str(), "<ul>" + items + "</ul>");
   return html;
 }
 
@@ -83,7 +113,8 @@ std::string values_of(const Comparison& c, std::size_t s, const std::string& opt
 
 // "3rd of 36 on the 17 settings that all ranked methods ran on", or that it is not ranked.
 std::string place_text(const Comparison& c, std::size_t s) {
-  if (!c.order.has(s)) return "Not ranked";
+  if (!c.order.has(s))
+    return words("deed.not-ranked", counted(c.order.settings.size(), common_noun(c)));
   const Standing& own = c.optimizers[s].tightest();
   const auto first = std::ranges::find_if(c.order.methods, [&](std::size_t other) {
     return are_tied(own, c.optimizers[other].tightest());
@@ -97,9 +128,12 @@ std::string place_text(const Comparison& c, std::size_t s) {
 // A summary of its values.
 std::string reading(const Comparison& c, std::size_t s) {
   const OptimizerAxis& axis = c.optimizers[s];
-  const Standing& standing = axis.tightest();
+  const std::vector<Ranked> beside = standings_beside(c, s);
+  const auto own = std::ranges::find(beside, s, &Ranked::optimizer);
+  const Standing& standing = own == beside.end() ? axis.tightest() : own->standing;
   if (axis.runs == 0)
     return axis.applicable == 0 ? "This method is not applicable to any of these problems." : "";
+  if (standing.settings == 0) return place_text(c, s) + ".";
   std::string text = fmt::format("{}: solves {} of {} to {}", place_text(c, s), standing.solved,
                                  standing.settings, tau_name(c));
   if (standing.wins > 0)

@@ -45,10 +45,11 @@ function figure(value) {
   return value.toExponential(3).replace(/\.?0*e\+?/, 'e');
 }
 
+// Times of which some were taken while others ran rank no method.
+const isDoubtful = () => measureNow().name === 'time' && DATA.isTimedTogether;
 // ≈ marks times of which some were taken while other runs shared the machine.
 function amount(value) {
-  const isDoubtful = measureNow().name === 'time' && DATA.isTimedTogether && value < Infinity;
-  return figure(value) + (isDoubtful ? '≈' : '');
+  return figure(value) + (isDoubtful() && value < Infinity ? '≈' : '');
 }
 const multiple = (ratio) => (ratio === Infinity || ratio === null ? '✗' : `${Number(ratio.toPrecision(3))}×`);
 

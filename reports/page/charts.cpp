@@ -64,8 +64,8 @@ bool is_first(const std::vector<CurveDrawing>& all, std::size_t place) {
                       [&](const CurveDrawing& before) { return are_same(before, all[place]); });
 }
 
-std::string curve_svg(const Comparison& c, const std::vector<CurveDrawing>& all,
-                      std::size_t place) {
+std::string curve_svg(const Comparison& c, const std::vector<CurveDrawing>& all, std::size_t place,
+                      Real least_goal) {
   CurveDrawing one = all[place];
   one.drawing.attributes =
       fmt::format(" data-by={} data-vertical={}", name_of(one.by), one.vertical);
@@ -74,7 +74,7 @@ std::string curve_svg(const Comparison& c, const std::vector<CurveDrawing>& all,
       one.drawing.attributes += fmt::format(" data-also={}", name_of(all[i].by));
   if (!one.is_own) one.drawing.attributes += " hidden";
   one.drawing.rest = std::to_string(place);
-  return drawing_svg(one.drawing, c.yardstick.tolerances[kTightest].tau);
+  return drawing_svg(one.drawing, std::max(c.yardstick.tolerances[kTightest].tau, least_goal));
 }
 
 }  // namespace
@@ -82,7 +82,9 @@ std::string curve_svg(const Comparison& c, const std::vector<CurveDrawing>& all,
 std::string curves_html(const Comparison& c, std::size_t p) {
   const std::vector<CurveDrawing> all = curve_drawings(c, p);
   const auto own = std::ranges::find_if(all, &CurveDrawing::is_own);
-  return own == all.end() ? "" : curve_svg(c, all, static_cast<std::size_t>(own - all.begin()));
+  return own == all.end() ? ""
+                          : curve_svg(c, all, static_cast<std::size_t>(own - all.begin()),
+                                      c.problems[p].least_goal);
 }
 
 std::string curves_json(const Comparison& c, std::size_t p) {
@@ -94,7 +96,7 @@ std::string curves_json(const Comparison& c, std::size_t p) {
   };
   for (std::size_t i = 0; i < all.size(); ++i) {
     if (!all[i].is_own && !is_first(all, i)) continue;
-    if (!all[i].is_own) others += curve_svg(c, all, i);
+    if (!all[i].is_own) others += curve_svg(c, all, i, c.problems[p].least_goal);
     add(std::to_string(i), all[i].drawing);
   }
   for (const Drawing& plane : plane_drawings(c, p)) add(plane.rest, plane);

@@ -17,7 +17,12 @@ function ticksOf(low, high, isLog) {
     let factor = high / low <= 100 ? 2 : 10;
     factor **= Math.max(1, Math.ceil(Math.log(high / low) / Math.log(factor) / 8));
     for (let tick = factor ** Math.ceil(Math.log(low) / Math.log(factor) - 1e-9); tick <= high * (1 + 1e-9) && ticks.length < 64; tick *= factor) ticks.push(tick);
-    return ticks;
+    if (ticks.length >= 3 || !(low > 1e-300)) return ticks;
+    ticks.length = 0;
+    for (let power = 10 ** Math.floor(Math.log10(low)); power <= high && ticks.length < 60; power *= 10)
+      ticks.push(...[1, 2, 5].map((digit) => digit * power).filter((tick) => tick >= low * (1 - 1e-9) && tick <= high * (1 + 1e-9)));
+    if (ticks.length >= 3) return ticks;
+    ticks.length = 0;
   }
   const rough = (high - low) / 8, power = 10 ** Math.floor(Math.log10(rough));
   const step = ([1, 2, 5].find((digit) => digit * power >= rough) ?? 10) * power;
@@ -40,7 +45,7 @@ const viewOf = (area) => area.getAttribute('viewBox').split(' ').map(Number);
 function drawAxes(chart) {
   const area = areaOf(chart), box = boxOf(area), [left, top, width, height] = viewOf(area), axes = chart.querySelector('.axes');
   const names = [...axes.querySelectorAll('text')].filter((text) => Number.isNaN(Number(text.textContent.replace('%', '')))), made = [];
-  const word = (kind, value) => (kind === 'share' ? `${Math.round(100 * value)}%` : value > 9999 ? value.toExponential(0).replace('+', '') : figure(value));
+  const word = (kind, value) => (kind === 'share' ? `${Math.round(100 * value)}%` : value > 9999 ? Number(value.toPrecision(2)).toExponential().replace('+', '') : figure(value));
   const x = axisOf(chart, 'x'), y = axisOf(chart, 'y');
   for (const tick of ticksOf(valueAt(x, left / AREA), valueAt(x, (left + width) / AREA), x.kind === 'log')) {
     const at = box.x + box.width * (shareOf(x, tick) * AREA - left) / width;
@@ -93,12 +98,26 @@ function placedEnds(ends, bottom = Infinity) {
   return placed;
 }
 
+// The first lines that a filter does not hide stand in where it leaves none that a chart shows.
+const MOST_LENT = 5;
+function lendLines(chart) {
+  for (const group of chart.querySelectorAll('[data-lent]')) {
+    delete group.dataset.lent;
+    group.classList.add('off');
+  }
+  if (linesOf(chart).some(isLineShown)) return;
+  for (const group of linesOf(chart).reverse().filter(({dataset}) => dataset.s !== undefined && isShown('s', Number(dataset.s))).slice(0, MOST_LENT)) {
+    group.dataset.lent = '';
+    group.classList.remove('off');
+  }
+}
+
 // The name of a line at its end, and its points, which the report leaves to the page.
 const nameOf = (group) => (group.dataset.s === undefined ? group.querySelector('title').textContent : DATA.optimizers[Number(group.dataset.s)]);
 function endOf(chart, group) {
   const ends = chart.querySelector('.ends'), there = lineIn(ends, lineOf(group));
   if (there !== undefined) return there;
-  const made = svgElement('text', {'data-s': lineOf(group)}, nameOf(group).replace(/(.{23}).{2,}/, '$1…'));
+  const made = svgElement('text', {'data-s': lineOf(group)}, nameOf(group).replace(/(.{23}).{2,}/, '$1…') + (group.matches('[data-worse]') ? ' ✗' : ''));
   ends.append(made);
   if (chart.matches('.marked')) group.append(svgElement('path', {class: 'points', d: pointsOf(pathOf(group)).map(([x, y]) => `M${x} ${y}h0`).join('')}));
   return made;
@@ -192,7 +211,7 @@ function explainPoint(event) {
 function moveTolerance(chart) {
   const line = chart.querySelector('.tau');
   if (line === null) return;
-  const y = Math.round((1 - shareOf(axisOf(chart, 'y'), Number(line.dataset.scale) * tauOf(view.target))) * AREA);
+  const y = Math.round((1 - shareOf(axisOf(chart, 'y'), Number(line.dataset.scale) * Math.max(tauOf(view.target), DATA.problems[chart.closest('[data-p]')?.dataset.p]?.goal ?? 0))) * AREA);
   line.setAttribute('d', `M${-4 * AREA} ${y}h${9 * AREA}`);
 }
 
@@ -241,5 +260,9 @@ ON_UNPACK.push((place) => place.querySelectorAll('.names').forEach((names) => {
   });
 }));
 ON_UNPACK.push((place) => {
-  if (!place.matches('article')) place.querySelectorAll('.chart').forEach((chart) => live(chart, () => fitView(chart)));
+  if (!place.matches('article'))
+    place.querySelectorAll('.chart').forEach((chart) => live(chart, () => {
+      lendLines(chart);
+      fitView(chart);
+    }));
 });

@@ -18,10 +18,13 @@ function sparkline(p, s) {
 const withCopy = (command) => [element('code', {}, command), ' ', Object.assign(pressable('copy', undefined, (event) => copyText(command, event.currentTarget)), {className: 'copy'})];
 
 function showDrawer(...content) {
-  const drawer = document.getElementById('drawer'), close = pressable('close', undefined, () => drawer.close());
+  const drawer = document.getElementById('drawer'), before = document.activeElement, close = pressable('close', undefined, () => drawer.close());
   drawer.replaceChildren(close, ...content);
   document.getElementById('tip').hidden = true;
-  if (!drawer.open) drawer.show();
+  if (!drawer.open) {
+    drawer.show();
+    drawer.addEventListener('close', () => before.focus(), {once: true});  // back to the cell
+  }
   close.focus();
 }
 

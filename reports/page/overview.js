@@ -1,6 +1,6 @@
 // The tables of the first tab, for the tolerance and the measure chosen: figures of the report's own,
 // for every one of them.
-const SHOWN_AT_FIRST = 12;  // of the standings; the others on demand
+const SHOWN_AT_FIRST = 16;  // of the standings; the others on demand
 
 const cellWith = (text, small = '', properties = {}) => element('td', properties, text, ...small === '' ? [] : [element('small', {}, small)]);
 const nameOfMethod = (s) => [element('a', {href: `#optimizer-${s}`}, swatch(s), DATA.optimizers[s]), ...DATA.marks[s] === '' ? [] : [element('sup', {title: DATA.privileges[s]}, DATA.marks[s].trim())]];
@@ -11,10 +11,11 @@ function filledTable(table, caption, heads, rows) {
 
 // A table that scrolls by itself where it is wider than the page.
 function scrolled(table) {
-  const place = element('div', {className: 'scroll', tabIndex: 0}, table);
+  const place = element('div', {className: 'scroll', tabIndex: 0}, table), made = element('div', {}, place);
   place.setAttribute('role', 'region');
   place.setAttribute('aria-label', table.caption.textContent);
-  return place;
+  addCopies(table);
+  return made;
 }
 
 // Its score as a dot on a track from 0 to 1, with the interval of the report's own order.
@@ -50,10 +51,12 @@ function drawStandings(table) {
   const heads = worded('ranking-columns').split(' | ');
   if (rows.length === 0 || DATA.allLearned)
     return table.replaceChildren(element('caption', {}, worded('all-learned')));
+  if (isDoubtful()) return table.replaceChildren(element('caption', {}, worded('not-timed')));
   filledTable(table, worded('ranking', {tau: tauName(view.target), measure: measureNow().counted}),
       [element('tr', {}, ...heads.map((head) => element('th', {scope: 'col'}, head)))], [
     ...rows.map((row, i) => standingRow(row, String(i + 1), shown.indexOf(row) >= SHOWN_AT_FIRST)), ...pinnedRows()]);
   makeSortable(table);
+  addCopies(table);
 }
 
 // How far from the best, as a class of the style sheet: how many of the report's steps are passed.
@@ -66,7 +69,7 @@ function heatCell(cell, low, best, isUnknown = false) {
   if (isUnknown) return cellWith('?', '', {className: 'none'});  // no loss of it counts as solved
   const isTold = (reached > 0 && reached < all) || failed > 0 || missing > 0;
   const told = `${reached}/${all}${failed > 0 ? `, ${failed} failed` : ''}${missing > 0 ? `, ${missing} missing` : ''}`;
-  return cellWith(amount(work), isTold ? told : '', {className: work === Infinity ? 'no' : work <= best ? 'h0 best' : heatOf(atLeast(work), atLeast(low))});
+  return cellWith(amount(work), isTold ? told : '', {className: work === Infinity ? 'no' : isDoubtful() ? '' : work <= best ? 'h0 best' : heatOf(atLeast(work), atLeast(low))});
 }
 
 // The error in x of a learned problem at equal work.
@@ -128,6 +131,7 @@ function drawHeat(table) {
   });
   filledTable(table, worded('heat', {measure: counted, tau: tauName(view.target), unit: unit === counted ? '' : worded('unit', {unit})}),
       heatHeads(columns), rows);
+  addCopies(table);
 }
 
 // Rows of class `rest` are shown on demand.
@@ -150,18 +154,32 @@ function makeMore(table, draw) {
   };
 }
 
-// Three methods on their way from y* to x: their kept steps in turn, once; again on demand.
+// Three methods on their way from y* to x, by forward solves: a field stands until the next one that its run
+// kept, and a flag until the run reaches τ. Once; again on demand.
+const RACE_FRAMES = 60;
 function makeMotion(place) {
   const kinds = ['Adaptive gradient', 'Least squares', 'Inversion of the physics'], stepsOf = (three) => Math.min(...three.map(({iterations}) => iterations.length));
-  const all = DATA.problems.map(({fields}, p) => ({p, three: kinds.map((kind) => fields?.found.find(({s}) => DATA.kinds[s] === kind))}))
+  const runnersOf = ({fields, race}) => kinds.map((kind) => {
+    const at = fields?.found.findIndex(({s, iterations}, i) => DATA.kinds[s] === kind && race[i][0].length === iterations.length && !race[i][0].includes(null)) ?? -1;
+    return at < 0 ? undefined : {...fields.found[at], works: race[at][0], reached: race[at][1]};
+  });
+  const all = DATA.problems.map((problem, p) => ({p, three: runnersOf(problem)}))
       .filter(({three}) => !three.includes(undefined) && stepsOf(three) > 1).sort((a, b) => stepsOf(b.three) - stepsOf(a.three));
   if (all.length === 0) return;
   const [{p, three}] = all, {fields, spec} = DATA.problems[p], article = document.getElementById(`problem-${p}`), made = document.createElement('template');
   made.innerHTML = article.querySelector(':scope > noscript')?.textContent ?? article.innerHTML;
   const figures = ['.given', ...three.map(({s}) => `[data-s="${s}"]`)].map((which) => made.content.querySelector(`.field-cards > figure${which}`));
-  const most = Math.max(...three.map(({iterations}) => iterations.length)), truth = bytesOf(fields.truth);
-  let step = most, timer;
-  const draw = () => three.forEach((found, i) => showStep(figures[i + 1], {...fields, found, truth}, step));
+  const most = Math.max(...three.map(({works}) => works[works.length - 1])), truth = bytesOf(fields.truth), clock = element('output'), flags = three.map(() => element('b'));
+  flags.forEach((flag, i) => figures[i + 1].querySelector('figcaption').prepend(flag));
+  let frame = RACE_FRAMES, timer;
+  const draw = () => {
+    const now = frame === RACE_FRAMES ? most : Math.floor(most ** (frame / RACE_FRAMES));
+    clock.textContent = worded('race-clock', {work: now});
+    three.forEach((found, i) => {
+      showStep(figures[i + 1], {...fields, found, truth}, Math.max(1, found.works.filter((work) => work <= now).length));
+      flags[i].textContent = found.reached !== null && found.reached <= now ? `⚑ ${worded('race-reached', {tau: tauName(DEFAULT_TARGET), work: found.reached})} ` : '';
+    });
+  };
   const button = pressable('Play', undefined, () => (timer === undefined ? play() : pause()));
   const pause = () => {
     clearInterval(timer);
@@ -169,15 +187,15 @@ function makeMotion(place) {
     button.textContent = 'Play';
   };
   const play = () => {
-    if (step >= most) step = 0;
+    if (frame >= RACE_FRAMES) frame = 0;
     button.textContent = 'Pause';
     timer = setInterval(() => {
-      step = Math.min(most, step + 1);
+      frame = Math.min(RACE_FRAMES, frame + 1);
       draw();
-      if (step === most) pause();
-    }, 700);
+      if (frame === RACE_FRAMES) pause();
+    }, 100);
   };
-  place.replaceChildren(element('p', {}, element('a', {href: `#problem-${p}`}, worded('motion', {problem: spec})), ' ', button), element('div', {className: 'field-cards'}, ...figures));
+  place.replaceChildren(element('p', {}, element('a', {href: `#problem-${p}`}, worded('motion', {problem: spec})), ' ', button, ' ', clock), element('div', {className: 'field-cards'}, ...figures));
   paintAll(place, {...fields, found: three});
   draw();
   if (!matchMedia('(prefers-reduced-motion: reduce)').matches) play();

@@ -61,7 +61,7 @@ std::vector<std::string> origin_of(const Comparison& c) {
   return parts;
 }
 
-// "quick · 2026-11-22 · 1a2b3c4 · 38 optimizers on …", with the commits of the programs that ran.
+// "quick · 2026-11-22 · 1a2b3c4", with the commits of the programs that ran.
 std::string head_html(const Document& document) {
   const Comparison& c = document.comparison;
   constexpr std::size_t kShort = 7;
@@ -73,7 +73,6 @@ std::string head_html(const Document& document) {
       commits.insert(build.commit.substr(0, kShort));
   if (commits.size() == 1) parts.push_back(*commits.begin());
   if (commits.size() > 1) parts.push_back(counted(commits.size(), "commit"));
-  parts.push_back(document.headline);
   return html_text(joined(parts, " · "));
 }
 
@@ -104,39 +103,54 @@ std::string profile_html(const Comparison& c) {
   return html_text(profile_reading(c, kTightest));
 }
 
-// How many of the published results agree, and the plot of one that does: of the ratios with a
-// stated error that with the most seeds.
-std::string published_html(const Document& document) {
+// How many of the published results agree.
+std::string checked_html(const Document& document) {
+  if (document.claims.empty()) return "";
   const std::vector<Verdict> facts = verdicts_on_facts(document.claims, false);
   const auto count = [&](Verdict from, Verdict to) {
     return std::ranges::count_if(facts,
                                  [&](Verdict verdict) { return verdict >= from && verdict <= to; });
   };
-  std::string html =
-      fmt::format("<p class=checked>{} <a href=\"#claims\">{}</a>; <a href=\"#figures\">{}</a></p>",
-                  html_text(words("page.published", count(Verdict::reproduced, Verdict::reproduced),
-                                  count(Verdict::agrees, Verdict::agrees),
-                                  count(Verdict::differs, Verdict::differs),
-                                  count(Verdict::partly, Verdict::one_run),
-                                  count(Verdict::too_short, Verdict::not_comparable))),
-                  html_text(words("page.each-claim")), html_text(words("page.all-figures")));
+  return fmt::format(
+      "<p class=checked>{} <a href=\"#claims\">{}</a>; <a href=\"#figures\">{}</a></p>",
+      html_text(words("page.published", count(Verdict::reproduced, Verdict::reproduced),
+                      count(Verdict::agrees, Verdict::agrees),
+                      count(Verdict::differs, Verdict::differs),
+                      count(Verdict::partly, Verdict::one_run),
+                      count(Verdict::too_short, Verdict::not_comparable))),
+      html_text(words("page.each-claim")), html_text(words("page.all-figures")));
+}
+
+// A published result that agrees, with the interval that decides its verdict: of the ratios with a
+// stated error that with the most seeds.
+std::string hero_html(const Document& document) {
   const Judgement* best = nullptr;
   for (const Judgement& one : document.claims)
     if (is_decided(one.verdict) && is_supported(one.verdict) && one.evidence.kind == "ratio" &&
         one.band && one.band->high < kNever && one.band->low < one.band->high &&
         (best == nullptr || one.measured->n > best->measured->n))
       best = &one;
-  if (best == nullptr) return html;
+  if (best == nullptr) return "";
   const std::vector<Plot> plots = claim_plots(best->evidence, best->id + "-first");
-  if (plots.empty()) return html;
+  if (plots.empty()) return "";
+  const Measurement& measured = *best->measured;
+  const Interval band = measured.predicted.value_or(Interval{measured.low, measured.high});
+  Drawing drawing = drawing_of(plots[0]);
+  if (const auto& published = plots[0].published; !published.empty()) {
+    constexpr Real kBeside = .8;  // of the place of the published value, on a logarithmic axis
+    const Real unit = published[0].y[0] / best->evidence.published, x = published[0].x[0] * kBeside;
+    drawing.ground.push_back({{}, "", {x, x}, {unit * band.low, unit * band.high}, {}, {}});
+  }
   return fmt::format(
-      "{0}<div data-claim=\"{1}\"><p class=reading>{3} "
-      "<a href=\"#claim-{1}\">{2}</a> {4}</p>{5}</div>",
-      html, best->id, html_text(best->sentence), html_text(words("page.sentence")),
-      html_text(words("page.quantity", best->quantity)), plot_html(plots[0]));
+      "<figure class=plot data-claim=\"{0}\"><figcaption><a href=\"#claim-{0}\">{1}</a> {2}"
+      "</figcaption>{3}{4}</figure>",
+      best->id, html_text(best->sentence),
+      html_text(words(measured.predicted ? "page.hero" : "page.hero-seeds", figure(measured.value),
+                      figure(band.low), figure(band.high), verdict_text(*best))),
+      drawing_svg(drawing), names_html(drawing));
 }
 
-// The first tab: alerts; a sentence that decides, of which all that these runs say opens; facts.
+// The head of the first tab: alerts, and at most three sentences.
 std::string overview_html(const Document& document) {
   const Comparison& c = document.comparison;
   std::string html;
@@ -149,20 +163,24 @@ std::string overview_html(const Document& document) {
                         html_text(words("page.failed", c.failures.size())),
                         unread > 0 ? html_text(words("page.unreadable", unread)) : "",
                         html_text(words("page.why")));
-  if (const auto& sentences = document.section("standings").readings; !sentences.empty()) {
-    html += fmt::format("<p class=verdict>{}</p>\n", html_text(sentences[0].text));
-    html += "<details><summary>" + html_text(words("page.all-sentences")) + "</summary>";
-    for (const Reading& sentence : sentences)
-      html += fmt::format("<p class=lead>{}</p>\n", html_text(sentence.text));
-    html += "</details>\n";
+  const char* kind = "verdict";
+  for (const std::string& sentence : first_sentences(c)) {
+    html += fmt::format("<p class={}>{}</p>\n", kind, html_text(sentence));
+    kind = "lead";
   }
+  return html;
+}
+
+// All that these runs say, folded: sentences, facts, published results.
+std::string findings_html(const Document& document) {
+  std::string html = "<details><summary>" + html_text(words("page.all-sentences")) +
+                     "</summary><p class=lead>" + html_text(document.headline) + "</p>";
+  for (const Reading& sentence : document.section("standings").readings)
+    html += fmt::format("<p class=lead>{}</p>\n", html_text(sentence.text));
   html += "<dl class=settled>";
-  for (const Reading& reading : ranking_facts(c))
+  for (const Reading& reading : ranking_facts(document.comparison))
     html += fmt::format("<dt>{}<dd>{}", html_text(reading.title), html_text(reading.text));
-  html += "</dl>\n";
-  if (document.claims.empty()) return html;
-  return "<div class=first><div>" + html + "</div><div>" + published_html(document) +
-         "</div></div>";
+  return html + "</dl>" + checked_html(document) + "</details>\n";
 }
 
 std::string endings_html(const Comparison& c) {
@@ -240,6 +258,8 @@ std::string html_report(const Document& document) {
                html_text(words("page.ranking", counted_name(c), setting_noun(c), tau_name(c)))},
               {"page.heat", html_text(words("page.heat", unit_name(c), success_text(c)))},
               {"overview", overview_html(document)},
+              {"hero", hero_html(document)},
+              {"findings", findings_html(document)},
               {"endings", endings_html(c)},
               {"remarks", remarks_html(document)},
               {"order", section_html(order)},

@@ -13,6 +13,7 @@
 #include <unordered_map>
 
 #include "core/json.h"
+#include "core/oracle.h"
 #include "core/seeds.h"
 #include "core/threads.h"
 #include "reports/page/page.h"
@@ -162,6 +163,27 @@ std::string learned_json(const Comparison& c, std::size_t p) {
                      json_list(equal.nearest_first(), row));
 }
 
+// The work of each field that the page shows, and of the run when it reached the tolerance, or
+// null:
+// [[[work, …], reached], …] by method.
+std::string race_json(const Comparison& c, std::size_t p, const FoundFields& fields) {
+  return json_list(fields.found, [&](const FoundField& found) {
+    const Cell& cell = c.cell(p, found.optimizer);
+    const auto own = std::ranges::find_if(
+        cell.runs, [&](std::size_t row) { return c.runs[row].seed == fields.seed; });
+    if (own == cell.runs.end()) return std::string("[[],null]");
+    const Curve& curve = c.runs[*own].record->curve;
+    const std::string works = json_list(found.frames.iterations, [&](auto iteration) {
+      const auto at = std::ranges::find(curve.iteration, iteration);
+      return at == curve.iteration.end()
+                 ? std::string("null")
+                 : std::to_string(
+                       curve.work[static_cast<std::size_t>(at - curve.iteration.begin())]);
+    });
+    return fmt::format("[{},{}]", works, number(c.taken(c.runs[*own], Measure::work, kTightest)));
+  });
+}
+
 std::string problem_json(const Comparison& c, std::size_t p,
                          const std::optional<FoundFields>& fields) {
   const ProblemAxis& problem = c.problems[p];
@@ -181,7 +203,8 @@ std::string problem_json(const Comparison& c, std::size_t p,
               ? fmt::format(",\"goal\":{:.4g}", problem.least_goal)
               : "") +
          (prices_of(problem) ? ",\"sheet\":" + json_quoted(problem.sheet->file_name()) : "") +
-         (fields ? ",\"fields\":" + fields_json(*fields) : "") +
+         (fields ? ",\"fields\":" + fields_json(*fields) + ",\"race\":" + race_json(c, p, *fields)
+                 : "") +
          ",\"curves\":" + curves_json(c, p) + "}";
 }
 
@@ -239,18 +262,49 @@ std::string standings_json(const Comparison& c) {
 std::string pinned_json(const Comparison& c) {
   std::vector<std::string> all;
   for (std::size_t s = 0; s < c.optimizers.size(); ++s) {
-    if (!c.optimizers[s].is_meaning || c.order.has(s)) continue;
-    Order order{.settings = c.order.settings, .methods = c.order.methods};
-    std::erase_if(order.settings, [&](std::size_t p) { return c.cell(p, s).planned == 0; });
-    if (order.settings.empty()) continue;
-    order.methods.push_back(s);
-    auto places = standings_over(c, order, c.yardstick.by, c.yardstick.tightest().rung);
+    if (!c.optimizers[s].is_meaning) continue;
+    std::vector<Ranked> places = standings_beside(c, s);
+    if (places.empty()) continue;
     std::erase_if(places, [&](const Ranked& place) { return place.optimizer != s; });
     const Standing& own = places[0].standing;
     all.push_back(fmt::format("[{},{},{},{}]", own.settings, own.runs, c.optimizers[s].failed,
                               places_json(places)));
   }
   return "[" + joined(all, ",") + "]";
+}
+
+// The nominal cost of a Jacobian on each common setting and, for each ranked method, the calls of
+// its runs until they reached the tolerance: [work without pullbacks and Jacobians, pullbacks,
+// Jacobians] of each run, one after the other; null of a run that did not, and of one that is
+// missing.
+std::string calls_json(const Comparison& c) {
+  if (is_large(c)) return "[]";
+  constexpr auto kPullback = static_cast<std::size_t>(Oracle::pullback),
+                 kJacobian = static_cast<std::size_t>(Oracle::jacobian);
+  return json_list(c.order.settings, [&](std::size_t p) {
+    std::uint64_t declared = 0;
+    const std::string methods = json_list(c.order.methods, [&](std::size_t s) {
+      const Cell& cell = c.cell(p, s);
+      std::vector<std::string> texts(cell.missing(), "null,null,null");
+      for (const std::size_t row : cell.runs) {
+        const Record& record = *c.runs[row].record;
+        const Real work = c.taken(c.runs[row], Measure::work, kTightest);
+        if (work == kNever) {
+          texts.emplace_back("null,null,null");
+          continue;
+        }
+        const OracleCounts counts = counts_at(record, work);
+        const auto spent = [&](std::size_t kind) {
+          return Real(record.prices[kind]) * Real(counts[kind]);
+        };
+        declared = std::max<std::uint64_t>(declared, record.prices[kJacobian]);
+        texts.push_back(fmt::format("{},{},{}", work - spent(kPullback) - spent(kJacobian),
+                                    counts[kPullback], counts[kJacobian]));
+      }
+      return "[" + joined(texts, ",") + "]";
+    });
+    return fmt::format("[{},{}]", declared, methods);
+  });
 }
 
 // What does not change from target to target: [settings, runs, failed, score's interval].
@@ -352,7 +406,7 @@ std::string page_data(const Document& document, const AllFields& fields) {
       "\"rungs\":{},\"targets\":{},{},\"given\":{},\"ranked\":{},\"common\":{},\"sanity\":{},"
       "\"claims\":{},"
       "\"pinned\":{},\"group\":{},\"dataKinds\":{},\"advice\":{},\"words\":{},\"terms\":{},"
-      "\"standings\":{},\"guide\":{},\"rest\":{},\"problems\":[",
+      "\"calls\":{},\"standings\":{},\"guide\":{},\"rest\":{},\"problems\":[",
       json_quoted(runs_address(document)), name_of(c.yardstick.by), is_all_learned(c),
       json_list(kShades, exact_figure), measures_json(c), c.is_any_timed_together,
       json_list(c.yardstick.tolerances,
@@ -360,8 +414,8 @@ std::string page_data(const Document& document, const AllFields& fields) {
       indices(targets_of(c)), axes_json(c), given_json(c), indices(c.order.methods),
       indices(c.order.settings), indices(c.sanity.settings), claims_about(document), pinned_json(c),
       indices(c.decision ? c.decision->group() : std::vector<std::size_t>()), kinds_json(c),
-      advice_json(c), script_words("script."), script_words("glossary."), standings_json(c),
-      json_quoted(std::string(embedded_guide())), figure_lines_json(document));
+      advice_json(c), script_words("script."), script_words("glossary."), calls_json(c),
+      standings_json(c), json_quoted(std::string(embedded_guide())), figure_lines_json(document));
   for (std::size_t p = 0; p < c.problems.size(); ++p)
     text += (p > 0 ? "," : "") + problem_json(c, p, fields[p]);
   return text + "]}";

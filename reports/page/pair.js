@@ -101,6 +101,7 @@ function pairSentence(a, b) {
   const {both, onlyA, onlyB, neither, problems, median, low, high} = ratioOf(a, b), isOpen = problems < 6 || (low <= 1 && high >= 1);
   const counts = worded('pair-counts', {a: DATA.optimizers[a], b: DATA.optimizers[b], tau: tauName(view.target), both, onlyA, onlyB, neither});
   if (both === 0) return counts;
+  if (isDoubtful()) return `${counts} ${worded('not-timed')}`;
   const [more, less, ...ratios] = median < 1 ? [b, a, 1 / median, 1 / high, 1 / low] : [a, b, median, low, high], [ratio, least, most] = ratios.map(multiple);
   return `${counts} ${worded('pair-ratio', {a: DATA.optimizers[more], b: DATA.optimizers[less], measure: measureNow().counted, ratio, interval: worded(problems < 6 ? 'pair-range' : 'pair-interval', {n: problems}), low: least, high: most})}${isOpen ? ` ${worded('pair-open')}` : ''}`;
 }

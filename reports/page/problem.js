@@ -1,7 +1,11 @@
 // One problem: its curves, and beside them a table whose rows are the legend.
 const CHOSEN = new Map();  // the lines that a reader chose, by problem
 
-const linesShown = (p) => CHOSEN.get(p) ?? new Set(DATA.problems[p].lines);
+// The best others stand in where a filter hides all of them.
+function linesShown(p) {
+  const own = CHOSEN.get(p) ?? new Set(DATA.problems[p].lines);
+  return CHOSEN.has(p) || [...own].some((s) => isShown('s', s)) ? own : new Set(rankingOf(DATA.problems[p]).filter((s) => isShown('s', s)).slice(0, MOST_LENT));
+}
 
 function showLines(p, lines) {
   CHOSEN.set(p, new Set(lines));

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "reports/formats/formats.h"
 #include "reports/page/page.h"
@@ -24,7 +25,9 @@ Real share_of(Real value, Real low, Real high, bool is_log) {
 
 std::string tick_text(Real value) {
   constexpr Real kInFull = 9999;
-  return value > kInFull ? fmt::format("1e{:.0f}", std::log10(value)) : figure(value);
+  if (value <= kInFull) return figure(value);
+  const Real power = std::floor(std::log10(value) + 1e-9);
+  return fmt::format("{:.2g}e{:.0f}", value / std::pow(10.0, power), power);
 }
 
 Real Frame::x(Real value) const {
@@ -36,6 +39,7 @@ Real Frame::y(Real value) const {
 
 std::vector<Real> ticks_of(Real low, Real high, bool is_logarithmic) {
   constexpr Real kMost = 8, kFewDoublings = 100;
+  constexpr std::ptrdiff_t kFewest = 3;
   constexpr int kBound =
       64;  // of any axis: where a step is lost to rounding, none goes on for ever
   std::vector<Real> ticks;
@@ -48,7 +52,15 @@ std::vector<Real> ticks_of(Real low, Real high, bool is_logarithmic) {
       ticks.push_back(tick);
       tick *= factor;
     }
-    return ticks;
+    if (std::ssize(ticks) >= kFewest || low < std::numeric_limits<Real>::min()) return ticks;
+    ticks.clear();
+    for (Real power = std::pow(10.0, std::floor(std::log10(low)));
+         power <= high && std::ssize(ticks) + 3 < kBound; power *= 10)
+      for (const Real digit : {1, 2, 5})
+        if (digit * power >= low * (1 - 1e-9) && digit * power <= high * (1 + 1e-9))
+          ticks.push_back(digit * power);
+    if (std::ssize(ticks) >= kFewest) return ticks;
+    ticks.clear();
   }
   const Real rough = (high - low) / kMost, power = std::pow(10.0, std::floor(std::log10(rough)));
   Real step = 10 * power;
@@ -200,7 +212,8 @@ std::string series_svg(const Drawing& drawing, const Frame& area, std::size_t pl
   constexpr std::size_t kFewPoints = 16;  // are marked
   const PlotSeries& line = drawing.plot.series[place];
   const bool is_off = is_hidden(drawing, line);
-  std::string svg = fmt::format("<g{}>", line_attributes(line, place, is_off ? "off" : ""));
+  std::string svg = fmt::format("<g{}{}>", line_attributes(line, place, is_off ? "off" : ""),
+                                line.is_worse_at_end ? " data-worse" : "");
   if (!line.low.empty() && line.low != line.high && !is_off)
     svg += band_of(area, line, drawing.join);
   std::string path = path_of(area, line.x, line.y, drawing.join);
@@ -262,6 +275,7 @@ std::string end_names(const Drawing& drawing, const Frame& frame) {
     if (last == 0 || is_hidden(drawing, line)) continue;
     std::string text = line.name;
     if (text.size() > kLongest) text = text.substr(0, kLongest - 1) + "…";
+    if (line.is_worse_at_end) text += " ✗";
     const Real x = drawing.plot.kind == Plot::Kind::steps ? frame.window.x_high : line.x[last - 1],
                width = kLetter * static_cast<Real>(letters_of(text));
     ends.push_back(
@@ -350,8 +364,7 @@ std::string names_html(const Drawing& drawing) {
                     line_attributes(line, i, "name"), swatch(), html_text(line.name));
   }
   if (!drawing.plot.published.empty())
-    shown +=
-        fmt::format("<span class=goal>{} published value, with its uncertainty</span>", swatch());
+    shown += fmt::format("<span class=goal>{} published, with its error</span>", swatch());
   if (count > 0)
     others = fmt::format("<details><summary>{} more</summary><div class=names>{}</div></details>",
                          count, others);

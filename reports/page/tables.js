@@ -73,6 +73,7 @@ function makeFilter(input, table, output) {
     const words = input.value.toLowerCase().split(/\s+/).filter(Boolean), {rows} = LONG.get(table);
     const wanted = rows.filter((row) => isShown('s', Number(row.dataset.s)) && isShown('p', Number(row.dataset.p)) &&
         words.every((word) => textOf(row).includes(word)));
+    LONG.get(table).wanted = wanted;
     table.tBodies[0].replaceChildren(...wanted.slice(0, most));
     all.hidden = wanted.length <= most;
     all.textContent = `all ${wanted.length} rows`;
@@ -83,6 +84,40 @@ function makeFilter(input, table, output) {
   input.addEventListener('input', show);
   show();
   return show;
+}
+
+// The texts of a table in a grid, where cells may span several, without columns that have no text; of
+// the rows those that no filter hides.
+function gridOf(table) {
+  const textOf = (cell) => [...cell.childNodes].map((node) => (node.nodeName === 'SMALL' && !/^[/ ]/.test(node.textContent) ? ` (${node.textContent})` : node.nodeName === 'BUTTON' && node.matches('.copy') ? '' : node.textContent)).join('').trim().replaceAll(/\s+/g, ' ');
+  const grid = [], heads = [...table.tHead?.rows ?? []], rows = (LONG.get(table)?.wanted ?? [...table.tBodies[0].rows]).filter((row) => row.matches('.rest') || getComputedStyle(row).display !== 'none');
+  [...heads, ...rows].forEach((row, r) => {
+    let at = 0;
+    grid[r] ??= [];
+    for (const cell of [...row.cells].filter((one) => getComputedStyle(one).display !== 'none' || row.matches('.rest'))) {
+      while (grid[r][at] !== undefined) ++at;
+      for (let down = 0; down < cell.rowSpan; ++down)
+        for (let across = 0; across < cell.colSpan; ++across) (grid[r + down] ??= [])[at + across] = across === 0 ? textOf(cell) : '';
+    }
+  });
+  const all = grid.slice(Math.max(0, heads.length - 1)), isWorded = (column) => all.slice(1).some((row) => (row[column] ?? '') !== '');
+  const columns = [...Array(Math.max(...all.map((row) => row.length))).keys()].filter(isWorded);
+  return all.map((row) => columns.map((column) => row[column] ?? ''));
+}
+
+const LATEX = {'\\': '\\textbackslash{}', '~': '\\textasciitilde{}', '^': '\\textasciicircum{}', '✗': '$\\times$', '×': '$\\times$', '†': '\\dag{}', '‡': '\\ddag{}', '§': '\\S{}', 'τ': '$\\tau$', 'κ': '$\\kappa$', '≤': '$\\le$', '≈': '$\\approx$', '‖': '$\\|$', '✓': '$\\checkmark$', '⁻': '$^{-}$', '¹': '$^{1}$', 'Δ': '$\\Delta$', 'ξ': '$\\xi$'};
+const TABLE_TEXTS = {
+  Markdown: (grid) => grid.map((row, i) => `| ${row.map((text) => text.replaceAll('|', '\\|')).join(' | ')} |${i === 0 ? `\n|${' --- |'.repeat(row.length)}` : ''}`).join('\n'),
+  CSV: (grid) => grid.map((row) => row.map((text) => (/[",\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text)).join(',')).join('\n'),
+  LaTeX: (grid) => `\\begin{tabular}{l${'r'.repeat(grid[0].length - 1)}}\n\\hline\n${grid.map((row, i) => `${row.map((text) => text.replaceAll(/[&%$#_{}]/g, '\\$&').replaceAll(/[\\~^](?![&%$#_{}])/g, (letter) => LATEX[letter]).replaceAll(/[^\x00-\x7f]/g, (letter) => LATEX[letter] ?? letter)).join(' & ')} \\\\${i === 0 ? ' \\hline' : ''}`).join('\n')}\n\\hline\n\\end{tabular}`,
+};
+
+// Buttons that copy a table, below it.
+function addCopies(table) {
+  const place = table.closest('.scroll') ?? table;
+  if (table.tBodies.length === 0 || place.nextElementSibling?.matches('.tools')) return;
+  const buttons = Object.entries(TABLE_TEXTS).map(([name, textOf]) => Object.assign(pressable(name, undefined, ({currentTarget}) => copyText(`${textOf(gridOf(table))}\n`, currentTarget)), {title: worded('copy-table', {format: name})}));
+  place.after(element('p', {className: 'tools'}, ...buttons));
 }
 
 // The meaning of a term, in the head of a column or beside a switch, on demand.

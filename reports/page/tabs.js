@@ -10,6 +10,7 @@ function unpack(place) {
   packed.insertAdjacentHTML('afterend', packed.textContent);
   packed.remove();
   place.querySelectorAll('table.sortable').forEach(makeSortable);
+  place.querySelectorAll('table').forEach(addCopies);
   ON_UNPACK.forEach((made) => made(place));
   return true;
 }
@@ -47,6 +48,7 @@ function showTab(tab, isNamed) {
   for (const link of document.querySelectorAll('.bars nav a'))
     if (link.hash === `#${tab.id}`) link.setAttribute('aria-current', 'page'); else link.removeAttribute('aria-current');
   const nav = document.querySelector('.bars nav'), current = nav.querySelector('[aria-current]');
+  document.getElementById('left-out').textContent = worded('left-out', {tabs: [...nav.querySelectorAll('a:not([aria-current])')].map((link) => link.textContent).join(', ')});
   nav.scrollLeft = current.offsetLeft - nav.clientWidth / 2;  // on a phone the tabs scroll
   unpackAll(tab, isNamed ? soon : undefined);
   for (const place of new Set([...tab.querySelectorAll('.one')].map((one) => one.parentElement)))

@@ -68,12 +68,29 @@ function csvText(chart) {
       ([across, up]) => `${quoted(nameOf(group))},${number(valueAt(x, across / AREA))},${number(valueAt(y, 1 - up / AREA))}`))].join('\n') + '\n';
 }
 
+// The chart as pixels, two for each of the screen.
+function savePng(chart) {
+  const {width, height} = chart.viewBox.baseVal, picture = new Image(), canvas = element('canvas', {width: 2 * width, height: 2 * height});
+  picture.onload = () => {
+    const paper = canvas.getContext('2d');
+    paper.fillStyle = getComputedStyle(document.body).backgroundColor;
+    paper.fillRect(0, 0, canvas.width, canvas.height);
+    paper.drawImage(picture, 0, 0, canvas.width, canvas.height);
+    canvas.toBlob((bytes) => download(`${fileOf(chart)}.png`, 'image/png', bytes));
+  };
+  const copy = new DOMParser().parseFromString(svgText(chart), 'image/svg+xml').documentElement;
+  copy.setAttribute('width', width);
+  copy.setAttribute('height', height);
+  picture.src = `data:image/svg+xml;charset=utf-8,${encodeURIComponent(new XMLSerializer().serializeToString(copy))}`;
+}
+
 // A row of buttons for the chart of a place that is not hidden.
 function addTools(place) {
   const chart = () => place.querySelector('.chart:not([hidden])');
   const turn = (key) => () => setKind(chart(), key, axisOf(chart(), key).kind === 'log' ? 'linear' : 'log');
   const tools = element('p', {className: 'tools'}, pressable('whole', undefined, () => fitView(chart())), pressable('SVG', undefined, () => download(`${fileOf(chart())}.svg`, 'image/svg+xml', svgText(chart()))),
-      pressable('CSV', undefined, () => download(`${fileOf(chart())}.csv`, 'text/csv', csvText(chart()))));
+      pressable('CSV', undefined, () => download(`${fileOf(chart())}.csv`, 'text/csv', csvText(chart()))),
+      pressable('PNG', undefined, () => savePng(chart())), pressable('copy', undefined, ({currentTarget}) => copyText(csvText(chart()), currentTarget)));
   if (chart().querySelector('.band') !== null) tools.append(pressable('bands', true, ({currentTarget}) => currentTarget.setAttribute('aria-pressed', !place.classList.toggle('no-bands'))));
   for (const key of ['x', 'y'])
     if (axisOf(chart(), key).kind !== 'share' && axisOf(chart(), key).low > 0) tools.firstChild.after(pressable(`log ${key}`, undefined, turn(key)));

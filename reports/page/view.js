@@ -52,6 +52,7 @@ function writeAddress() {
   if (view.measure !== DEFAULT_MEASURE) asked.set('by', MEASURES[view.measure]);
   if (pair.isChosen) for (const s of pair.methods) asked.append('vs', DATA.optimizers[s]);
   writeMeans(asked);
+  writePrices(asked);
   const text = asked.toString();
   try {
     history.replaceState(null, '', (text === '' ? location.pathname : `?${text}`) + location.hash);
@@ -67,6 +68,7 @@ function readAddress() {
     });
   }
   readMeans(asked);
+  readPrices(asked);
   const tau = Number(asked.get('tau'));
   if (MEASURES.includes(asked.get('by'))) view.measure = MEASURES.indexOf(asked.get('by'));
   const wanted = -5 * Math.log10(tau);

@@ -114,9 +114,9 @@ PlotSeries points_along(const MedianCurve& curve, const Vertical& vertical, Meas
   return line;
 }
 
-// The best loss so far of a direct problem, which holds until a better one is evaluated: a
-// staircase through the very medians of the tables, so that a line crosses τ where the table says.
-// Points between and beyond them come from the kept iterations.
+// The best so far on a direct problem, which holds until a better one is evaluated: a staircase
+// through the very medians of the tables, so that a line crosses τ where the table says. Points
+// between and beyond them come from the kept iterations.
 PlotSeries stairs(const PlotSeries& kept, const std::vector<std::pair<Real, Real>>& medians) {
   std::vector<std::pair<Real, Real>> points = medians;
   for (std::size_t i = 0; i < kept.x.size(); ++i)
@@ -178,18 +178,31 @@ class Curves {
   }
   bool is_x_sought() const { return c_.problems[p_].aim == Aim::x && !scales_.empty(); }
 
+  Real goal(std::size_t target) const {
+    const Real tau = std::pow(10.0, -static_cast<Real>(target) / 5);
+    return is_x_sought() ? median_of(scales_) * std::max(tau, c_.problems[p_].least_goal) : tau;
+  }
+
+  // The goal of the first target that the answers of at most half of the runs meet; 0 where all are
+  // met.
+  Real least_unmet(std::size_t s, Measure by) const {
+    for (const std::size_t target : targets_of(c_))
+      if (c_.cell(p_, s).median(by, target) == kNever) return goal(target);
+    return 0;
+  }
+
   // The medians of the tables, which a staircase leads to.
   std::vector<std::pair<Real, Real>> medians(std::size_t s, Measure by) const {
     std::vector<std::pair<Real, Real>> points;
     for (const std::size_t target : targets_of(c_))
       if (const Real taken = c_.cell(p_, s).median(by, target); taken < kNever)
-        points.emplace_back(by == Measure::time ? 1e3 * taken : taken,
-                            std::pow(10.0, -static_cast<Real>(target) / 5));
+        points.emplace_back(by == Measure::time ? 1e3 * taken : taken, goal(target));
     return points;
   }
 
   Drawing drawing_of(const Vertical& vertical, Measure by, bool is_of_error) const {
-    const bool is_learned = c_.problems[p_].is_learned, are_stairs = !is_learned && !is_of_error;
+    const bool is_learned = c_.problems[p_].is_learned,
+               are_stairs = !is_learned && is_of_error <= is_x_sought();
     const std::string_view counted = counted_name(by), unit = unit_name(by);
     Drawing out{
         .plot = {.kind = Plot::Kind::lines,
@@ -208,12 +221,14 @@ class Curves {
       const PlotSeries kept = points_along(curves_[i], vertical, by);
       if (kept.x.empty()) continue;
       start = std::max(start, kept.y.front());
-      PlotSeries line =
-          are_stairs
-              ? stairs(kept, is_x_sought() ? std::vector<std::pair<Real, Real>>() : medians(s, by))
-              : kept;
+      PlotSeries line = are_stairs ? stairs(kept, is_of_error == is_x_sought()
+                                                      ? medians(s, by)
+                                                      : std::vector<std::pair<Real, Real>>())
+                                   : kept;
       line.optimizer = s;
       line.name = optimizer_name(c_.optimizers[s]);
+      if (is_of_error == is_x_sought() && !is_learned)
+        line.is_worse_at_end = line.y.back() <= least_unmet(s, by);
       if (are_stairs || !shown_.contains(s)) line.low.clear(), line.high.clear();
       out.plot.series.push_back(std::move(line));
     }

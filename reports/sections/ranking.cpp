@@ -62,6 +62,16 @@ std::string settings_text(const Comparison& c) {
                about.empty() ? "" : " (" + about + ")");
 }
 
+std::string needed_text(const Decision& decision) {
+  const std::optional<std::size_t> fewest = decision.fewest_wins();
+  return fewest ? words("ranking.wins-needed", decision.families, *fewest)
+                : words("ranking.no-wins", decision.families);
+}
+
+std::string common_settings(const Comparison& c) {
+  return counted(c.order.settings.size(), common_noun(c));
+}
+
 std::string decision_sentence(const Comparison& c, const Decision& decision) {
   const auto name = [&](const results::Place& place) {
     return name_in_sentence(c.optimizers[place.method]);
@@ -75,16 +85,28 @@ std::string decision_sentence(const Comparison& c, const Decision& decision) {
     for (std::size_t i = 0; i < decision.tied; ++i) tied.push_back(decision.places[i].method);
     return words("ranking.tied", on, names_text(c, tied, 3), measure, tau, first.score);
   }
-  if (!decision.is_lead) {
-    const std::optional<std::size_t> fewest = decision.fewest_wins();
+  if (!decision.is_lead)
     return words("ranking.open", on, measure, tau, name(first), first.score, first.solved,
-                 fewest ? words("ranking.wins-needed", decision.families, *fewest)
-                        : words("ranking.no-wins", decision.families));
-  }
+                 needed_text(decision));
   return words("ranking.lead", on, measure, tau, name(first), first.score, first.solved,
                words("ranking.rival", name(decision.places[1]), decision.places[1].score,
                      decision.places[1].solved),
                decision.places[1].p);
+}
+
+// The decision in one short sentence.
+std::string first_sentence(const Comparison& c, const Decision& decision) {
+  const results::Place& first = decision.places[0];
+  const std::string name = name_in_sentence(c.optimizers[first.method]);
+  if (decision.places.size() == 1)
+    return words("ranking.alone", common_settings(c), name, first.score, first.solved);
+  if (decision.tied > 1) {
+    std::vector<std::size_t> tied;
+    for (std::size_t i = 0; i < decision.tied; ++i) tied.push_back(decision.places[i].method);
+    return words("ranking.first-tied", names_text(c, tied, 3), first.score);
+  }
+  if (decision.is_lead) return words("ranking.first-lead", name, first.score, decision.places[1].p);
+  return words("ranking.first-open", needed_text(decision), name, first.score);
 }
 
 // "22 to 36", or one number.
@@ -185,6 +207,20 @@ std::string robustness_text(const Comparison& c, const Decision& decision) {
                lost.empty() ? "" : words("ranking.otherwise", listed(firsts)));
 }
 
+// The shares in which the leader leads, and the method that leads most often beside it.
+std::string varies_text(const Comparison& c, const Decision& decision) {
+  const results::Place& first = decision.places[0];
+  const auto other = std::ranges::max_element(decision.places.begin() + 1, decision.places.end(),
+                                              {}, &results::Place::share_first);
+  return words(
+      "ranking.varies", name_in_sentence(c.optimizers[first.method]), percent(first.share_first),
+      other == decision.places.end() || other->share_first <= 0
+          ? ""
+          : " " + words("ranking.varies-other", name_in_sentence(c.optimizers[other->method]),
+                        percent(other->share_first)),
+      std::ranges::count_if(decision.choices, &Choice::is_kept), decision.choices.size());
+}
+
 std::string not_run(const Comparison& c) {
   std::size_t pairs = 0, never = 0, inapplicable = 0;
   for (const auto& row : c.cells)
@@ -201,10 +237,6 @@ std::string not_run(const Comparison& c) {
 }
 
 std::string counted_families(std::size_t families) { return words("ranking.families", families); }
-
-std::string common_settings(const Comparison& c) {
-  return counted(c.order.settings.size(), common_noun(c));
-}
 
 }  // namespace
 
@@ -267,6 +299,17 @@ std::vector<std::string> verdict(const Comparison& c) {
   return all;
 }
 
+std::vector<std::string> first_sentences(const Comparison& c) {
+  if (is_all_learned(c) || !has_order(c) || !c.decision) {
+    std::vector<std::string> all = verdict(c);
+    all.resize(std::min<std::size_t>(1, all.size()));
+    return all;
+  }
+  if (c.yardstick.by == Measure::time && c.is_any_timed_together)
+    return {words("ranking.shared-time"), words("ranking.chosen")};
+  return {first_sentence(c, *c.decision), varies_text(c, *c.decision), words("ranking.chosen")};
+}
+
 std::vector<Reading> ranking_facts(const Comparison& c) {
   std::vector<Reading> facts;
   if (has_order(c) && c.decision)
@@ -304,22 +347,27 @@ std::string left_out_text(const Comparison& c) {
   return joined(parts, " ");
 }
 
+std::vector<Ranked> standings_beside(const Comparison& c, std::size_t s) {
+  if (c.order.has(s)) return {};
+  Order own{.settings = c.order.settings, .methods = c.order.methods};
+  std::erase_if(own.settings, [&](std::size_t p) { return c.cell(p, s).planned == 0; });
+  if (own.settings.empty()) return {};
+  own.methods.push_back(s);
+  return standings_over(c, own, c.yardstick.by, c.yardstick.tightest().rung);
+}
+
 std::string unranked_sentence(const Comparison& c) {
   std::vector<std::string> names;
   for (std::size_t s = 0; s < c.optimizers.size(); ++s) {
-    Order own{.settings = c.order.settings, .methods = c.order.methods};
-    std::erase_if(own.settings, [&](std::size_t p) { return c.cell(p, s).planned == 0; });
-    if (c.optimizers[s].applicable == 0 || own.settings.empty() ||
-        own.settings.size() == c.order.settings.size())
-      continue;
-    own.methods.push_back(s);
-    const std::vector<Ranked> beside =
-        standings_over(c, own, c.yardstick.by, c.yardstick.tightest().rung);
-    const Real score = std::ranges::find(beside, s, &Ranked::optimizer)->standing.score;
+    const std::vector<Ranked> beside = standings_beside(c, s);
+    if (c.optimizers[s].applicable == 0 || beside.empty()) continue;
+    const Standing& own = std::ranges::find(beside, s, &Ranked::optimizer)->standing;
+    if (own.settings == c.order.settings.size()) continue;
+    const Real score = own.score;
     const auto ahead = std::ranges::count_if(beside, [&](const Ranked& other) {
       return other.standing.score > score && !are_tied(other.standing.score, score);
     });
-    names.push_back(words("ranking.run-on", name_in_sentence(c.optimizers[s]), own.settings.size(),
+    names.push_back(words("ranking.run-on", name_in_sentence(c.optimizers[s]), own.settings,
                           ordinal(static_cast<std::size_t>(ahead) + 1), beside.size()));
   }
   return names.empty() ? "" : words("ranking.unranked", common_settings(c), joined(names));

@@ -67,6 +67,7 @@ struct PlotSeries {
   std::string name = {};
   // low and high may be empty; not-a-number: nothing there
   std::vector<Real> x = {}, y = {}, low = {}, high = {};
+  bool is_worse_at_end = false;  // the answer that it returned is worse than the line's best
 };
 
 struct Plot {

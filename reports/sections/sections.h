@@ -59,10 +59,14 @@ Document document_of(Comparison comparison, std::vector<Judgement> claims = {});
 std::string headline(const Comparison& comparison);
 std::string missing_text(const Comparison& comparison);
 std::vector<std::string> remarks(const Comparison& comparison);
-std::vector<std::string> verdict(const Comparison& comparison);    // what the decision says
+std::vector<std::string> verdict(const Comparison& comparison);          // what the decision says
+std::vector<std::string> first_sentences(const Comparison& comparison);  // at most three, short
 std::vector<Reading> ranking_facts(const Comparison& comparison);  // the group, how robust, not run
 // Which settings the ranking leaves out, and why; empty where it leaves out none.
 std::string left_out_text(const Comparison& comparison);
+// A method that is not ranked, among the ranked ones on the common settings that it was run on,
+// best first; empty for others.
+std::vector<Ranked> standings_beside(const Comparison& comparison, std::size_t optimizer);
 // Which methods were run on some of the common settings only; empty where none was.
 std::string unranked_sentence(const Comparison& comparison);
 std::vector<std::string> learned_sentences(const Comparison& comparison);  // at equal work

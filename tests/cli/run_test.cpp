@@ -84,8 +84,8 @@ TEST_F(Run, InstancesAndStartsAreCrossed) {
   const std::string matrix = "./isoline run --problem sine --optimizer newton --out out ";
   shell.expect(matrix + "--instances 2 --starts 3", {.out = {"6 cells: 6 new"}});
   const std::string csv = read_text(out / "report" / "report.csv");
-  EXPECT_TRUE(contains(csv, "seed,instance,start,status")) << csv;
-  EXPECT_TRUE(contains(csv, ",1001002,1,2,")) << csv;
+  EXPECT_TRUE(contains(csv, "optimizer,method,seed,instance,start,status")) << csv;
+  EXPECT_TRUE(contains(csv, ",newton,1001002,1,2,")) << csv;
   EXPECT_TRUE(contains(csv, "--seeds =1:2 ")) << csv;
   shell.expect(matrix + "--seeds 1:2,=1 --dry-run", {.out = {"seed 1:2", "2 cells: 2 cached"}});
   shell.expect(matrix + "--seeds 3 --starts 3", {.exit_code = 1, .err = {"--seeds", "--starts"}});

@@ -117,6 +117,8 @@ TEST_F(Site, FiguresHaveThePointsOfThePlots) {
   shell.expect("./isoline figures out --only curves-rosenbrock --methods adam,newton --out two");
   const std::string two = read_text(shell.folder() / "two" / "curves-rosenbrock.svg");
   EXPECT_TRUE(contains(two, ">adam") && !contains(two, ">gauss-newton")) << two;
+  shell.expect("./isoline figures out --only curves-rosenbrock --tau 1e-3 --out loose");
+  EXPECT_NE(read_text(shell.folder() / "loose" / "curves-rosenbrock.svg"), svg);
   shell.expect("./isoline figures out --methods nobody", {.exit_code = 1, .err = {"nobody"}});
 }
 

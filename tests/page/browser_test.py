@@ -64,6 +64,34 @@ SCREENS_DOWN = """const box = document.querySelector(arguments[0]).getBoundingCl
 return box.height > 0 ? (box.bottom + scrollY) / innerHeight : null;"""
 
 
+# Each text that the first screen shows, but for names of methods, ticks, cells of tables, and controls.
+FIRST_SCREEN = """const texts = [], walker = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
+for (let node = walker.nextNode(); node !== null; node = walker.nextNode()) {
+  const {parentElement} = node, range = document.createRange();
+  range.selectNodeContents(node);
+  const box = range.getBoundingClientRect();
+  const apart = 'script, noscript, style, button, #view, td, tbody th, .names .name, .ends, [data-line]';
+  if (box.width === 0 || box.right < 0 || box.top >= innerHeight || !parentElement.checkVisibility() ||
+      parentElement.closest(apart) !== null) continue;
+  if (parentElement.closest('svg') !== null && !/[a-z]{2}/i.test(node.textContent)) continue;
+  texts.push(node.textContent.trim());
+}
+return texts.join(' ').split(/\\s+/).filter((word) => /[\\p{L}\\d]/u.test(word) &&
+    !DATA.optimizers.includes(word.replace(/^\\(|[:,;)]$/g, '')));"""
+# Of the chart that a problem shows: of each line that is shown its name, whether it ends worse, and where it
+# first reaches each goal, beside the table's number.
+CROSSINGS = """const [p, taus] = arguments, problem = DATA.problems[p];
+const chart = [...document.querySelectorAll(`#problem-${p} .curves .chart`)].find((one) => one.getClientRects().length > 0);
+const line = chart.querySelector('.tau'), [x, y] = [axisOf(chart, 'x'), axisOf(chart, 'y')];
+if (line === null) return [];
+return linesOf(chart).filter(isLineShown).flatMap((group) => taus.map((target) => {
+  const goal = Number(line.dataset.scale) * Math.max(tauOf(target), problem.goal ?? 0);
+  const edge = (1 - shareOf(y, goal)) * AREA, at = pointsOf(pathOf(group)).find(([, up]) => up >= edge - 1);
+  const taken = takenBy(cellOf(problem, lineOf(group)), target);
+  return [`${nameOf(group)} on ${problem.spec} to ${tauName(target)}`, group.matches('[data-worse]'), at === undefined ? null : valueAt(x, at[0] / AREA), taken === Infinity ? null : taken];
+}));"""
+
+
 class Page(InBrowser):
     @classmethod
     def made(cls, folder):
@@ -148,9 +176,25 @@ class Page(InBrowser):
         self.assertIn(self.json["leader"]["optimizer"], verdict)
         self.assertFalse(self.json["leader"]["significant"])
         self.assertLessEqual(len(verdict.split()), 60)
+        self.assertLessEqual(self.browser.run(
+            "return document.querySelectorAll('#overview > :is(.verdict, .lead):not(.first ~ *)').length"), 3)
         self.assertLess(self.browser.run("return document.documentElement.scrollHeight "
                                          "/ innerHeight"), 2.2)
         self.assertEqual(self.browser.run("return document.querySelectorAll('.settled dt').length"), 3)
+
+    def test_the_first_screen_has_few_words_the_ranking_and_three_ways_on(self):
+        self.browser.wait(STANDINGS)
+        words = self.browser.run(FIRST_SCREEN)
+        self.assertGreater(len(words), 30)
+        self.assertLessEqual(len(words), 120, words)
+        for link in self.browser.run("return [...document.querySelectorAll('.ways a')].map((one) => one.hash)"):
+            self.open(link)
+            self.assertEqual(self.browser.run("return document.querySelector('.tab.open').id"),
+                             self.browser.run("return placeOf(arguments[0].slice(1)).closest('.tab').id", link))
+
+    def test_a_wide_screen_is_used(self):
+        resized(self.browser, 1920, 1000)
+        self.assertGreater(self.browser.run("return document.querySelector('main').clientWidth"), 1850)
 
     def test_terms_of_the_glossary_open_beside_their_columns(self):
         self.assertLessEqual(len(self.browser.run("return Object.keys(DATA.terms)")), 25)
@@ -180,6 +224,18 @@ class Page(InBrowser):
                                     "card.querySelector('p.formula').innerText]")
             self.assertIn(optimizer["optimizer"], card[0])
             self.assertTrue(card[1].strip())
+
+    def test_a_card_says_what_is_not_solved_by_which_quantity_and_why(self):
+        self.open(f"#optimizer-{self.optimizer('gd')}")
+        terms = self.browser.run("return [...document.querySelectorAll('.optimizer.chosen dt')].map((one) => "
+                                 "[one.innerText, one.nextElementSibling.innerText])")
+        missed = [text for term, text in terms if term.startswith("does not solve: ")]
+        self.assertGreater(len(missed), 0)
+        for text in missed:
+            self.assertRegex(text, r"(error in x|loss gap) \S+.*, goal \S+")
+        for index in range(len(self.json["optimizers"])):
+            self.open(f"#optimizer-{index}")
+            self.assertNotIn("of 0", self.browser.run("return document.querySelector('.optimizer.chosen').innerText"))
 
     def test_the_grid_of_methods_marks_what_was_measured(self):
         self.open("#methods")
@@ -319,6 +375,51 @@ class Page(InBrowser):
                 "return linesOf(document.querySelector('.problem.chosen .chart:not([hidden])'))"
                 ".every((line) => !pathOf(line).getAttribute('d').includes('l'))")
             self.assertTrue(stepped, "points are joined straight")
+
+    def test_every_line_crosses_every_tolerance_where_the_table_says(self):
+        count = 0
+        for p in range(len(self.json["problems"])):
+            self.open(f"#problem-{p}")
+            self.browser.run("showLines(arguments[0], DATA.optimizers.keys())", p)
+            self.browser.wait(IS_DRAWN, f"#problem-{p} .curves")
+            for name, ends_worse, crossed, told in self.browser.run(CROSSINGS, p, [5, 15, 30]):
+                count += told is not None
+                if told is None:
+                    self.assertTrue(crossed is None or ends_worse, name)
+                else:
+                    self.assertIsNotNone(crossed, name)
+                    self.assertAlmostEqual(crossed / told, 1, delta=0.01, msg=name)
+        self.assertGreater(count, 40)
+
+    def test_a_filter_empties_no_plot(self):
+        last = len(self.json["optimizers"]) - 1
+        self.browser.run("show('s', [arguments[0]])", last)
+        for p in range(len(self.json["problems"])):
+            self.open(f"?o={self.json['optimizers'][last]['optimizer']}#problem-{p}")
+            if self.browser.run("return cellOf(DATA.problems[arguments[0]], arguments[1])?.reached.length > 0", p, last):
+                self.browser.wait(IS_DRAWN, f"#problem-{p} .curves")
+
+    def test_an_axis_has_three_ticks(self):
+        for low, high in ((1.2, 1.9), (1.5, 4), (3, 90), (1.5, 180), (2, 1e9)):
+            ticks = self.browser.run("return ticksOf(arguments[0], arguments[1], true)", low, high)
+            self.assertGreaterEqual(len(ticks), 3, (low, high))
+            self.assertTrue(all(low * (1 - 1e-6) <= tick <= high * (1 + 1e-6) for tick in ticks))
+
+    def test_a_table_is_copied_in_three_forms(self):
+        self.browser.wait(STANDINGS)
+        grid = self.browser.run("return gridOf(document.getElementById('standings-table'))")
+        self.assertEqual(len(grid), 1 + len(self.browser.run(
+            "return [...document.querySelectorAll('#standings-table tbody tr')].map((row) => row.dataset.s)")))
+        self.assertEqual(grid[0][:3], ["#", "optimizer", "score"])
+        self.assertRegex(grid[1][3], r"^\d+/\d+$")
+        for name, lines in (("Markdown", 1), ("CSV", 0), ("LaTeX", 4)):
+            text = self.browser.run("return TABLE_TEXTS[arguments[0]](arguments[1])", name, grid)
+            self.assertEqual(len(text.splitlines()), len(grid) + lines, name)
+        heat = self.browser.run("return gridOf(document.getElementById('heat'))")
+        self.assertEqual(len({len(row) for row in heat}), 1)
+        buttons = self.browser.run("return [...document.querySelectorAll('#overview .tools button')]"
+                                   ".map((one) => one.textContent)")
+        self.assertGreaterEqual(buttons.count("LaTeX"), 2)
 
     def test_a_loss_is_not_drawn_by_when_x_was_found(self):
         p = self.problem("square")  # whose user wants x
@@ -539,6 +640,51 @@ class Page(InBrowser):
                                 "one.getClientRects().length > 0)[1], cell = row.cells[2]; return "
                                 "`${DATA.optimizers[row.dataset.s]} on ${DATA.problems[cell.dataset.p].spec}`")
         self.assertEqual(title, cell)
+        self.browser.press("escape")
+        self.browser.wait("return document.activeElement.dataset.p === arguments[0]", self.browser.run(
+            "return [...document.querySelectorAll('#heat tbody tr')].filter((one) => "
+            "one.getClientRects().length > 0)[1].cells[2].dataset.p"))
+
+    def test_the_ranking_at_other_prices_is_that_of_a_report_with_these_prices(self):
+        at_prices = "return standingsAtPrices(arguments[0], arguments[1]).map(({s, score, solved}) => " \
+                    "[DATA.optimizers[s], solved, score])"
+        nominal = "return standingsAt(MEASURES.indexOf('work'), DEFAULT_TARGET).filter((one) => one.settings > 0)" \
+                  ".map(({s, score, solved}) => [DATA.optimizers[s], solved, score])"
+        for one, other in zip(self.browser.run(at_prices, 1, None), self.browser.run(nominal), strict=True):
+            self.assertEqual(one[:2], other[:2])
+            self.assertAlmostEqual(one[2], other[2], delta=1e-4)
+        kept = {file: file.read_text() for file in pathlib.Path(self.folder.name, "components").glob("problem-*.json")}
+        for gradient, jacobian in ((1.0, 1.0), (6.5, 2.25), (2.0, 300.0)):
+            expected = {name: (solved, score) for name, solved, score in self.browser.run(at_prices, gradient, jacobian)}
+            for file, text in kept.items():
+                sheet = json.loads(text)
+                sheet["prices"] = {**sheet["prices"], "forward_seconds": 1.0, "oracles": [
+                    {"oracle": name, "declared": 1, "price": value, "low": value, "high": value, "resolved": True,
+                     "calls": 10, "rounds": 10} for name, value in (("pullback", gradient), ("jacobian", jacobian))]}
+                file.write_text(json.dumps(sheet))
+            run("report", self.folder.name, "--by", "cost", "--out", f"{self.folder.name}/priced")
+            priced = json.loads(pathlib.Path(self.folder.name, "priced", "report.json").read_text())
+            told = {one["optimizer"]: (one["standings"]["1e-6"]["solved"], one["standings"]["1e-6"]["score"])
+                    for one in priced["optimizers"] if one["standings"]["1e-6"]["settings"] > 0}
+            self.assertEqual(expected.keys(), told.keys())
+            for name, (solved, score) in told.items():
+                self.assertEqual(expected[name][0], solved, name)
+                self.assertAlmostEqual(expected[name][1], score, delta=1e-6, msg=name)
+        for file, text in kept.items():
+            file.write_text(text)
+
+    def test_prices_are_moved_by_the_keyboard_and_stay_in_the_address(self):
+        self.open("#price")
+        self.browser.wait("return document.querySelectorAll('.placed li').length > 1")
+        self.browser.run("document.querySelectorAll('#prices input')[1].focus()")
+        self.browser.press("right", "right")
+        self.browser.wait("return location.search.includes('jacobian=1.12')")
+        self.browser.open(self.browser.run("return location.href"))
+        self.browser.wait("return document.querySelectorAll('.placed li').length > 1")
+        self.assertEqual(self.browser.run("return document.querySelectorAll('#prices input')[1].value"), "1")
+        took = self.browser.run("const begun = performance.now(); for (let i = 0; i < 100; ++i) standingsAtPrices(i, i);"
+                                "return (performance.now() - begun) / 100")
+        self.assertLessEqual(took, 50)
 
     def test_the_guide_to_the_page_opens_in_it(self):
         source = pathlib.Path(__file__).parents[2] / "docs" / "reading-a-report.md"
@@ -648,6 +794,8 @@ class Page(InBrowser):
             self.browser.wait("return TASKS.size === 0")
             paper = base64.b64decode(self.browser.call("POST", "/print", {}))
             self.assertLessEqual(len(re.findall(rb"/Type\s*/Page\b", paper)), 12, tab)
+            left = self.browser.run("return document.getElementById('left-out').textContent")
+            self.assertEqual(left.count(","), 7, left)  # a comma in the sentence, six among seven tabs
         self.assertTrue(self.browser.run(
             "return [...document.querySelectorAll('.tab.open .chart')].every((chart) => "
             "linesOf(chart).length > 0)"))
@@ -780,7 +928,7 @@ class Claims(unittest.TestCase):
     def setUpClass(cls):
         cls.folder = tempfile.TemporaryDirectory()
         claims = ["notebook-gd-table", "notebook-newton-distance", "notebook-start-loss",
-                  "exponential-rescaled-over-adam"]
+                  "exponential-rescaled-over-adam", "sine-ill-conditioned-gd"]
         subprocess.run([sys.argv[1], "claims", *claims, "--out", cls.folder.name],
                        check=True, capture_output=True)
         subprocess.run([sys.argv[1], "report", cls.folder.name], check=True, capture_output=True)
@@ -844,16 +992,37 @@ class Claims(unittest.TestCase):
         page = browser.Browser()
         try:
             page.open(self.address)
-            counts = re.findall(r"\d+", page.run("return document.querySelector('.checked').innerText"))
+            counts = re.findall(r"\d+", page.run("return document.querySelector('.checked').textContent"))
         finally:
             page.close()
-        facts = {claim["fact"]: claim["verdict"] for claim in self.json["claims"]
-                 if not claim["verification"]}
+        strength = ("too short", "undecidable", "not comparable", "reproduced", "agrees", "partly", "too noisy",
+                    "one run", "differs")
+        facts = {}  # the weakest decided verdict of each
+        for claim in self.json["claims"]:
+            if not claim["verification"]:
+                facts[claim["fact"]] = max(facts.get(claim["fact"], claim["verdict"]), claim["verdict"],
+                                           key=strength.index)
         groups = (("reproduced",), ("agrees",), ("differs",), ("partly", "too noisy", "one run"),
                   ("too short", "undecidable", "not comparable"))
         self.assertGreater(int(counts[0]), 0)
         self.assertEqual([int(count) for count in counts],
                          [sum(verdict in group for verdict in facts.values()) for group in groups])
+
+    def test_the_ranking_stands_beside_a_published_result_with_its_interval(self):
+        page = browser.Browser()
+        try:
+            resized(page, 1400, 900)
+            page.open(self.address)
+            hero = page.run("const hero = document.querySelector('.first figure'); return hero && "
+                            "[hero.innerText, hero.querySelector('.ground') !== null, "
+                            "hero.getBoundingClientRect().left]")
+        finally:
+            page.close()
+        self.assertIsNotNone(hero)
+        text, has_interval, left = hero
+        self.assertTrue(has_interval)
+        self.assertGreater(left, 700)
+        self.assertRegex(text, r"Measured: [\d.]+ \(bar: [\d.]+ to [\d.]+ ")
 
     def test_a_number_of_a_claim_opens_its_records(self):
         page = browser.Browser()

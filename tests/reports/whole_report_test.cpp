@@ -167,6 +167,24 @@ TEST_F(SameFigures, AreInEveryFormat) {
   EXPECT_GT(count, 500U) << "the numbers were not found";
 }
 
+TEST_F(SameFigures, HaveColumnsOfNumbersInCsv) {
+  std::map<std::string, std::size_t> filled;
+  for (const std::string& line : split(statistics_csv(document_), "\n")) {
+    std::vector<std::string> fields = split(line, ",");
+    if (line.find('"') != line.npos || fields.size() < 9 || fields[0] == "table") continue;
+    for (std::size_t i = 3; i < 7; ++i) {
+      if (fields[i].empty()) continue;
+      EXPECT_TRUE(fields[i] == "inf" || std::isfinite(std::stod(fields[i]))) << line;
+      ++filled[std::to_string(i)];
+    }
+    if (fields[7] == "%") EXPECT_TRUE(fields[8].ends_with(" %")) << line;
+  }
+  EXPECT_GT(filled["3"], 100U) << "values";
+  EXPECT_GT(filled["4"], 10U) << "lower ends";
+  EXPECT_EQ(filled["4"], filled["5"]);
+  EXPECT_GT(filled["6"], 10U) << "counts";
+}
+
 // The first number of a cell is the first that its text prints, to the digits printed.
 TEST_F(SameFigures, AreTheNumbersThatTheirTextsRound) {
   std::size_t count = 0;
