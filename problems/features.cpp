@@ -417,6 +417,23 @@ OptionTable feature_table(const OptionTable& own) {
 
 namespace {
 
+// Errors in x as distances from the fit, in its standard deviations.
+Problem judged_by_fit(Problem fitted, const Vector& fit) {
+  Point at;
+  Matrix J;
+  fitted.forward(fit, at);
+  fitted.jacobian(J, at);
+  J *= std::sqrt(static_cast<Real>(J.rows())) / *fitted.noise_level();
+  const Real extent = (J * (fitted.standard_start() - fit)).norm();
+  ProblemParts parts = std::move(fitted).parts();
+  if (!parts.made_from) parts.made_from = parts.truth;
+  parts.truth = fit;
+  parts.x_error = [J, fit](BatchRef x, const Batch&) { return (J * (x.col(0) - fit)).norm(); };
+  parts.x_scale = extent;
+  parts.x_floor = [](const Batch&) { return kNearFit / x_goal(0, 0, 1); };
+  return Problem(std::move(parts));
+}
+
 // Those that change the data, the unknowns or the loss.
 Problem with_other_data(Problem plain, const Features& features, const Draw& draw,
                         const std::optional<Matrix>& target) {
@@ -426,6 +443,10 @@ Problem with_other_data(Problem plain, const Features& features, const Draw& dra
   require(features.tikhonov > 0 || features.order == 0, "order=1 requires tikhonov above 0");
   require(features.noise > 0 || features.noise_kind == "gaussian",
           "noise-kind requires noise above 0");
+  require(features.goal == "truth" ||
+              (features.noise > 0 && features.tikhonov == 0 && features.bounds == "none" &&
+               features.scale == 1 && !features.rotate),
+          "goal=fit requires noise above 0, and neither tikhonov, bounds, scale nor rotate");
 
   const Index k = plain.inputs(), m = plain.outputs();
   const bool is_inexact = features.noise > 0 || features.digits > 0 || target.has_value();
@@ -449,14 +470,16 @@ Problem with_other_data(Problem plain, const Features& features, const Draw& dra
   parts.x_scale = x_scale;
   if (box) parts.bounds = std::move(box);
   if (is_bound) parts.aim = Aim::loss;
+  Real model_error = 0;
   if (target) {
     require(target->rows() == m, "the options in model must not change the number of observations");
+    model_error = (parts.target - *target).norm();
     parts.target = *target;
   }
   if (features.noise > 0) {
     const Vector noise = noise_of(features, parts.target.reshaped(), draw.stream("noise"));
     const Real level = features.noise * size_of_noise(features.noise_kind) * parts.target.norm();
-    parts.noise_level = std::hypot(level, parts.noise_level.value_or(0));
+    parts.noise_level = std::hypot(level, parts.noise_level.value_or(0), model_error);
     parts.target += noise;
   }
   if (features.digits > 0) round_values(parts.target, features.digits);
@@ -479,11 +502,15 @@ Problem with_other_data(Problem plain, const Features& features, const Draw& dra
   parts.minimum.reset();
   parts.minimum_error = 0;
   Problem featured(std::move(parts));
+  require((is_fitted && least) || features.goal == "truth", [&] {
+    return fmt::format("goal=fit requires exact data of a known x* and at most {} unknowns",
+                       kMostFitted);
+  });
   if (!is_fitted || !least) return featured;
   const Fit fit = fit_from(featured, featured.made_from()->reshaped());
   featured.set_minimum(fit.loss);
   if (is_bound) featured.set_x_floor(featured.x_error(fit.x));
-  return featured;
+  return features.goal == "fit" ? judged_by_fit(std::move(featured), fit.x) : std::move(featured);
 }
 
 // One scale per unknown: |x₀|; where that is 0 the width of its bounds; else 1/‖∂y/∂xᵢ‖ at x₀.

@@ -11,9 +11,11 @@
 
 namespace isoline::problems {
 
+inline constexpr Real kNearFit = 0.1;
+
 struct Features {
   Real noise = 0;
-  std::string noise_kind = "gaussian", model;
+  std::string noise_kind = "gaussian", model, goal = "truth";
   Real scale = 1;
   bool rotate = false;
   Index digits = 0;
@@ -30,6 +32,9 @@ inline void fields(Features& o, auto& field) {
   field("noise-kind", o.noise_kind, {"gaussian", "uniform", "outliers"},
         "distribution of the noise; outliers: one value in ten has ten times the deviation");
   field("model", o.model, {}, "options of the variant of P that makes y*, as \"steps=32\"");
+  field("goal", o.goal, {"truth", "fit"},
+        "what errors in x are measured from: x*, or with noise the least-squares solution, in its "
+        "standard deviations");
   field("scale", o.scale, between(1, 1e12), "ratio of the largest to the smallest scale of x");
   field("rotate", o.rotate, "random rotation of x, before it is scaled");
   field("digits", o.digits, between(0, 16), "significant digits of y; 0: all");
@@ -64,6 +69,9 @@ OptionTable feature_table(const OptionTable& own);
 // of the best truncated-SVD solution with the Jacobian at x*, from x₀ (Hansen 1998, section 3.2).
 // Both are missing where x* is unknown and above 512 unknowns, where only the floor is known of up
 // to 512 observations.
+// The noise level includes what another model adds: the norm of the difference of the two y*.
+// With goal=fit x* is that fit x̂, and the error in x is ‖J(x̂)(x − x̂)‖/σ, σ the noise of one
+// observation: the distance in standard deviations. Solved is what is within kNearFit of them.
 // With active bounds f_L is the loss of the fit within them, and the floor its distance from x*.
 // UsageError if the problem is learned, if y* = 0 has noise, for a penalty on another loss than
 // that of least squares, or for bounds where x* is unknown.

@@ -1,4 +1,4 @@
-// isoline export DIR... --format csv|coco --out PATH: writes results in the formats of other
+// isoline export DIR... --format csv|runs|coco --out PATH: writes results in the formats of other
 // programs, by clients/python/export_results.py from the records.
 #include <fmt/format.h>
 
@@ -27,8 +27,9 @@ struct ExportArguments {
 void declare(VerbArguments& verb, ExportArguments& given) {
   verb.texts("DIR", given.folders, kFolders).required();
   verb.text("--format", given.format,
-            "csv: one row per stored point; coco: data folders for its post-processing")
-      .one_of({"csv", "coco"})
+            "csv: one row per stored point; runs: CSV of one row per run; coco: data folders for "
+            "its post-processing")
+      .one_of({"csv", "runs", "coco"})
       .shown();
   verb.text("--out", given.out, "Output: a file, or a new folder for several").required();
 }
@@ -37,7 +38,7 @@ int run(const ExportArguments& given, Session& session) {
   const reports::Study study = study_of_report(given.folders, session);
   say_left_out(study.unreadable);
   const fs::path out = given.out;
-  const bool is_file = given.format == "csv";
+  const bool is_file = given.format != "coco";
   std::error_code unknown;
   require(
       is_file || !is_there(out) || (fs::is_directory(out, unknown) && names_in(out).empty()),

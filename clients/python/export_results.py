@@ -1,6 +1,7 @@
-"""Writes results in the formats of other programs: curves as CSV, or data folders of COCO.
+"""Writes results in the formats of other programs: curves or runs as CSV, or data folders of COCO.
 
     isoline export results/quick --out curves.csv
+    isoline export results/quick --format runs --out runs.csv
     isoline export results/quick --format coco --out exdata
 
 COCO's format (Hansen et al. 2021, Optim. Methods Softw. 36:114-144) is that of its single-objective
@@ -24,8 +25,8 @@ START = 1  # the start's own evaluation, which the harness pays for
 
 
 def chosen_runs(cells):
-    """The runs that a comparison counts: {(cell, build): (cell of the comparison, f_L, s)}."""
-    return {(run[0], run[1]): (cell, float(run[2]), float(run[3]))
+    """The runs that a comparison counts: {(cell, build): (cell of the comparison, f_L, s, works)}."""
+    return {(run[0], run[1]): (cell, float(run[2]), float(run[3]), run[5])
             for cell in cells for run in cell["records"] if not run[4]}
 
 
@@ -62,6 +63,24 @@ def in_csv(value):
     if isinstance(value, bool):
         return "true" if value else "false"
     return repr(value).removesuffix(".0") if isinstance(value, float) else str(value)
+
+
+def write_runs(results, chosen, out):
+    """A row per run, with the work at which it first met each tolerance of its success criterion."""
+    asked = ["problem", "optimizer", "seed", "status"]
+    figures = ["minimum", "scale", "x_scale", "iterations", "work", "start_loss", "loss", "best_loss", "start_x_error",
+               "x_error"]
+    tolerances = list(next(iter(chosen.values()))[3]) if chosen else []
+    runs = results.runs.reindex(columns=[*asked, *figures, *isoline.KEYS])
+    with open(out, "w", newline="", encoding="utf-8") as file:
+        rows = csv.writer(file)
+        rows.writerow([*asked, *(f"work_to_{tau}" for tau in tolerances), *figures, *isoline.KEYS])
+        for row in runs.sort_values([*asked[:3], "cell"]).itertuples(index=False):
+            key = tuple(row[-len(isoline.KEYS):])
+            if key in chosen:
+                values = ["" if value != value else in_csv(value) for value in row]
+                works = [in_csv(float(work)) for work in chosen[key][3].values()]
+                rows.writerow([*values[:len(asked)], *works, *values[len(asked):]])
 
 
 # --- COCO
@@ -145,7 +164,7 @@ def write_coco(results, report, out):
             continue
         number, dimension = unknowns[cell["problem"]]
         by_target, by_evaluation, instances = "", "", ""
-        for key, (_, minimum, scale) in chosen_runs([cell]).items():
+        for key, (_, minimum, scale, _) in chosen_runs([cell]).items():
             points = curve_points(curves[key], minimum) if key in curves else []
             seed = int(seeds[key])
             if not points:
@@ -178,7 +197,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n", maxsplit=1)[0])
     parser.add_argument("folders", nargs="+", help="result folders")
     parser.add_argument("--runs", required=True, help="JSON of the problems and cells of a comparison, as in report.json")
-    parser.add_argument("--format", choices=["csv", "coco"], default="csv")
+    parser.add_argument("--format", choices=["csv", "runs", "coco"], default="csv")
     parser.add_argument("--out", required=True, help="a file, or a folder for several")
     given = parser.parse_args()
     report = json.loads(pathlib.Path(given.runs).read_text(encoding="utf-8"))
@@ -186,6 +205,8 @@ def main():
     results = isoline.load(*given.folders, only=set(chosen))
     if given.format == "csv":
         write_csv(results, chosen, given.out)
+    elif given.format == "runs":
+        write_runs(results, chosen, given.out)
     else:
         write_coco(results, report, pathlib.Path(given.out))
 

@@ -451,7 +451,7 @@ def problem(
     start_scale="own": the unknowns of random starts have a standard deviation of a tenth of |start|,
     instead of a tenth of max(1, |start|).
     x_error(x) -> number: the distance to the nearest solution; by default, the distance to `truth`.
-    x_floor: the smallest error in x that the noise in the data permits. A run with at most 1.1 times
+    x_floor: the error in x of the best truncated SVD. A run with at most 1.1 times
     this error counts as solved.
     """
     line, greeting = _greeted()

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "core/draws.h"
+#include "core/results/contrasts.h"
 #include "core/results/statistics.h"
 #include "core/seeds.h"
 
@@ -233,7 +234,11 @@ class Decider {
       return means_[a] > means_[b] && !are_tied(means_[a], means_[b]);
     });
     const std::vector<Row> sums = sums_of(scores_, families_);
-    const FlipLevels levels = flip_levels(sums);
+    FlipLevels levels = flip_levels(sums);
+    const auto is_equal = [&](std::size_t s) {  // for a user
+      return means_[order[0]] - means_[s] <= score_margin();
+    };
+    levels.is_lead = levels.is_lead && !is_equal(order[1]);
     out.is_lead = levels.is_lead;
     for (const std::size_t s : order) {
       std::vector<FamilyScore> families;
@@ -244,7 +249,7 @@ class Decider {
                   .interval = score_interval(families),
                   .p = levels.pairs[order[0]][s],
                   .adjusted = levels.leaves[s],
-                  .is_in_group = levels.is_in_group(s),
+                  .is_in_group = levels.is_in_group(s) || is_equal(s),
                   .ratio = work_ratio(evidence_.costs, evidence_.families, methods_[s],
                                       methods_[order[0]])};
       for (const auto& row : evidence_.costs) {

@@ -184,7 +184,7 @@ Differences member_differences(const ComparedCell& a, const ComparedCell& b,
     Walk walk(tolerance, a.x_scale);
     walk.compare(value, after.at(name), name);
     if (!walk.first) continue;
-    const bool is_change = kTexts.contains(name) || (is_path && !tolerance);
+    const bool is_change = kTexts.contains(name);
     all.push_back(
         difference_in(a, is_change ? Change::changed : Change::worse,
                       shown_name(is_path || kTexts.contains(name) ? name : walk.first->name),
@@ -223,6 +223,22 @@ std::string folder_lack(const std::filesystem::path& before, const std::filesyst
     lacks.emplace_back("rates.json of NEW is missing");
   else if (!std::ranges::includes(rows_now, rows))
     lacks.emplace_back("rates.json of NEW differs");
+  std::size_t declared = 0;  // files of problems that say otherwise by what they are judged
+  if (is_there(before / "components") && is_there(after / "components"))
+    for (const std::string& name : names_in(before / "components")) {
+      if (!is_there(after / "components" / name)) continue;
+      const Json a = read_json(before / "components" / name),
+                 b = read_json(after / "components" / name);
+      const auto member = [](const Json& of, const char* which) {
+        return of.is_object() ? of.value(which, Json()) : Json();
+      };
+      declared += std::ranges::any_of(
+          std::array{"family", "linear", "group", "unknowns", "residuals"},
+          [&](const char* which) { return member(a, which) != member(b, which); });
+    }
+  if (declared > 0)
+    lacks.push_back(fmt::format("{} of NEW differ in family, kind or size",
+                                counted(declared, "component file")));
   return joined(lacks, "; ");
 }
 

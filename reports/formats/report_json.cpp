@@ -64,12 +64,16 @@ Json calls_json(const Comparison& c, const Cell& cell) {
   return json;
 }
 
-// [cell, build, f_L, s, whether another row counts it] of each run: its record, and its success.
+// [cell, build, f_L, s, whether another row counts it, works to the tolerances] of each run: its
+// record, and its success.
 Json records_json(const Comparison& c, const Cell& cell) {
   return list_of(cell.runs, [&](std::size_t index) -> Json {
     const Run& run = c.runs[index];
-    return Json::array({run.record->cell, run.record->build, json_number(run.minimum),
-                        json_number(run.scale), run.is_repeated});
+    return Json::array(
+        {run.record->cell, run.record->build, json_number(run.minimum), json_number(run.scale),
+         run.is_repeated, by_tolerance(c, [&](std::size_t t) {
+           return json_number(run.taken(Measure::work, c.yardstick.tolerances[t].rung));
+         })});
   });
 }
 

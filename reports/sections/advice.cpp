@@ -40,11 +40,17 @@ std::string advice_text(const Comparison& c, const Means& means, const Advice& a
     std::vector<std::string> group;
     for (const Advised& one : advice.ranked)
       if (one.is_in_group && &one != &first) group.push_back(name(one));
-    text = words("advice.first", means_text(means), name(first), first.solved,
-                 advice.settings.size(), physics, tau_name(c));
-    if (first.work < kNever) text += " " + words("advice.work", figure(first.work));
-    text += " " + (group.empty() ? words("advice.alone", advice.ranked.size())
-                                 : words("advice.group", first_of(std::move(group), 3)));
+    const auto as_many = std::ranges::count(advice.ranked, first.solved, &Advised::solved);
+    if (advice.settings.size() < kFewestForInterval && as_many > 1) {
+      text = words("advice.indistinct", means_text(means), advice.settings.size(), tau_name(c),
+                   as_many, advice.ranked.size(), first.solved);
+    } else {
+      text = words("advice.first", means_text(means), name(first), first.solved,
+                   advice.settings.size(), physics, tau_name(c));
+      if (first.work < kNever) text += " " + words("advice.work", figure(first.work));
+      text += " " + (group.empty() ? words("advice.alone", advice.ranked.size())
+                                   : words("advice.group", first_of(std::move(group), 3)));
+    }
   }
   if (advice.settings.size() < advice.of_size)
     text += " " + words("advice.shared", advice.settings.size(), advice.of_size);

@@ -9,6 +9,7 @@
 
 #include "core/json.h"
 #include "core/results/contrasts.h"
+#include "core/spec.h"
 #include "reports/sections/sections.h"
 #include "reports/sections/words.h"
 
@@ -39,14 +40,19 @@ std::optional<std::size_t> row_of(const Comparison& c, const std::string& method
   return std::nullopt;
 }
 
-// The nonlinear problems with exact data that are judged by x.
-std::vector<std::size_t> settings_of(const Comparison& c) {
+// The nonlinear problems that are judged by x: with exact data, or those whose data have noise and
+// that are judged by the distance from the fit.
+std::vector<std::size_t> settings_of(const Comparison& c, bool is_noisy) {
   std::vector<std::size_t> all;
   for (std::size_t p = 0; p < c.problems.size(); ++p) {
     const ProblemAxis& problem = c.problems[p];
-    if (problem.aim == Aim::x && problem.noise == 0 && !problem.is_learned &&
-        !problem.is_linear() && !problem.is_ill_posed())
-      all.push_back(p);
+    if (problem.aim != Aim::x || problem.is_learned || problem.is_linear() ||
+        problem.is_ill_posed() || (problem.noise > 0) != is_noisy)
+      continue;
+    const auto options = parse_spec(problem.spec).options;
+    const bool is_by_fit = std::ranges::find(options, std::pair<std::string, std::string>(
+                                                          "goal", "fit")) != options.end();
+    if (is_by_fit == is_noisy) all.push_back(p);
   }
   return all;
 }
@@ -81,7 +87,7 @@ std::string failures_text(const Comparison& c, const std::vector<std::size_t>& s
   for (const std::size_t p : settings)
     for (const std::size_t row : c.cell(p, method).runs) {
       ++runs;
-      failed += c.runs[row].targets.size() <= rung;
+      failed += c.runs[row].taken(Measure::work, rung) == kNever;
     }
   if (runs == 0) return "";
   const Interval bounds = exact_share(failed, runs);
@@ -93,22 +99,24 @@ std::string factor_text(Real difference) {
   return fmt::format("{:.2g}", std::pow(kProfileEnd, -difference));
 }
 
-}  // namespace
+// The contrasts on some settings: their rows, or how many runs are missing.
+struct Sequence {
+  std::size_t missing = 0, families = 0;
+  std::vector<results::Contrast> contrasts;
+  std::vector<std::string> outcomes;
+};
 
-Table contrast_table(const Comparison& c) {
-  Table table = worded_table("contrasts", tau_name(c));
-  const std::vector<Pair> pairs = named_contrasts(*c.study);
-  const std::vector<std::size_t> settings = settings_of(c);
-  if (pairs.empty() || settings.empty()) return table;
+Sequence add_sequence(Table& table, const Comparison& c, const std::vector<Pair>& pairs,
+                      const std::vector<std::size_t>& settings, const std::string& on) {
+  Sequence out;
   std::vector<std::size_t> methods;
   std::vector<std::array<std::size_t, 2>> places;  // in `methods`
-  std::size_t missing = 0;
   for (const Pair& pair : pairs) {
     std::array<std::size_t, 2> place{};
     for (std::size_t side : {0, 1}) {
       const auto row = row_of(c, pair[side]);
       if (!row) {
-        ++missing;
+        ++out.missing;
         continue;
       }
       const auto at = std::ranges::find(methods, *row);
@@ -119,13 +127,13 @@ Table contrast_table(const Comparison& c) {
   }
   for (const std::size_t p : settings)
     for (const std::size_t s : methods)
-      missing += c.cell(p, s).planned == 0 ? 1 : c.cell(p, s).missing();
-  if (missing > 0) {
-    table.rows.push_back({words("contrasts.incomplete-row"), "", "", "", "", ""});
-    table.reading = words("contrasts.incomplete", missing);
-    return table;
+      out.missing += c.cell(p, s).planned == 0 ? 1 : c.cell(p, s).missing();
+  if (out.missing > 0) {
+    table.rows.push_back({words("contrasts.incomplete-row") + on, "", "", "", "", ""});
+    return out;
   }
   const auto scores = family_scores(c, settings, methods);
+  out.families = scores.size();
   std::vector<std::vector<Real>> differences;
   for (const auto& [first, second] : places) {
     differences.emplace_back();
@@ -134,14 +142,13 @@ Table contrast_table(const Comparison& c) {
   }
   constexpr std::array<const char*, 4> kOutcomes = {"contrasts.better", "contrasts.worse",
                                                     "contrasts.equal", "contrasts.undecided"};
-  const std::vector<results::Contrast> all = contrasts_in_order(differences);
-  std::vector<std::string> sentences;
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    const results::Contrast& contrast = all[i];
-    const std::string outcome =
-        words(kOutcomes[static_cast<std::size_t>(contrast.outcome)], pairs[i][0], pairs[i][1]);
+  out.contrasts = contrasts_in_order(differences);
+  for (std::size_t i = 0; i < out.contrasts.size(); ++i) {
+    const results::Contrast& contrast = out.contrasts[i];
+    out.outcomes.push_back(
+        words(kOutcomes[static_cast<std::size_t>(contrast.outcome)], pairs[i][0], pairs[i][1]));
     table.rows.push_back(
-        {fmt::format("{} against {}", pairs[i][0], pairs[i][1]),
+        {fmt::format("{} against {}{}", pairs[i][0], pairs[i][1], on),
          {fmt::format("{:+.2f} ({:+.2f} to {:+.2f})", contrast.mean, contrast.interval.low,
                       contrast.interval.high),
           {{"difference", contrast.mean},
@@ -151,12 +158,30 @@ Table contrast_table(const Comparison& c) {
                      factor_text(contrast.interval.high), factor_text(contrast.interval.low)),
          failures_text(c, settings, methods[places[i][0]]),
          failures_text(c, settings, methods[places[i][1]]),
-         contrast.is_tested ? outcome : words("contrasts.untested")});
-    if (contrast.is_tested) sentences.push_back(outcome);
+         contrast.is_tested ? out.outcomes.back() : words("contrasts.untested")});
   }
-  const Real factor = detectable_factor(scores.size());
+  return out;
+}
+
+}  // namespace
+
+Table contrast_table(const Comparison& c) {
+  Table table = worded_table("contrasts", tau_name(c));
+  const std::vector<Pair> pairs = named_contrasts(*c.study);
+  const std::vector<std::size_t> exact = settings_of(c, false), noisy = settings_of(c, true);
+  if (pairs.empty() || exact.empty()) return table;
+  const Sequence first = add_sequence(table, c, pairs, exact, "");
+  if (!noisy.empty()) add_sequence(table, c, pairs, noisy, words("contrasts.with-noise"));
+  if (first.missing > 0) {
+    table.reading = words("contrasts.incomplete", first.missing);
+    return table;
+  }
+  std::vector<std::string> sentences;
+  for (std::size_t i = 0; i < first.contrasts.size(); ++i)
+    if (first.contrasts[i].is_tested) sentences.push_back(first.outcomes[i]);
+  const Real factor = detectable_factor(first.families);
   table.reading =
-      words("contrasts.reading", joined(sentences, "; "), scores.size(),
+      words("contrasts.reading", joined(sentences, "; "), first.families,
             factor < kNever ? words("contrasts.power", factor) : words("contrasts.no-power"));
   return table;
 }

@@ -254,9 +254,19 @@ std::vector<std::string> learned_sentences(const Comparison& c) {
                                  ? ""
                                  : words("learned.next", name(1),
                                          multiple(equal.methods[order[1]]->x_error.median / least));
-    if (all.size() < kFew)
-      all.push_back(words("learned.nearest", problem_name(c.problems[p]), name(0), least,
-                          diverged == 0 ? "" : " " + words("learned.diverged", diverged), next));
+    if (all.size() >= kFew) continue;
+    const auto spread = [&](std::size_t place) { return equal.methods[order[place]]->x_error; };
+    if (order.size() > 1 && spread(0).n < kFewestForInterval && spread(0).high >= spread(1).low) {
+      std::vector<std::string> ranges;
+      for (const std::size_t place : {0, 1})
+        ranges.push_back(words("learned.range", name(place), figure(spread(place).low),
+                               figure(spread(place).high)));
+      all.push_back(
+          words("learned.overlap", problem_name(c.problems[p]), spread(0).n, joined(ranges, "; ")));
+      continue;
+    }
+    all.push_back(words("learned.nearest", problem_name(c.problems[p]), name(0), least,
+                        diverged == 0 ? "" : " " + words("learned.diverged", diverged), next));
   }
   if (problems < 2) return all;
   std::vector<std::pair<std::string, std::size_t>> ranked(nearest.begin(), nearest.end());

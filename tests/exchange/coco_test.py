@@ -73,6 +73,22 @@ class Coco(unittest.TestCase):
     def tearDownClass(cls):
         cls.place.cleanup()
 
+    def test_a_table_has_a_row_per_run_with_the_work_to_each_tolerance(self):
+        table = pathlib.Path(self.place.name) / "runs.csv"
+        subprocess.run([sys.argv[1], "export", self.results, "--format", "runs", "--out", table],
+                       capture_output=True, check=True)
+        with open(table, newline="", encoding="utf-8") as file:
+            rows = {row["cell"]: row for row in csv.DictReader(file)}
+        self.assertEqual(rows.keys(), {record["cell"] for record in self.records})
+        for record in self.records:
+            row, loss = rows[record["cell"]], record["summary"]["loss"]
+            judged = record["found" if record["aim"] == "x" else "verified"]
+            self.assertEqual(float(row["loss"]), float(loss))
+            met = [float(row[f"work_to_{tau}"]) for tau in ("1e-1", "1e-3", "1e-6")]
+            self.assertEqual(met, sorted(met))
+            for tau, work in zip(("1e-1", "1e-3", "1e-6"), met):
+                self.assertEqual(judged.get(tau) is True, work < math.inf, row)
+
     def indices(self):
         found = sorted(self.data.glob("*/*.info"))
         self.assertGreaterEqual(len(found), 10)

@@ -63,6 +63,34 @@ TEST(Features, TheLeastLossOfASquareProblemWithNoiseIsZero) {
   EXPECT_LT(*noisy.minimum(), 1e-20 * loss_at_start(noisy));
 }
 
+// The distance from the fit in its standard deviations: for a linear problem that of the losses.
+TEST(Features, WithTheFitAsGoalErrorsAreDistancesInStandardDeviations) {
+  const OptionValues noisy{{"noise", 0.01}}, by_fit{{"noise", 0.01}, {"goal", std::string("fit")}};
+  const Problem plain = featured("two-compartments", noisy),
+                judged = featured("two-compartments", by_fit);
+  ASSERT_TRUE(judged.truth() && judged.minimum());
+  EXPECT_EQ(plain.target(), judged.target());
+  const Vector fit = judged.truth()->reshaped();
+  EXPECT_NEAR(loss_at(judged, fit) / *plain.minimum(), 1, 1e-9);
+  EXPECT_EQ(judged.x_error(fit), 0);
+  EXPECT_NEAR(x_goal(1e-6, judged.x_scale(judged.batch()), judged.x_floor(judged.batch())),
+              kNearFit, 1e-12);
+  const Real sigma = *judged.noise_level() / std::sqrt(static_cast<Real>(judged.outputs()));
+  const Vector near = fit + 1e-5 * Vector::Ones(fit.size());
+  const Real rise = 2 * (loss_at(judged, near) - loss_at(judged, fit)) / (sigma * sigma);
+  EXPECT_NEAR(judged.x_error(near) / std::sqrt(rise), 1, 1e-2);
+  EXPECT_THROW(featured("two-compartments", {{"goal", std::string("fit")}}), UsageError);
+}
+
+// What another model differs by is noise, too.
+TEST(Features, TheErrorOfAnotherModelIsPartOfTheNoiseLevel) {
+  const Matrix other = 1.1 * make("sir").target();
+  const Problem alone = featured("sir", {{"noise", 0.01}}),
+                both = with_features(make("sir"), {{"noise", 0.01}}, Draw(0, "sir"), other);
+  const Real error = 0.1 * make("sir").target().norm();
+  EXPECT_NEAR(*both.noise_level(), std::hypot(1.1 * *alone.noise_level(), error), 1e-9);
+}
+
 // Jᵀ and J agree with differences of the loss; errors in x are those of the plain problem.
 TEST(Features, ScaledAndRotatedUnknownsAreTheSameProblem) {
   const OptionValues mapped{{"scale", 1e3}, {"rotate", true}};

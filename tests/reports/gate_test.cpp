@@ -81,12 +81,12 @@ TEST(Gate, ListsWhatIsWorstFirst) {
   EXPECT_EQ(order, (std::vector<std::string>{"3 status", "1 loss", "4 loss", "0 loss", "2 loss"}));
 }
 
-TEST(Gate, WhatNoFigureShowsIsAChangeAndCalledByItsName) {
+TEST(Gate, WhatNoFigureShowsIsCalledByItsNameAndInThePathIsWorse) {
   const GateResult path = compared([](Record& record) { record.curve.step_norm[2] *= 2; });
-  EXPECT_EQ(path.exit_code, 0);
+  EXPECT_EQ(path.exit_code, 2);
   EXPECT_EQ(path.equal, 11U);
   ASSERT_EQ(path.differences.size(), 1U);
-  EXPECT_EQ(path.differences[0].change, Change::changed);
+  EXPECT_EQ(path.differences[0].change, Change::worse);
   EXPECT_TRUE(has(path.differences[0].note, "the path differs"));
   const GateResult beside = compared([](Record& record) { record.message = "as it likes"; });
   EXPECT_EQ(beside.exit_code, 0);

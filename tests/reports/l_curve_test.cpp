@@ -115,13 +115,61 @@ TEST(LCurve, HasItsCornerWhereTheClosedFormIsMostCurved) {
   // A step of the sweep, which has no value between.
   EXPECT_LE(std::abs(std::log10(corner / expected)), 1.0 / kPerDecade);
   EXPECT_NEAR(error, blur.error(corner) / blur.truth(), 1e-12);
-  const Real at_noise = row[5].numbers[0].second;
+  const Real at_noise = row[7].numbers[0].second;
   EXPECT_LE(blur.discrepancy(at_noise), kNoiseFactor * blur.level());
   EXPECT_GT(blur.discrepancy(at_noise * std::pow(10.0, 1.0 / kPerDecade)),
             kNoiseFactor * blur.level());
-  const Real best = row[8].numbers[0].second;
+  const Real best = row[10].numbers[0].second;
   EXPECT_GE(best, least * (1 - 1e-12));
   EXPECT_LE(best, error);
+}
+
+// The corner of each other value of α is where that of all is.
+TEST(LCurve, ItsCornerDoesNotMoveWithTheGridOfTheWeights) {
+  const Blur blur;
+  Real least = kNever, most = 0;
+  for (const int step : {1, 2, 3})
+    for (int first = 0; first < step; ++first) {
+      std::vector<Record> runs;
+      for (int j = kSmallest + first; j <= kLargest; j += step)
+        runs.push_back(penalized(blur, std::pow(10.0, Real(j) / kPerDecade), "a"));
+      const Real corner = l_curve_table(Compared(runs)).rows[0][3].numbers[0].second;
+      least = std::min(least, corner);
+      most = std::max(most, corner);
+    }
+  EXPECT_LE(most / least, 10.1);  // a step of the coarsest, three thirds of a decade
+}
+
+// Of the closed form d²/(Σ α/(σ² + α))², one singular value for each datum.
+TEST(LCurve, HasCrossValidationWhereTheSingularValuesAreKept) {
+  const Blur blur;
+  std::vector<Record> runs = sweep(blur);
+  Real least = kNever, expected = 0;
+  for (Record& record : runs) {
+    const Real alpha = record.request.problem.options.number("tikhonov", 0);
+    record.spectrum = Spectrum{.iterations = {0}, .sigma = {{}}};
+    Real left = 0;
+    for (std::size_t i = 0; i < Blur::kSize; ++i) {
+      const Real square = std::pow(0.36, Real(i)) + alpha;
+      record.spectrum->sigma[0].push_back(std::sqrt(square));
+      left += alpha / square;
+    }
+    const Real value = std::pow(blur.discrepancy(alpha) / left, 2);
+    if (value < least) expected = alpha;
+    least = std::min(least, value);
+  }
+  Study study;
+  for (const Record& record : runs)
+    if (study.sheets.empty() || study.sheets.back().spec != record.request.problem.spec)
+      study.sheets.push_back({.kind = "problem",
+                              .name = "blur",
+                              .spec = record.request.problem.spec,
+                              .linear = true,
+                              .unknowns = Blur::kSize,
+                              .residuals = 2 * Blur::kSize});
+  study.runs = std::move(runs);
+  const Table table = l_curve_table(Compared(std::move(study)));
+  EXPECT_NEAR(table.rows[0][5].numbers[0].second / expected, 1, 1e-9);
 }
 
 TEST(LCurve, IsDrawnFromTheRunsWithTheLeastLoss) {

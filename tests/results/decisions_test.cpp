@@ -61,6 +61,15 @@ TEST(Decision, AFirstPlaceOnAllProblemsLeadsAndIsTheWholeGroup) {
   for (const Choice& choice : decision->choices) EXPECT_TRUE(choice.is_kept) << choice.value;
 }
 
+// 1,000 against 1,001 on each of eight families is significant, and nothing to a user.
+TEST(Decision, ATwinWithinTheMarginOfWorkIsNotBehind) {
+  const Evidence evidence{.costs = Costs(8, {1000, 1001, 9000}), .families = families_apart(8)};
+  const auto decision = decide(evidence);
+  ASSERT_TRUE(decision);
+  EXPECT_FALSE(decision->is_lead);
+  EXPECT_EQ(decision->group(), (std::vector<std::size_t>{0, 1}));
+}
+
 // 2^(1−5) = 0.0625: no result over five families can be significant.
 TEST(Decision, FiveFamiliesDecideNothing) {
   const auto decision = decide(clear_lead(5, 3));
