@@ -173,8 +173,11 @@ std::string defect_of(const Trace& trace) {
     return "standard deviations of an invalid size";
   if (!is_within(trace.answer.unknowns, Trace::Answer::kUnknowns) ||
       !is_flag(trace.answer.has_best) || !is_flag(trace.answer.has_returned) ||
-      !is_flag(trace.answer.is_bounded))
+      !is_flag(trace.answer.is_bounded) ||
+      !is_within(trace.model_answer.unknowns, Trace::ModelAnswer::kUnknowns))
     return "an answer of an invalid size";
+  if (!is_within(trace.fit.data, Trace::Fit::kData) || !is_flag(trace.fit.has_sigma))
+    return "data of an invalid size";
   if (!are_sound(trace.failures)) return "failed evaluations of an invalid number";
   if (!are_texts_sound(trace)) return "an unterminated text";
   if (!are_series_sound(trace)) return "more series than the trace has room for";

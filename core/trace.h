@@ -156,6 +156,22 @@ struct Trace {
   };
   Answer answer;
   FailedEvaluations failures;
+  // x at both points of the answer of a problem with the words of a model, where it is not θ; names
+  // and bounds are then of x.
+  struct ModelAnswer {
+    static constexpr int kUnknowns = 256;
+    int unknowns = 0;  // 0: there is no model
+    double best[kUnknowns], returned[kUnknowns];
+  };
+  ModelAnswer model_answer;
+  // The data of a fit, and y at the returned point, in the units of the data.
+  struct Fit {
+    static constexpr int kData = 4096;
+    int data = 0;  // 0: nothing is kept
+    bool has_sigma = false;
+    double target[kData], y[kData], sigma[kData];
+  };
+  Fit fit;
 };
 
 // The part that fits, cut at a character.

@@ -30,8 +30,10 @@ bool is_within(const problems::Refinement::State& state, const problems::Refinem
 
 // "NAME tab UNIT" of each unknown, a line each; empty where the problem declares neither.
 std::string names_text(const Problem& problem) {
-  const std::vector<std::string>&names = problem.names(), &units = problem.units();
-  const auto n = static_cast<std::size_t>(problem.unknowns());
+  const problems::Model* const model = problem.model();
+  const std::vector<std::string>&names = model ? model->names : problem.names(),
+        &units = model ? model->units : problem.units();
+  const auto n = model ? names.size() : static_cast<std::size_t>(problem.unknowns());
   require((names.empty() || names.size() == n) && (units.empty() || units.size() == n), [&] {
     return fmt::format("the problem has {} unknowns, but declares {} names and {} units", n,
                        names.size(), units.size());
@@ -101,9 +103,11 @@ Meter::Meter(const Problem& problem, const Budget& budget, OracleSet granted, Tr
                        problem.unknowns() <= Trace::Answer::kUnknowns;
   trace_.answer.unknowns = is_kept ? static_cast<int>(problem.unknowns()) : 0;
   if (is_kept) describe_unknowns();
-  const bool is_small = problem.inputs() <= Trace::kInputs &&
-                        problem.residuals() <= Trace::kOutputs && problem.samples() == 1;
-  trace_.path_inputs = is_small ? static_cast<int>(problem.inputs()) : 0;
+  const problems::Model* const model = problem.model();
+  const Index unknowns = model ? std::ssize(model->names) : problem.inputs();
+  const bool is_small = unknowns <= Trace::kInputs && problem.residuals() <= Trace::kOutputs &&
+                        problem.samples() == 1;
+  trace_.path_inputs = is_small ? static_cast<int>(unknowns) : 0;
   trace_.path_outputs = is_small ? static_cast<int>(problem.residuals()) : 0;
 }
 
@@ -604,9 +608,8 @@ void Meter::keep_point() {
   if (index >= Trace::kPoints) return;
   trace_.point[index] = trace_.last;
   if (trace_.path_inputs > 0) {
-    const Matrix x = problem_.own_units().scales.size() > 0
-                         ? Matrix(problem_.in_own_units(judged_theta_))
-                         : judged_.x();
+    const bool is_own = problem_.own_units().scales.size() > 0 || trace_.model_answer.unknowns > 0;
+    const Matrix x = is_own ? Matrix(problem_.in_own_units(judged_theta_)) : judged_.x();
     std::copy_n(x.data(), x.size(), trace_.path_x[index]);
     std::copy_n(judged_.y.data(), judged_.y.size(), trace_.path_y[index]);
   }
@@ -615,6 +618,7 @@ void Meter::keep_point() {
     keep_frame(trace_.frames, iteration_, x.cells(),
                field->is_history() ? std::span<const Real>() : Picture(judged_.y, field).cells());
   }
+  keep_model_best();
   trace_.points = index + 1;
   trace_.best_loss = best_loss_;
   next_kept_ = next_kept_after(iteration_);
@@ -671,7 +675,17 @@ void Meter::describe_unknowns() {
   const problems::OwnUnits& own = problem_.own_units();
   kept.is_scaled = own.scales.size() > 0;
   std::ranges::copy(own.scales, kept.scale);
-  const problems::Bounds* const bounds = own.bounds ? &*own.bounds : problem_.bounds();
+  const problems::Model* const model = problem_.model();
+  if (model != nullptr) {
+    require(model->names.size() <= Trace::ModelAnswer::kUnknowns, [&] {
+      return fmt::format("fixed, tied and log require at most {} unknowns, got {}",
+                         int{Trace::ModelAnswer::kUnknowns}, model->names.size());
+    });
+    trace_.model_answer.unknowns = static_cast<int>(model->names.size());
+  }
+  const problems::Bounds* const bounds = own.bounds         ? &*own.bounds
+                                         : model != nullptr ? nullptr
+                                                            : problem_.bounds();
   kept.is_bounded = bounds != nullptr;
   if (bounds == nullptr) return;
   std::ranges::copy(bounds->lower, kept.lower);
@@ -682,8 +696,37 @@ void Meter::keep_returned() {
   Trace::Answer& kept = trace_.answer;
   if (kept.unknowns == 0) return;
   std::copy_n(judged_theta_.data(), kept.unknowns, kept.returned);
+  if (trace_.model_answer.unknowns > 0)
+    std::ranges::copy(problem_.in_own_units(judged_theta_), trace_.model_answer.returned);
   kept.residual_norm = (judged_.y - problem_.target()).norm();
   kept.has_returned = true;
+  keep_fit();
+}
+
+void Meter::keep_model_best() {
+  const Trace::Answer& kept = trace_.answer;
+  if (trace_.model_answer.unknowns == 0 || !kept.has_best) return;
+  const Eigen::Map<const Vector> theta(kept.best, kept.unknowns);
+  std::ranges::copy(problem_.in_own_units(theta), trace_.model_answer.best);
+}
+
+// The data and y of a user's own program, or of a problem with the words of a model.
+void Meter::keep_fit() {
+  Trace::Fit& kept = trace_.fit;
+  const problems::Model* const model = problem_.model();
+  const Index m = problem_.residuals() - problem_.penalties();
+  if ((!problem_.is_elsewhere() && !model) || !problem_.is_least_squares() ||
+      problem_.samples() != 1 || m > Trace::Fit::kData)
+    return;
+  const bool has_factors = model && model->factors.size() == m;
+  kept.has_sigma = has_factors && problem_.noise_level().has_value();
+  for (Index i = 0; i < m; ++i) {
+    const Real unit = has_factors ? 1 / model->factors[i] : 1;
+    kept.sigma[i] = unit;
+    kept.target[i] = unit * problem_.target()(i, 0);
+    kept.y[i] = unit * judged_.y(i, 0);
+  }
+  kept.data = static_cast<int>(m);
 }
 
 // At the returned point, where x is the unknown; those that a bound holds are constants, and have
@@ -726,27 +769,43 @@ void Meter::keep_uncertainty() {
   kept.condition = sigma[0] / sigma[n - 1];
   const Matrix correlation = root * root.transpose();
   const Vector x = problem_.in_own_units(judged_theta_);
-  const Vector& scales = problem_.own_units().scales;
-  for (Index i = 0; i < all; ++i) {
-    kept.x[i] = x[i];
+  const problems::OwnUnits& own = problem_.own_units();
+  const Index k = x.size();
+  if (k > Trace::Uncertainty::kUnknowns) return;
+  std::ranges::copy(x, kept.x);
+  kept.unknowns = static_cast<int>(k);
+  for (Index i = 0; i < k; ++i) {
     kept.deviation[i] = std::nan("");
-    for (Index j = 0; j < all; ++j) kept.correlation[i][j] = i == j ? 1 : std::nan("");
+    for (Index j = 0; j < k; ++j) kept.correlation[i][j] = i == j ? 1 : std::nan("");
   }
-  for (Index k = 0; k < n; ++k) {
-    const Index i = free[static_cast<std::size_t>(k)];
-    const Real scale = scales.size() > 0 ? scales[i] : 1;
-    kept.deviation[i] = scale * std::sqrt(kept.variance) * lengths[k] / D[k];
-    for (Index l = 0; l < n; ++l)
-      if (k != l)
-        kept.correlation[i][free[static_cast<std::size_t>(l)]] =
-            correlation(std::max(k, l), std::min(k, l));
+  if (problem_.model() != nullptr) {  // C = S C_θ Sᵀ
+    const Vector deviations = std::sqrt(kept.variance) * lengths.array() / D.array();
+    const Matrix S =
+        Matrix(problem_.model_slopes(judged_theta_)(Eigen::all, free)) * deviations.asDiagonal();
+    const Matrix C = S * correlation * S.transpose();
+    for (Index i = 0; i < k; ++i) {
+      if (!(C(i, i) > 0)) continue;
+      kept.deviation[i] = std::sqrt(C(i, i));
+      for (Index j = 0; j < k; ++j)
+        if (i != j && C(j, j) > 0) kept.correlation[i][j] = C(i, j) / std::sqrt(C(i, i) * C(j, j));
+    }
+    return;
   }
-  kept.unknowns = static_cast<int>(all);
+  for (Index l = 0; l < n; ++l) {
+    const Index i = free[static_cast<std::size_t>(l)];
+    const Real scale = own.scales.size() > 0 ? own.scales[i] : 1;
+    kept.deviation[i] = scale * std::sqrt(kept.variance) * lengths[l] / D[l];
+    for (Index o = 0; o < n; ++o)
+      if (l != o)
+        kept.correlation[i][free[static_cast<std::size_t>(o)]] =
+            correlation(std::max(l, o), std::min(l, o));
+  }
 }
 
 Real Meter::residual_unit() const {
   const Real length = std::sqrt(2 * trace_.start_loss);
-  const bool is_scaled = problem_.own_units().scales.size() > 0 && length > 0;
+  const bool is_scaled =
+      (problem_.own_units().scales.size() > 0 || problem_.model() != nullptr) && length > 0;
   return is_scaled && std::isfinite(length) ? std::exp2(-std::round(std::log2(length))) : 1;
 }
 

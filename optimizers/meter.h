@@ -278,6 +278,8 @@ class Meter {
   }
   void describe_unknowns();
   void keep_returned();
+  void keep_model_best();
+  void keep_fit();
   void reach(Real loss);          // records the targets that `loss` meets
   void measure(VectorRef theta);  // fills trace_.last, off the clock
   void measure_series();          // of the problem, at the point that was judged last

@@ -12,6 +12,7 @@
 #include "core/differences.h"
 #include "core/errors.h"
 #include "core/workspace.h"
+#include "problems/wrapper.h"
 
 namespace isoline::problems {
 namespace {
@@ -22,15 +23,16 @@ struct Inside final : Scratch {
   Matrix y;  // (m, B)
 };
 
-class Differenced final : public Physics {
+class Differenced final : public Wrapper {
  public:
   // `start`: where the noise is measured, once, before the first product.
-  Differenced(std::unique_ptr<Physics> inside, const std::string& derivatives, GivenSteps steps,
+  Differenced(std::unique_ptr<Physics> inside, const std::string& derivatives, std::string steps,
               Vector start, std::optional<Bounds> bounds)
       : inside_(std::move(inside)),
         is_central_(derivatives == "central"),
         has_products_(derivatives != "none"),
-        given_(std::move(steps)),
+        steps_(std::move(steps)),
+        given_(given_steps(steps_)),
         start_(std::move(start)),
         sizes_(sizes_of_unknowns(start_)),
         bounds_(std::move(bounds)) {}
@@ -53,7 +55,10 @@ class Differenced final : public Physics {
             .noise = noise_,
             .step = given_.steps.empty() && noise_ > 0 ? step() : std::nan("")};
   }
+  const std::string& steps() const { return steps_; }
   void keep_inverse() { has_inverse_ = true; }
+  const Physics& inside() const override { return *inside_; }
+  std::unique_ptr<Physics> take_inside() { return std::move(inside_); }
   Inverse inverse_kind() const override {
     return has_inverse_ ? inside_->inverse_kind() : Inverse::none;
   }
@@ -163,6 +168,7 @@ class Differenced final : public Physics {
 
   std::unique_ptr<Physics> inside_;
   bool is_central_, has_products_, has_inverse_ = false;
+  std::string steps_;  // as the user gave them
   GivenSteps given_;
   Vector start_, sizes_;  // (k)
   std::optional<Bounds> bounds_;
@@ -189,12 +195,19 @@ Real relative_noise(const Problem& problem, const Vector& x) {
 
 void replace_derivatives(ProblemParts& parts, const std::string& derivatives, bool keeps_inverse,
                          const std::string& steps) {
-  auto physics =
-      std::make_unique<Differenced>(std::move(parts.physics), derivatives, given_steps(steps),
-                                    parts.start.standard, parts.bounds);
+  auto physics = std::make_unique<Differenced>(std::move(parts.physics), derivatives, steps,
+                                               parts.start.standard, parts.bounds);
   if (parts.jitter) physics->set_jitter(*parts.jitter, parts.target);
   if (keeps_inverse) physics->keep_inverse();
   parts.physics = std::move(physics);
+}
+
+std::optional<std::string> remove_differences(ProblemParts& parts) {
+  auto* const differenced = dynamic_cast<Differenced*>(parts.physics.get());
+  if (differenced == nullptr) return std::nullopt;
+  std::string steps = differenced->steps();
+  parts.physics = differenced->take_inside();
+  return steps;
 }
 
 }  // namespace isoline::problems

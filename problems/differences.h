@@ -2,6 +2,7 @@
 // from the noise in its values.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "problems/problem.h"
@@ -17,5 +18,7 @@ Real relative_noise(const Problem& problem, const Vector& x);
 // remains, and an inverse only where it is kept. `steps`: of given_steps().
 void replace_derivatives(ProblemParts& parts, const std::string& derivatives,
                          bool keeps_inverse = false, const std::string& steps = "");
+// Undoes this for the outermost physics: its steps; nothing where it has no such derivatives.
+std::optional<std::string> remove_differences(ProblemParts& parts);
 
 }  // namespace isoline::problems

@@ -16,6 +16,7 @@
 #include "core/errors.h"
 #include "core/failures.h"
 #include "problems/differences.h"
+#include "problems/wrapper.h"
 
 namespace isoline::problems {
 namespace {
@@ -123,7 +124,7 @@ FailingLayers layers_of(Real share, const Vector& centre, const std::vector<Vect
       fmt::format("fail={} leaves no region without failures around x₀ and x*", share));
 }
 
-class Featured final : public Physics {
+class Featured final : public Wrapper {
  public:
   Featured(std::unique_ptr<Physics> inside, Map map, FailingLayers layers, const Features& features)
       : inside_(std::move(inside)),
@@ -137,6 +138,11 @@ class Featured final : public Physics {
   Index outputs() const override { return m() + penalties(); }
   Index penalties() const { return weight_ > 0 ? inputs() - order_ : 0; }
   const Map& map() const { return map_; }
+  const Physics& inside() const override { return *inside_; }
+  Vector inner_point(VectorRef z) const override { return map_.point(z); }
+  Matrix inner_slopes(VectorRef z) const override {
+    return map_.to_x(Matrix::Identity(z.size(), z.size()));
+  }
 
   void begin_forwards(BatchRef z) const override {
     Matrix x(z.rows(), z.cols());
@@ -261,7 +267,8 @@ void wrap(ProblemParts& parts, Map map, FailingLayers layers, const Features& fe
       return inner(to.to_x(z), in_x);
     };
   if (!to.is_identity()) parts.names = parts.units = {};
-  const Index rows = parts.penalties = physics->penalties();
+  const Index rows = physics->penalties();
+  parts.penalties += rows;  // beside those of priors
   if (rows > 0) {
     parts.target.conservativeResize(parts.target.rows() + rows, Eigen::NoChange);
     parts.target.bottomRows(rows).setZero();
@@ -519,6 +526,7 @@ Vector scales_of_unknowns(const Problem& problem) {
   Vector scales = start.cwiseAbs();
   Point at;
   for (Index i = 0; i < start.size(); ++i) {
+    if (is_logarithm(problem, i)) scales[i] = 1;
     if (scales[i] > 0) continue;
     if (problem.bounds()) scales[i] = problem.bounds()->upper[i] - problem.bounds()->lower[i];
     if (scales[i] > 0 && std::isfinite(scales[i])) continue;
@@ -545,7 +553,8 @@ Problem with_features(Problem plain, const OptionValues& options, const Draw& dr
   require(!plain.is_learned(),
           "noise, model, scale, rotate, digits, tikhonov, order, fail, jitter, derivatives "
           "and difference-step require mode=direct");
-  Problem featured = with_other_data(std::move(plain), features, draw, target);
+  Problem featured =
+      with_model(with_other_data(std::move(plain), features, draw, target), features, draw);
   if (features.jitter == 0 && features.derivatives == "exact") return featured;
   ProblemParts parts = std::move(featured).parts();
   if (features.jitter > 0) parts.jitter = {features.jitter, draw.stream("jitter")};
@@ -560,8 +569,9 @@ Problem with_scaled_unknowns(Problem plain) {
     return plain;
   Map map{.scales = scales_of_unknowns(plain)};
   const Real x_scale = plain.x_scale(plain.batch());
+  const bool has_model = plain.model() != nullptr;
   ProblemParts parts = std::move(plain).parts();
-  parts.own_units = {.scales = map.scales, .bounds = parts.bounds};
+  if (!has_model) parts.own_units = {.scales = map.scales, .bounds = parts.bounds};
   map.box = parts.bounds;
   parts.x_scale = x_scale;
   const auto names = parts.names, units = parts.units;

@@ -7,13 +7,14 @@
 
 #include "core/differences.h"
 #include "core/options.h"
+#include "problems/model.h"
 #include "problems/problem.h"
 
 namespace isoline::problems {
 
 inline constexpr Real kNearFit = 0.1;
 
-struct Features {
+struct Features : ModelWords {
   Real noise = 0;
   std::string noise_kind = "gaussian", model, goal = "truth";
   Real scale = 1;
@@ -53,6 +54,7 @@ inline void fields(Features& o, auto& field) {
   field(
       "fail", o.fail, between(0, 0.5),
       "share of all x at which the evaluation fails: parallel layers that hold neither x₀ nor x*");
+  fields(static_cast<ModelWords&>(o), field);
 }
 
 // Whether f_L is the loss of a fit from x*, which a run may better from elsewhere.

@@ -9,6 +9,7 @@
 
 #include "core/product.h"
 #include "networks/network.h"
+#include "problems/model.h"
 
 namespace isoline::problems {
 
@@ -126,6 +127,7 @@ Real Problem::loss_scale(const Batch& batch) const {
 // start.
 Vector Problem::in_own_units(VectorRef theta) const {
   const OwnUnits& own = parts_.own_units;
+  if (model() != nullptr) return point_of_model(physics(), theta);
   if (own.scales.size() == 0) return theta;
   const Vector x = theta.cwiseProduct(own.scales);
   return own.bounds ? own.bounds->nearest(x) : x;

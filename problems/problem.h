@@ -143,6 +143,12 @@ struct ProblemParts {
   std::string contour_spacing = "logarithm";    // or "fifth root", or "powers of two"
 };
 
+// The words of a model (problems/model.h), through which methods see other unknowns θ than x.
+struct Model {
+  std::vector<std::string> names, units;  // of x, (k); units may be empty
+  Vector factors;                         // of the residuals of the data, (m); empty: 1
+};
+
 class Problem {
  public:
   explicit Problem(ProblemParts parts);
@@ -175,6 +181,7 @@ class Problem {
     return parts_.made_from ? parts_.made_from : parts_.truth;
   }
   std::optional<Real> noise_level() const { return parts_.noise_level; }
+  Index penalties() const { return parts_.penalties; }
   const Jitter* jitter() const { return parts_.jitter ? &*parts_.jitter : nullptr; }
   Real discrepancy(const Point& at) const {  // ‖y − y*‖ of the data
     return (at.y - at.batch->target).topRows(outputs() - parts_.penalties).norm();
@@ -184,6 +191,9 @@ class Problem {
   const Bounds* bounds() const { return parts_.bounds ? &*parts_.bounds : nullptr; }
   const OwnUnits& own_units() const { return parts_.own_units; }
   Vector in_own_units(VectorRef theta) const;  // x
+  const Model* model() const;                  // nothing without its words
+  Matrix model_slopes(VectorRef theta) const;  // ∂x/∂θ, (k, n), of a problem with a model
+  const Physics& physics() const { return *parts_.physics; }
   const auto& window() const { return parts_.window; }
   const auto& y_window() const { return parts_.y_window; }
   const std::string& contour_spacing() const { return parts_.contour_spacing; }

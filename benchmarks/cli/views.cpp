@@ -57,8 +57,8 @@ void print_choice(const results::Study& study, const View& view) {
   for (const results::Advised& one : advice.ranked | std::views::take(kShown))
     say(stdout,
         fmt::format("  {} {:28} solves {:2}/{}  work {:>8}  score {:.2f}\n",
-                    one.is_in_group ? '*' : ' ', comparison.optimizers[one.optimizer].name_of_all(),
-                    one.solved, advice.settings.size(),
+                    one.is_in_group ? '*' : ' ', reports::advised_name(comparison, one), one.solved,
+                    advice.settings.size(),
                     one.work < results::kNever ? reports::figure(one.work) : "–", one.score));
   if (!advice.ranked.empty()) say(stdout, reports::words("advice.legend") + "\n");
   if (view.unknowns > 0) say(stdout, reports::words("advice.size-class") + "\n");

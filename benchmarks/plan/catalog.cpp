@@ -6,6 +6,8 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
+#include <filesystem>
 #include <sstream>
 
 #include "benchmarks/plan/rates.h"
@@ -141,40 +143,6 @@ Component complete(const Entry& registered, const OptionValues& given) {
   return component;
 }
 
-// With the data of another model, that is the problem with these options instead.
-Problem made_with_features(const ProblemEntry& entry, const Component& problem,
-                           const OptionValues& options, std::uint64_t seed) {
-  const Draw draw(seed, problem.name);
-  OptionTable declared = entry.options;
-  if (problem.foreign)
-    declared.insert(declared.end(), problem.foreign->options.begin(),
-                    problem.foreign->options.end());
-  const OptionTable table = problems::feature_table(declared);
-  OptionValues own, features;
-  for (const auto& [name, value] : options) {
-    const bool is_feature = std::ranges::find(table, name, &OptionField::name) != table.end();
-    (is_feature ? features : own).set(name, value);
-  }
-  Problem plain = entry.make(own, draw);
-  std::optional<Matrix> target;
-  if (const std::string model = features.text("model"); !model.empty()) {
-    OptionValues other = own;
-    other.set_all(options_of(parse_spec(entry.name + "[" + model + "]")));
-    target = entry.make(complete_options(declared, entry.name, other), draw).target();
-  }
-  return problems::with_features(std::move(plain), features, draw, target);
-}
-
-// The sources of a method and of the method inside it.
-std::string digest_of(const Catalog& catalog, const OptimizerEntry& entry,
-                      const OptionValues& options, bool is_learning) {
-  std::string all = source_digest(entry.file);
-  if (!entry.inside) return all;
-  for (const std::string& spec : entry.inside(options, is_learning))
-    all += source_digest(catalog.optimizers.at(parse_spec(spec).name).file);
-  return digest(all);
-}
-
 // A start and a target of the user's own.
 
 constexpr std::size_t kFileDigits = 16;
@@ -191,6 +159,23 @@ NamedFile named_file(const std::string& given) {
   return has_digest ? NamedFile{given.substr(0, at), given.substr(at + 1)} : NamedFile{given, ""};
 }
 
+// The path with the digest of its content, if it has none, or one that is the same.
+std::string with_digest(const std::string& problem, const std::string& given) {
+  const NamedFile file = named_file(given);
+  const std::string now = digest(read_text(file.path));
+  require(file.digest.empty() || file.digest == now, [&] {
+    return fmt::format("{}: the content of {} has changed: its digest is {}, and was {}", problem,
+                       file.path, now, file.digest);
+  });
+  return file.path + "@" + now;
+}
+
+// The words of a model that accept a file.
+constexpr std::array kFileWords = {"sigma", "weights"};
+bool is_file(const std::string& given) {
+  return !given.empty() && std::filesystem::exists(named_file(given).path);
+}
+
 // The problem's entry with the options for files, each with the digest of its content.
 ProblemEntry with_files(ProblemEntry entry, OptionValues& given) {
   require(!asks_to_learn(given), [&] {
@@ -200,13 +185,7 @@ ProblemEntry with_files(ProblemEntry entry, OptionValues& given) {
   for (const char* option : {kStartOption, kTargetOption}) {
     entry.options.push_back({option, std::string(), {}, {}, ""});
     if (given.text(option).empty()) continue;
-    const NamedFile file = named_file(given.text(option));
-    const std::string now = digest(read_text(file.path));
-    require(file.digest.empty() || file.digest == now, [&] {
-      return fmt::format("{}: the content of {} has changed: its digest is {}, and was {}",
-                         entry.name, file.path, now, file.digest);
-    });
-    given.set(option, file.path + "@" + now);
+    given.set(option, with_digest(entry.name, given.text(option)));
   }
   return entry;
 }
@@ -233,16 +212,63 @@ Matrix numbers_in_file(const Problem& problem, const std::string& what, const st
   return numbers;
 }
 
-Problem made_without_best(const Catalog& catalog, const Component& problem, std::uint64_t seed) {
-  OptionValues options = problem.options;
-  const std::string start = options.text(kStartOption), target = options.text(kTargetOption);
+// With the data of another model, that is the problem with these options instead.
+Problem made_with_features(const ProblemEntry& entry, const Component& problem,
+                           OptionValues options, std::uint64_t seed) {
+  const std::string start = options.text(kStartOption), own_target = options.text(kTargetOption);
   for (const char* option : {kStartOption, kTargetOption}) options.erase(option);
-  Problem made = made_with_features(catalog.problems.at(problem.name), problem, options, seed);
-  if (!start.empty())
-    made.set_start(numbers_in_file(made, "start of " + problem.name, start, made.unknowns()));
-  if (!target.empty())
-    made.set_target(numbers_in_file(made, "target of " + problem.name, target, made.outputs()));
-  return made;
+  const Draw draw(seed, problem.name);
+  OptionTable declared = entry.options;
+  if (problem.foreign)
+    declared.insert(declared.end(), problem.foreign->options.begin(),
+                    problem.foreign->options.end());
+  const OptionTable table = problems::feature_table(declared);
+  OptionValues own, features;
+  for (const auto& [name, value] : options) {
+    const bool is_feature = std::ranges::find(table, name, &OptionField::name) != table.end();
+    (is_feature ? features : own).set(name, value);
+  }
+  const auto with_own_data = [&](Problem made) {
+    if (!start.empty())
+      made.set_start(numbers_in_file(made, "start of " + problem.name, start, made.unknowns()));
+    if (!own_target.empty())
+      made.set_target(
+          numbers_in_file(made, "target of " + problem.name, own_target, made.outputs()));
+    return made;
+  };
+  Problem plain = entry.make(own, draw);
+  const bool has_words = std::ranges::any_of(option_table<problems::ModelWords>(), [&](auto& word) {
+    return features.contains(word.name);
+  });
+  if (has_words) {  // they are of x, as the files are
+    plain = with_own_data(std::move(plain));
+    for (const char* word : kFileWords)
+      if (const auto file = features.text(word); is_file(file))
+        features.set(word,
+                     fmt::format("{}", fmt::join(read_numbers(named_file(file).path).values, ";")));
+  }
+  std::optional<Matrix> target;
+  if (const std::string model = features.text("model"); !model.empty()) {
+    OptionValues other = own;
+    other.set_all(options_of(parse_spec(entry.name + "[" + model + "]")));
+    target = entry.make(complete_options(declared, entry.name, other), draw).target();
+  }
+  Problem made = problems::with_features(std::move(plain), features, draw, target);
+  return has_words ? std::move(made) : with_own_data(std::move(made));
+}
+
+// The sources of a method and of the method inside it.
+std::string digest_of(const Catalog& catalog, const OptimizerEntry& entry,
+                      const OptionValues& options, bool is_learning) {
+  std::string all = source_digest(entry.file);
+  if (!entry.inside) return all;
+  for (const std::string& spec : entry.inside(options, is_learning))
+    all += source_digest(catalog.optimizers.at(parse_spec(spec).name).file);
+  return digest(all);
+}
+
+Problem made_without_best(const Catalog& catalog, const Component& problem, std::uint64_t seed) {
+  return made_with_features(catalog.problems.at(problem.name), problem, problem.options, seed);
 }
 
 bool can_learn(const ProblemEntry& entry) {
@@ -303,6 +329,11 @@ Component complete_problem(const Catalog& catalog, const std::string& name,
   OptionValues given = options;
   const bool has_files = given.contains(kStartOption) || given.contains(kTargetOption);
   const ProblemEntry entry = has_files ? with_files(declared, given) : declared;
+  const OptionTable features = problems::feature_table(entry.options);
+  for (const char* word : kFileWords)
+    if (std::ranges::find(features, word, &OptionField::name) != features.end() &&
+        given.contains(word) && is_file(option_text(given.at(word))))
+      given.set(word, with_digest(name, given.text(word)));
   if (asks_to_learn(options)) require_learnable(catalog, entry);
   Component problem = complete(entry, given);
   if (can_learn(entry) && !problem.is_learned) require_no_learning(entry, problem.options);

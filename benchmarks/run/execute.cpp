@@ -167,10 +167,13 @@ std::optional<Uncertainty> uncertainty_of(const Trace::Uncertainty& kept) {
 // Points that are not finite answer nothing. Where the returned one is not the best, both are kept.
 std::optional<AnswerPoints> answer_of(const Trace& trace) {
   const Trace::Answer& kept = trace.answer;
-  AnswerPoints answer{.unknowns = kept.unknowns};
+  const Trace::ModelAnswer& model = trace.model_answer;
+  const int unknowns = model.unknowns > 0 ? model.unknowns : kept.unknowns;
+  const bool is_scaled = kept.is_scaled && model.unknowns == 0;
+  AnswerPoints answer{.unknowns = unknowns};
   const auto add = [&](const char* name, const double* values) {
-    std::vector<Real> x(values, values + kept.unknowns);
-    for (std::size_t i = 0; kept.is_scaled && i < x.size(); ++i) {
+    std::vector<Real> x(values, values + unknowns);
+    for (std::size_t i = 0; is_scaled && i < x.size(); ++i) {
       x[i] *= kept.scale[i];
       if (kept.is_bounded) x[i] = std::max(kept.lower[i], std::min(x[i], kept.upper[i]));
     }
@@ -179,29 +182,36 @@ std::optional<AnswerPoints> answer_of(const Trace& trace) {
     answer.x.push_back(std::move(x));
   };
   if (kept.has_returned) {
-    add(kReturned, kept.returned);
+    add(kReturned, model.unknowns > 0 ? model.returned : kept.returned);
     answer.residual_norm = kept.residual_norm;
   }
   const bool is_returned_best = kept.has_returned && trace.last.loss <= trace.best_loss;
-  if (kept.has_best && !is_returned_best) add(kBest, kept.best);
+  if (kept.has_best && !is_returned_best) add(kBest, model.unknowns > 0 ? model.best : kept.best);
   if (kept.unknowns == 0 || answer.points.empty()) return std::nullopt;
   const std::vector<std::string> lines = lines_of(kept.names);
   for (const std::string& line : lines) {
-    if (std::ssize(lines) != kept.unknowns) break;
+    if (std::ssize(lines) != unknowns) break;
     const std::size_t tab = std::min(line.find('\t'), line.size());
     answer.names.push_back(line.substr(0, tab));
     answer.units.push_back(line.substr(std::min(tab + 1, line.size())));
   }
   if (std::ranges::all_of(answer.units, &std::string::empty)) answer.units.clear();
-  if (kept.is_scaled) answer.scales.assign(kept.scale, kept.scale + kept.unknowns);
+  if (is_scaled) answer.scales.assign(kept.scale, kept.scale + unknowns);
   const std::vector<Real>& x = answer.x.back();  // of least loss
-  for (int i = 0; kept.is_bounded && i < kept.unknowns; ++i) {
+  for (int i = 0; kept.is_bounded && i < unknowns; ++i) {
     const Real value = x[static_cast<std::size_t>(i)];
     if (value <= kept.lower[i]) answer.at_lower.push_back(i);
     if (value >= kept.upper[i]) answer.at_upper.push_back(i);
   }
   if (answer.x[0].size() > AnswerPoints::kInline) answer.digest = digest(answer_file(answer));
   return answer;
+}
+
+std::optional<FitData> fit_of(const Trace::Fit& kept) {
+  if (kept.data == 0) return std::nullopt;
+  FitData fit{.target = {kept.target, kept.target + kept.data}, .y = {kept.y, kept.y + kept.data}};
+  if (kept.has_sigma) fit.sigma.assign(kept.sigma, kept.sigma + kept.data);
+  return fit;
 }
 
 std::optional<Failures> failures_of(const FailedEvaluations& kept) {
@@ -587,6 +597,7 @@ Record record_of(const Request& request, const Trace& trace) {
   if (trace.spectra.are_wanted) record.spectrum = spectrum_of(trace.spectra);
   record.uncertainty = uncertainty_of(trace.uncertainty);
   record.answer = answer_of(trace);
+  record.fit = fit_of(trace.fit);
   record.failures = failures_of(trace.failures);
   record.privileges = lines_of(trace.privileges);
   record.foreign = {request.problem.foreign, request.optimizer.foreign};

@@ -21,6 +21,7 @@
 #include "core/records/naming.h"
 #include "core/records/npy.h"
 #include "core/results/answers.h"
+#include "core/results/uncertainty.h"
 #include "core/text.h"
 #include "reports/formats/formats.h"
 #include "reports/sections/answers.h"
@@ -80,7 +81,7 @@ struct Solution {
     return best.empty() ? answer.point(kReturned) : best;
   }
   std::span<const Real> deviations() const {  // of the returned point
-    if (!record->uncertainty) return {};
+    if (results::doubt_of(*record) != results::Doubt::none) return {};
     return record->uncertainty->standard_deviation;
   }
 };
@@ -149,6 +150,8 @@ std::string table_text(const Solution& solution) {
   text += "\n";
   if (!record.message.empty())
     text += fmt::format("  {}\n", reports::terminal_text(record.message));
+  if (const std::string doubt = reports::doubt_text(record); record.uncertainty && !doubt.empty())
+    text += fmt::format("  {}\n", doubt);
   const auto columns = reports::answer_columns(record, solution.answer, "{:.10g}");
   const std::size_t rows = columns[0].texts.size(), shown = std::min(rows, kMostRows);
   for (std::size_t row = 0; row <= shown; ++row) {

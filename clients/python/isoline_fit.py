@@ -99,7 +99,7 @@ def _datum(word, place):
 class _Model:
     """r(z) in this process: counts the calls of forward, and shows progress."""
 
-    def __init__(self, forward, data, x0, sigma, bounds, names, units, fixed, tied, log, prior, progress):
+    def __init__(self, forward, data, x0, sigma, bounds, names, units, fixed, tied, log, weights, prior, progress):
         if isinstance(data, (str, os.PathLike)) or hasattr(data, "itertuples"):
             data = read_data(data)
         self.table = data if isinstance(data, Data) else None
@@ -117,6 +117,11 @@ class _Model:
         self.sigma = None if sigma is None else _spread(sigma, len(self.data), "sigma")
         if sigma is not None and not min(self.sigma) > 0:
             raise Refused("sigma must be positive: the standard deviation of each datum, in units of the data")
+        self.factor = 1.0 if self.sigma is None else 1 / self.sigma  # of the residuals of the data
+        if weights is not None:
+            self.factor = _spread(weights, len(self.data), "weights")
+            if self.sigma is not None or not min(self.factor) > 0:
+                raise Refused("weights must be positive factors of the residuals, and exclude sigma")
         for which, value in fixed.items() if isinstance(fixed, dict) else ():
             self.x0[self.index(which)] = value
         self.tied = {self.index(which): compile(words, f"tied[{which!r}]", "eval") for which, words in (tied or {}).items()}
@@ -133,8 +138,7 @@ class _Model:
                 raise Refused(f"x0 of {self.names[i]} is {self.x0[i]:g}; it must lie in {limits}, and be positive for log=")
         self.lower, self.upper, self.z0 = self.z_of(lower), self.z_of(upper), self.z_of(self.x0)
         self.calls, self.least, self.shown, self.lock = 0, math.inf, time.monotonic(), threading.Lock()
-        spread = 1 if self.sigma is None else self.sigma
-        self.target = np.append(self.data / spread, [0.0] * len(self.prior))
+        self.target = np.append(self.data * self.factor, [0.0] * len(self.prior))
 
     def index(self, which):
         if which not in self.names and which not in range(len(self.names)):
@@ -164,11 +168,11 @@ class _Model:
         return found
 
     def prediction(self, z):
-        """y/σ, then the terms of priors: (m). Their target is self.target."""
+        """y/σ or y times its weight, then the terms of priors: (m). Their target is self.target."""
         x = self.x_of(z)
         with self.lock:
             self.calls += 1
-        y = self.y(x) / (1 if self.sigma is None else self.sigma)
+        y = self.y(x) * self.factor
         y = np.append(y, [(x[i] - mean) / sd for i, (mean, sd) in self.prior.items()])
         self.show(np.sum((y - self.target) ** 2) / 2)
         return y
@@ -210,7 +214,7 @@ class _Model:
         except (TypeError, OSError):
             text = ""
         tied = [(i, words.co_code, words.co_consts, words.co_names) for i, words in self.tied.items()]
-        arrays = [y0, self.target, self.sigma, self.x0, self.z0, self.lower, self.upper, self.is_log]
+        arrays = [y0, self.target, np.atleast_1d(self.factor), self.x0, self.z0, self.lower, self.upper, self.is_log]
         parts = [None if each is None else list(each) for each in arrays]
         parts += [self.names, self.units, tied, self.prior, self.free, text]
         return hashlib.sha1(repr(parts).encode()).hexdigest()[:12]
@@ -317,7 +321,7 @@ def _starts(model, count):
 
 def fit(
     forward, data, x0, sigma=None, bounds=None, names=None, units=None, methods=None, workers=1, *, fixed=(), tied=None,
-    log=(), prior=None, starts=1, work=None, call_time=None, out="results/fit", name="fit", progress=True,
+    log=(), weights=None, prior=None, starts=1, work=None, call_time=None, out="results/fit", name="fit", progress=True,
 ):
     """Fits x so that forward(x) is close to the data; returns a Fit.
 
@@ -335,6 +339,7 @@ def fit(
     fixed: names or numbers of unknowns that stay at x0, or a dict from them to values.
     tied: a dict from names to expressions of other names, such as {"k2": "2 * k1"}.
     log: names of positive unknowns; the method sees their logarithms.
+    weights: factors of the residuals, one or (m), in place of sigma: relative precision, of unknown scale.
     prior: a dict from names to (mean, standard deviation) of a normal distribution; requires sigma.
     starts: so many starts: x0, and points of a Latin hypercube over the bounds. Fit.basins has their ends.
     work: the most forward solves of each run. call_time: a call that takes more seconds has failed; it still ends by itself.
@@ -344,7 +349,7 @@ def fit(
     Raises Refused where arguments are wrong or Isoline refuses them. Ctrl-C raises KeyboardInterrupt after
     Isoline has ended.
     """
-    model = _Model(forward, data, x0, sigma, bounds, names, units, fixed, tied, log, prior, progress)
+    model = _Model(forward, data, x0, sigma, bounds, names, units, fixed, tied, log, weights, prior, progress)
     rows = _starts(model, starts)
     y0 = model.prediction(model.z0)
     if not np.all(np.isfinite(y0)):
@@ -427,7 +432,7 @@ class Fit:
     interval (k, 2): x ± t·sd, 95 %, t with `degrees_of_freedom`; of log= unknowns, symmetric in the logarithm.
     correlation (k, k): NaN where sd is.
         sd, interval and correlation are None where the point is not a fit; `message` says why.
-    loss: ½ Σ ((y - data)/σ)², with σ = 1 where it is unknown, and ½ ((x - mean)/sd)² for each prior.
+    loss: ½ Σ ((y - data)/σ)², with σ = 1/weight where it is unknown, and ½ ((x - mean)/sd)² for each prior.
     p: of the χ² test; None without sigma.
     calls: of forward that this process made. work: forward solves of the best run, as its record counts them.
     status, method: of the run of least loss. message: what one should know; may be empty.
@@ -682,7 +687,13 @@ class Profile:
         if any(u >= t * (1 - self.TOLERANCE) for _, u, *_ in known):
             if min(abs(u - t) for _, u, *_ in known) > 0.02 * t:
                 self.messages.append(f"a limit of {name} is inexact: {self.MOST_POINTS} points did not find it")
-            return fit._z[j] + sign * min(self._crossing(known), room)
+            end = min(self._crossing(known), room)
+            z = min(known, key=lambda each: abs(each[0] - end))[2]
+            bounded = ((z <= self._model.lower) | (z >= self._model.upper)) & ~fit._held
+            if held := [fit.names[self._model.free[i]] for i in np.flatnonzero(bounded) if i != j]:
+                side = "upper" if sign > 0 else "lower"
+                self.messages.append(f"the {side} limit of {name} holds with {', '.join(held)} at a bound; without it, it lies beyond")
+            return fit._z[j] + sign * end
         last, side = known[-1][0], "upper" if sign > 0 else "lower"
         value = self._model.outer(j, fit._z[j] + sign * last)
         end = fit._z[j] + sign * last

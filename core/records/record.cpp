@@ -52,6 +52,10 @@ void require_equal_columns(const Record& record) {
   if (record.spectrum)
     require(record.spectrum->iterations.size() == record.spectrum->sigma.size(),
             "the numbers of its spectra and of their iterations differ");
+  if (const auto& fit = record.fit) {
+    require_length(fit->target.size(), "data", fit->y);
+    if (!fit->sigma.empty()) require_length(fit->target.size(), "data", fit->sigma);
+  }
   if (const auto& known = record.uncertainty) {
     const char* whose = "standard deviations";
     require_length(known->x.size(), whose, known->standard_deviation);
@@ -280,6 +284,12 @@ void fields(Like<Calls> auto& calls, auto& field) {
   field("failed", calls.failed, R"({"type": "integer", "minimum": 0, "description": "Of these"})");
 }
 
+void fields(Like<FitData> auto& fit, auto& field) {
+  field("target", fit.target);
+  field("y", fit.y);
+  field.optional("sigma", fit.sigma, R"({"description": "Standard deviations of the data"})");
+}
+
 void fields(Like<Failures> auto& failures, auto& field) {
   field("total", failures.total, kCountLaw);
   field("x", failures.x,
@@ -373,6 +383,8 @@ void fields(Like<Record> auto& record, auto& field) {
   field.optional(
       "differences", record.differences,
       R"({"description": "Of a J by differences: noise of y in a call, and step, relative"})");
+  field.optional("fit", record.fit,
+                 R"({"description": "The data of a fit, and y at the returned point"})");
   field.optional("calls", record.calls, R"({"description": "To a problem of another program"})");
   field.optional("failures", record.failures, R"({"description": "Evaluations that failed"})");
   field("privileges", record.privileges);

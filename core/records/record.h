@@ -167,6 +167,13 @@ inline std::filesystem::path answer_path(std::filesystem::path record) {
 // damaged or is another run's.
 void read_answer_numbers(AnswerPoints& answer, const std::filesystem::path& path);
 
+// The data of a user's own program, or of a problem with the words of a model, and y at the
+// returned point, in the units of the data.
+struct FitData {
+  std::vector<Real> target, y;
+  std::vector<Real> sigma = {};  // standard deviations; empty where they are unknown
+};
+
 // Evaluations that failed, because the simulator did or its y was not finite: how many, and of the
 // first ones x and the reason.
 struct Failures {
@@ -239,6 +246,7 @@ struct Record {
   Provenance provenance;
   std::optional<Imported> imported;    // of a run that others made: its figures are their claims
   std::optional<AnswerPoints> answer;  // of a direct problem
+  std::optional<FitData> fit;          // of the user's own problem
   std::optional<Failures> failures;    // where any evaluation failed
   std::optional<Calls> calls;          // to a problem of another program
 

@@ -409,6 +409,17 @@ Real student_quantile(Real share, std::size_t freedom) {
   return high;
 }
 
+Real chi_square_tail(Real value, std::size_t freedom) {
+  const Real half = std::max<Real>(value, std::numeric_limits<Real>::min()) / 2;
+  const bool is_odd = freedom % 2 == 1;
+  Real tail = is_odd ? std::erfc(std::sqrt(half)) : 0;
+  for (std::size_t k = 0; k < freedom / 2; ++k) {
+    const Real power = Real(k) + (is_odd ? 0.5 : 0);
+    tail += std::exp(power * std::log(half) - half - std::lgamma(power + 1));
+  }
+  return std::min<Real>(tail, 1);
+}
+
 Real detectable_mean(Real deviation, std::size_t n) {
   constexpr Real kBelow = 0.975, kPower = 0.8;
   if (n < kFewestForInterval) return kNever;

@@ -176,6 +176,8 @@ Real deviation_of(const std::vector<Real>& values);
 
 // The share of Student's t with so many degrees of freedom that lies below the quantile; share > ½.
 Real student_quantile(Real share, std::size_t freedom);
+// P(χ² ≥ value) with so many degrees of freedom; Abramowitz, Stegun (1964), 26.4.4 and 26.4.5.
+Real chi_square_tail(Real value, std::size_t freedom);
 
 // The mean difference over n pairs that the flips find at 0.05 in 80 % of all samples, if
 // differences are as variable as a sample with this deviation: (t(0.975) + t(0.8)) deviation / √n,

@@ -443,7 +443,7 @@ std::vector<Reached> targets_met(const Record& record, const Prices& prices, Aim
       return x_goal(rung(j), *record.x_scale, record.x_floor);
     });
   }
-  if (!record.minimum) return {};
+  if (!record.minimum && !is_of_own_problem(record)) return {};
   if (record.hits) return from_hits(record, prices);
   const Real minimum = best.minimum(record), scale = best.scale(record);
   return from_curve(record, prices, record.curve.loss,

@@ -193,6 +193,11 @@ OracleCounts counts_at(const Record& record, Real work);
 // rounds.
 Real rounds_at(const Record& record, Real work, std::int64_t workers);
 
+// Whether the loss counts from the least one of these records where none is declared.
+inline bool is_of_own_problem(const Record& record) {
+  return record.foreign.problem && !record.imported && !record.request.problem.is_learned;
+}
+
 // The least loss any run of a problem and instance has reached: what distances are measured from
 // where f_L is unknown.
 class BestKnown {
@@ -200,9 +205,12 @@ class BestKnown {
   explicit BestKnown(const Study& study);
   // f_L where it is known; not-a-number where no run of its problem and instance is.
   Real minimum(const Record& record) const;
-  // s of f ≤ f_L + τ s; f₀ − f_L where older records lack it.
+  // s of f ≤ f_L + τ s; f₀ − f_L where older records lack it. Of a user's own problem whose least
+  // loss is that of these runs, at most this loss: s of data with noise.
   Real scale(const Record& record) const {
-    return record.scale.value_or(record.summary.start_loss - minimum(record));
+    const Real least = minimum(record), above = record.summary.start_loss - least;
+    const bool is_of_runs = is_of_own_problem(record) && !record.minimum && least > 0;
+    return record.scale.value_or(is_of_runs && least < above ? least : above);
   }
 
  private:
@@ -219,7 +227,7 @@ struct Reached {
 };
 // The targets τ = 10^(−j/5), j = 0, 1, … until one that it never met. Of losses exact where the
 // record has hits; all else is read at the kept points of its curve. Of losses none where f_L is
-// unknown.
+// unknown, but of a user's own problem.
 std::vector<Reached> targets_met(const Record& record, const Prices& prices, Aim aim,
                                  const BestKnown& best);
 

@@ -264,7 +264,10 @@ std::vector<ProblemAxis> problem_axis(const Study& study) {
     const auto at = std::ranges::find(axis, record.request.problem.spec, &ProblemAxis::spec);
     const bool could_declare = record.status != Status::inapplicable;
     const bool has_loss = could_declare && std::isfinite(record.summary.best_loss);
-    if (has_loss && !record.minimum && !record.imported) at->is_minimum_known = false;
+    if (has_loss && !record.minimum && !record.imported) {
+      at->is_minimum_known = false;
+      at->is_least_of_runs = is_of_own_problem(record);
+    }
     if (record.aim == Aim::x && record.x_scale) at->aim = Aim::x;
     at->is_learned = record.request.problem.is_learned;
     at->noise = record.request.problem.options.number("noise", 0);

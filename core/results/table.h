@@ -68,7 +68,8 @@ struct ProblemAxis {
   const Sheet* sheet = nullptr;  // none where the folder has none
   Prices prices = {};            // measured only where the sheet is of this very spec
   bool is_minimum_known = true;  // otherwise its runs have distances from the best of them alone
-  Aim aim = Aim::loss;           // what its user wants, as its records say
+  bool is_least_of_runs = false;  // and the best of them counts as the least loss: a user's own
+  Aim aim = Aim::loss;            // what its user wants, as its records say
   bool is_learned = false;
   Real noise = 0;           // in its data, over their rms
   bool is_bounded = false;  // its unknowns have bounds
@@ -82,7 +83,9 @@ struct ProblemAxis {
     return least_goal > kMostError;
   }
   // Whether any loss counts as solved, and which, is then unknown.
-  bool lacks_least_loss() const { return !is_minimum_known && aim == Aim::loss && !is_learned; }
+  bool lacks_least_loss() const {
+    return !is_minimum_known && !is_least_of_runs && aim == Aim::loss && !is_learned;
+  }
   // Problems that share an operator; older metadata say nothing of it.
   const std::string& family() const {
     return sheet == nullptr || sheet->family.empty() ? name : sheet->family;

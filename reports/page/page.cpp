@@ -183,6 +183,14 @@ std::string findings_html(const Document& document) {
   return html + "</dl>" + checked_html(document) + "</details>\n";
 }
 
+// The first tab of a report on a user's own problem.
+constexpr const char* kFitLink = "<a href=\"#fit\">Fit</a>\n  ";
+std::string fit_tab(const Section& fit) {
+  return fmt::format(
+      "<section id=\"fit\" class=\"tab\" aria-label=\"{0}\">\n<h2>{0}</h2>\n{1}</section>\n",
+      html_text(fit.title), section_html(fit));
+}
+
 std::string endings_html(const Comparison& c) {
   std::string html = fmt::format("<li><b>{}<small>/{}</small></b>{}</li>", c.answered, c.planned,
                                  html_text(words("page.complete")));
@@ -249,6 +257,7 @@ std::string html_report(const Document& document) {
   const auto is_apart = [](const Table& table) { return table.id != "standings-table"; };
   std::ranges::copy_if(order.tables, std::back_inserter(apart.tables), is_apart);
   std::erase_if(order.tables, is_apart);
+  const auto own = std::ranges::find(document.sections, "fit", &Section::id);
   Parts parts{{"title", html_text(title_of(c))},
               {"style", std::string(embedded_page_css()) + kind_rules(c)},
               {"scripts", packed_text(embedded_page_js())},
@@ -257,6 +266,8 @@ std::string html_report(const Document& document) {
               {"page.ranking",
                html_text(words("page.ranking", counted_name(c), setting_noun(c), tau_name(c)))},
               {"page.heat", html_text(words("page.heat", unit_name(c), success_text(c)))},
+              {"fit-link", own == document.sections.end() ? "" : kFitLink},
+              {"fit-tab", own == document.sections.end() ? "" : fit_tab(*own)},
               {"overview", overview_html(document)},
               {"hero", hero_html(document)},
               {"findings", findings_html(document)},

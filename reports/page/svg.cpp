@@ -214,6 +214,16 @@ std::string series_svg(const Drawing& drawing, const Frame& area, std::size_t pl
   const bool is_off = is_hidden(drawing, line);
   std::string svg = fmt::format("<g{}{}>", line_attributes(line, place, is_off ? "off" : ""),
                                 line.is_worse_at_end ? " data-worse" : "");
+  if (line.are_points) {
+    std::string bars;
+    for (std::size_t i = 0; i < line.low.size(); ++i)
+      bars += fmt::format("M{:.0f} {:.0f}V{:.0f}", area.x(line.x[i]), area.y(line.low[i]),
+                          area.y(line.high[i]));
+    return svg + fmt::format(
+                     "<path class=bars d=\"{}\"/><path class=\"line points\" d=\"{}\"><title>{}"
+                     "</title></path></g>",
+                     bars, path_of(area, line.x, line.y, Join::none), html_text(line.name));
+  }
   if (!line.low.empty() && line.low != line.high && !is_off)
     svg += band_of(area, line, drawing.join);
   std::string path = path_of(area, line.x, line.y, drawing.join);

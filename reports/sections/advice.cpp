@@ -1,10 +1,17 @@
 // The sentences of an advice: which method suits a reader's means.
 #include "core/results/advice.h"
 
+#include <set>
+
 #include "reports/sections/sections.h"
 #include "reports/sections/words.h"
 
 namespace isoline::reports {
+namespace {
+
+constexpr std::size_t kFewestFamilies = 6, kFewestSolved = 3;  // for a recommendation
+
+}  // namespace
 
 std::string means_text(const Means& means) {
   std::string text =
@@ -22,11 +29,25 @@ std::string means_text(const Means& means) {
   return means.budget < kNever ? text + words("means.budget", means.budget) : text;
 }
 
+std::string advised_name(const Comparison& c, const Advised& one) {
+  const std::string name = c.optimizers[one.optimizer].name_of_all();
+  std::set<std::string> specs;
+  for (std::size_t s = 0; s < c.optimizers.size(); ++s) {
+    if (c.optimizers[s].name_of_all() != name) continue;
+    for (const auto& cells : c.cells) {
+      if (cells[s].runs.empty()) continue;
+      const Component& asked = c.runs[cells[s].runs[0]].record->request.optimizer;
+      specs.insert(asked.asked.empty() ? asked.spec : asked.asked);
+    }
+  }
+  return shown_spec(specs.size() == 1 && !c.optimizers[one.optimizer].is_meaning ? *specs.begin()
+                                                                                 : name);
+}
+
 std::string advice_text(const Comparison& c, const Means& means, const Advice& advice) {
-  const auto name = [&](const Advised& one) {
-    const OptimizerAxis& axis = c.optimizers[one.optimizer];
-    return shown_spec(axis.name_of_all());
-  };
+  const auto name = [&](const Advised& one) { return advised_name(c, one); };
+  std::set<std::string> families;
+  for (const std::size_t p : advice.settings) families.insert(c.problems[p].family());
   std::size_t physics = 0;
   for (const std::size_t p : advice.settings) physics += c.problems[p].group() == "physics";
   std::string text;
@@ -35,6 +56,10 @@ std::string advice_text(const Comparison& c, const Means& means, const Advice& a
     const auto is_unknown = [&](std::size_t p) { return c.problems[p].lacks_least_loss(); };
     const auto unknown = std::ranges::count_if(advice.settings, is_unknown);
     if (unknown > 0) text += " " + words("advice.unknown", unknown);
+  } else if (families.size() < kFewestFamilies || advice.ranked[0].solved < kFewestSolved) {
+    const Advised& first = advice.ranked[0];
+    text = words("advice.too-few", means_text(means), families.size(), advice.settings.size(),
+                 name(first), first.solved, tau_name(c), kFewestFamilies, kFewestSolved);
   } else {
     const Advised& first = advice.ranked[0];
     std::vector<std::string> group;

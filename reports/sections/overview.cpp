@@ -37,6 +37,8 @@ Document document_of(Comparison comparison, std::vector<Judgement> claims) {
                        statistics_section(c),
                        failures_section(c),
                        builds_section(c)};
+  if (Section fit = fit_section(c); !fit.is_empty())
+    document.sections.insert(document.sections.begin(), std::move(fit));
   document.figures = figures(c);
   add_published(document.figures, c, document.claims);
   return document;
@@ -183,7 +185,8 @@ std::vector<std::string> remarks(const Comparison& c) {
   if (!named.empty()) all.push_back(words("remarks.imported", joined(named)));
   for (const ProblemAxis& problem : c.problems)
     if (!problem.is_minimum_known)
-      all.push_back(words("remarks.no-minimum", problem_name(problem)));
+      all.push_back(words(problem.is_least_of_runs ? "remarks.least-of-runs" : "remarks.no-minimum",
+                          problem_name(problem)));
   return all;
 }
 

@@ -143,7 +143,7 @@ std::vector<Table> uncertainty_tables(const Comparison& c) {
       if (cell.runs.empty()) continue;
       const Record& record = *c.runs[cell.runs[0]].record;
       const std::optional<Uncertainty>& known = record.uncertainty;
-      if (!known) continue;
+      if (!known || doubt_of(record) != Doubt::none) continue;
       Table table = worded_table("uncertainty", problem_name(c.problems[p]));
       table.id += fmt::format("-{}", p);
       table.topic = {.optimizer = s, .problem = p};

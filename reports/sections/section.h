@@ -68,6 +68,7 @@ struct PlotSeries {
   // low and high may be empty; not-a-number: nothing there
   std::vector<Real> x = {}, y = {}, low = {}, high = {};
   bool is_worse_at_end = false;  // the answer that it returned is worse than the line's best
+  bool are_points = false;       // no line; low and high are then bars
 };
 
 struct Plot {

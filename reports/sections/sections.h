@@ -11,6 +11,7 @@
 #include "core/results/advice.h"
 #include "core/results/ranking.h"
 #include "core/results/statistics.h"
+#include "core/results/uncertainty.h"
 #include "reports/sections/claims.h"
 #include "reports/sections/figures.h"
 #include "reports/sections/section.h"
@@ -22,6 +23,7 @@ using namespace results;
 using Audits = std::vector<AuditedOptimizer>;
 using Plots = std::vector<Plot>;  // none where there is too little to show
 
+Section fit_section(const Comparison& comparison);  // of a user's own problems; empty without one
 Section standings_section(const Comparison& comparison);
 Section problems_section(const Comparison& comparison);  // a sentence each, and the matrix
 Section learned_section(const Comparison& comparison);
@@ -82,6 +84,8 @@ std::vector<std::string> limits_of_evidence(const Comparison& comparison);
 
 // Sentences on a reader's means, and on the advice for them.
 std::string means_text(const Means& means);
+// With the options that it was run with, where these are the same everywhere.
+std::string advised_name(const Comparison& comparison, const Advised& one);
 std::string advice_text(const Comparison& comparison, const Means& means, const Advice& advice);
 
 // The statistics. A new one is a function here, in one of the two lists of statistics.cpp.

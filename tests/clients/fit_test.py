@@ -206,6 +206,18 @@ class Fits(unittest.TestCase):
         with self.assertRaises(isoline.Refused):
             self.fit(line, data, {"a": 0, "b": 1}, prior={"b": (1, 0.1)})
 
+    def test_weights_are_factors_of_residuals_without_a_scale(self):
+        line = lambda x: [x[0] + x[1] * t for t in (0, 1, 2, 3)]
+        data, sigma = [1.1, 2.9, 5.2, 6.8], [0.1, 0.2, 0.4, 0.8]
+        known = self.fit(line, data, {"a": 0, "b": 1}, sigma=sigma)
+        weighted = self.fit(line, data, {"a": 0, "b": 1}, weights=[3 / each for each in sigma])
+        self.assertNear(weighted.x, known.x, 1e-8)
+        self.assertNear(weighted.sd, known.sd, 1e-6)  # by the residuals in both
+        self.assertAlmostEqual(weighted.loss, 9 * known.loss, delta=1e-6 * weighted.loss)
+        self.assertIsNone(weighted.p)
+        with self.assertRaises(isoline.Refused):
+            self.fit(line, data, {"a": 0, "b": 1}, weights=[1, 1, 1, 1], sigma=1)
+
     def test_names_the_minima_of_several_starts(self):
         result = self.fit(lambda x: [x[0] ** 2 - 4, 0.5 * (x[0] - 2)], [0, 0], [-1], bounds=(-3, 3), starts=5)
         self.assertEqual(sum(count for count, _, _ in result.basins), 5)
@@ -225,6 +237,15 @@ class Fits(unittest.TestCase):
         self.assertEqual(profile.interval[0][1], math.inf)
         self.assertNear(profile.interval[0][:1], [69.28], 0.01)
         self.assertIn("half", profile.messages[0])
+
+        parabola = lambda x: [x[0] * s + x[1] * s * s for s in t]
+        data = [1.2, 1.9, 3.3, 3.8, 5.2, 5.9]
+        free = self.fit(parabola, data, [1, 0], names=["a", "b"])
+        most = free.x[1] + 0.2 * free.sd[1]
+        held = self.fit(parabola, data, [1, free.x[1]], names=["a", "b"], bounds=([-9, -9], [9, most]))
+        profile = held.profile(["a"])
+        self.assertGreater(profile.interval[0][0], free.profile(["a"]).interval[0][0])  # narrower
+        self.assertTrue(any("lower limit" in each and "b at a bound" in each for each in profile.messages), profile.messages)
 
         def forward(x):
             if x[0] > 2.68:

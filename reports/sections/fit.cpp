@@ -1,0 +1,220 @@
+// The fit of a user's own problem: the first section of its report.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <span>
+
+#include "core/results/uncertainty.h"
+#include "reports/sections/answers.h"
+#include "reports/sections/sections.h"
+#include "reports/sections/words.h"
+
+namespace isoline::reports {
+namespace {
+
+// A run with its data and its point, both whole.
+bool is_fit(const Run& run) {
+  const Record& record = *run.record;
+  return record.fit && record.answer && !record.answer->point(kReturned).empty() &&
+         std::isfinite(record.summary.loss) && !run.is_repeated;
+}
+
+std::vector<const Run*> fits_of(const Comparison& c, std::size_t problem) {
+  std::vector<const Run*> fits;
+  for (const Run& run : c.runs)
+    if (run.problem == problem && is_fit(run)) fits.push_back(&run);
+  std::ranges::stable_sort(fits, {}, [](const Run* run) { return run->record->summary.loss; });
+  // A confirmed minimum comes first of losses that differ by noise.
+  constexpr Real kNoise = 1e-5;
+  for (std::size_t i = 0; i < fits.size(); ++i) {
+    const Record &first = *fits[0]->record, &record = *fits[i]->record;
+    if (record.summary.loss > (1 + kNoise) * first.summary.loss) break;
+    if (doubt_of(record) == Doubt::not_minimum) continue;
+    std::rotate(fits.begin(), fits.begin() + std::ptrdiff_t(i),
+                fits.begin() + std::ptrdiff_t(i) + 1);
+    break;
+  }
+  return fits;
+}
+
+Table parameters_table(const std::string& problem, const Record& record) {
+  const AnswerPoints& answer = *record.answer;
+  const std::span<const Real> x = answer.point(kReturned);
+  const bool is_known = doubt_of(record) == Doubt::none;
+  Table table =
+      is_known ? worded_table("fit-parameters", problem, record.uncertainty->degrees_of_freedom)
+               : worded_table("fit-values", problem);
+  const auto intervals = is_known ? intervals_of(record) : std::vector<XInterval>();
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    std::vector<TableCell> row = {
+        answer.name(i), answer.unit(i), {fmt::format("{:.7g}", x[i]), {{"x", x[i]}}}};
+    const std::string bound = answer.bound(i);
+    std::string note = bound.empty() ? "" : words("fit.held", bound);
+    if (is_known && std::isfinite(intervals[i].half)) {
+      const auto& [half, low, high] = intervals[i];
+      row.push_back({fmt::format("{:.2g}", half), {{"half", half}}});
+      row.push_back(number_cell("deviation", record.uncertainty->standard_deviation[i]));
+      row.push_back({fmt::format("{:.5g} … {:.5g}", low, high), {{"low", low}, {"high", high}}});
+    } else if (is_known) {
+      if (note.empty()) note = words("fit.constant");
+      row.insert(row.end(), 3, "");
+    }
+    row.emplace_back(note);
+    table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
+Table correlation_table(const std::string& problem, const Record& record) {
+  Table table = worded_table("fit-correlation", problem);
+  const auto& correlation = record.uncertainty->correlation;
+  table.align = "l" + std::string(correlation.size(), 'r');
+  for (std::size_t i = 0; i < correlation.size(); ++i) {
+    table.columns.push_back(record.answer->name(i));
+    table.rows.push_back({record.answer->name(i)});
+    for (const Real value : correlation[i])
+      table.rows.back().push_back(
+          std::isfinite(value) ? TableCell{fmt::format("{:.2f}", value), {{"correlation", value}}}
+                               : TableCell(""));
+  }
+  return table;
+}
+
+bool are_one_minimum(const Record& a, const Record& b) {
+  constexpr Real kLoss = 1e-4, kX = 1e-2;
+  if (!(std::abs(a.summary.loss - b.summary.loss) <=
+        kLoss * std::min(a.summary.loss, b.summary.loss)))
+    return false;
+  const auto x = a.answer->point(kReturned), z = b.answer->point(kReturned);
+  return std::ranges::equal(x, z, [&](Real one, Real other) {
+    return std::abs(one - other) <= kX * std::max(std::abs(one), std::abs(other));
+  });
+}
+
+Table basins_table(const std::string& problem, const std::vector<const Run*>& fits) {
+  constexpr std::size_t kShown = 12;  // minima, and unknowns
+  std::vector<std::pair<const Record*, std::size_t>> basins;
+  for (const Run* run : fits) {
+    const auto same = std::ranges::find_if(
+        basins, [&](const auto& basin) { return are_one_minimum(*basin.first, *run->record); });
+    if (same == basins.end())
+      basins.emplace_back(run->record, 1);
+    else
+      ++same->second;
+  }
+  Table table = worded_table("fit-basins", problem);
+  for (std::size_t i = 0; i < std::min(kShown, basins.size()); ++i) {
+    const auto& [record, runs] = basins[i];
+    const auto x = record->answer->point(kReturned);
+    std::vector<std::string> values;
+    for (std::size_t j = 0; j < std::min(kShown, x.size()); ++j)
+      values.push_back(fmt::format("{} = {:.6g}", record->answer->name(j), x[j]));
+    table.rows.push_back({count_cell(runs), number_cell("loss", record->summary.loss),
+                          joined(values, ", ") + (x.size() > kShown ? ", …" : "")});
+  }
+  return table;
+}
+
+// Empty where none failed.
+Table failures_table(const std::string& problem, const Comparison& c, std::size_t p) {
+  constexpr std::size_t kShown = 12;
+  std::map<std::string, std::size_t> counts;
+  for (const Run& run : c.runs)
+    if (run.problem == p && run.record->failures && !run.is_repeated)
+      for (const std::string& reason : run.record->failures->reasons) ++counts[reason];
+  if (counts.empty()) return {};
+  std::vector<std::pair<std::string, std::size_t>> order(counts.begin(), counts.end());
+  std::ranges::stable_sort(order, std::ranges::greater{},
+                           [](const auto& each) { return each.second; });
+  Table table = worded_table("fit-failures", problem);
+  for (std::size_t i = 0; i < std::min(kShown, order.size()); ++i)
+    table.rows.push_back({count_cell(order[i].second), order[i].first});
+  return table;
+}
+
+Plot fit_plot(const std::string& problem, const FitData& fit, bool is_of_residuals) {
+  Plot plot =
+      is_of_residuals ? worded_plot("plot-residuals", problem) : worded_plot("plot-fit", problem);
+  plot.kind = Plot::Kind::lines;
+  PlotSeries points{.name = words(is_of_residuals ? "plot-residuals.residual" : "plot-fit.data"),
+                    .are_points = true},
+      line{.name = words(is_of_residuals ? "plot-residuals.zero" : "plot-fit.fit")};
+  for (std::size_t i = 0; i < fit.target.size(); ++i) {
+    const Real at = is_of_residuals ? fit.y[i] - fit.target[i] : fit.target[i];
+    points.x.push_back(Real(i + 1));
+    points.y.push_back(at);
+    if (!fit.sigma.empty()) {
+      points.low.push_back(at - fit.sigma[i]);
+      points.high.push_back(at + fit.sigma[i]);
+    }
+    line.x.push_back(Real(i + 1));
+    line.y.push_back(is_of_residuals ? 0 : fit.y[i]);
+  }
+  plot.series = {std::move(points), std::move(line)};
+  return plot;
+}
+
+Plot calls_plot(const std::string& problem, const std::vector<const Run*>& fits,
+                const Comparison& c) {
+  Plot plot = worded_plot("plot-calls", problem);
+  plot.kind = Plot::Kind::lines;
+  plot.is_log_y = true;
+  std::set<std::size_t> seen;
+  for (const Run* run : fits) {
+    if (seen.size() == kMostLines || !seen.insert(run->optimizer).second) continue;
+    PlotSeries line{.optimizer = run->optimizer,
+                    .name = optimizer_name(c.optimizers[run->optimizer])};
+    const Curve& curve = run->record->curve;
+    Real least = kNever;
+    for (std::size_t i = 0; i < curve.loss.size(); ++i) {
+      if (std::isfinite(curve.loss[i])) least = std::min(least, curve.loss[i]);
+      if (!(least > 0 && least < kNever)) continue;
+      line.x.push_back(Real(curve.work[i]));
+      line.y.push_back(least);
+    }
+    if (line.x.size() > 1) plot.series.push_back(std::move(line));
+  }
+  return plot;
+}
+
+}  // namespace
+
+Section fit_section(const Comparison& c) {
+  Section section = worded_section("fit");
+  for (std::size_t p = 0; p < c.problems.size(); ++p) {
+    const auto fits = fits_of(c, p);
+    if (fits.empty()) continue;
+    const Record& record = *fits[0]->record;
+    const std::string problem = problem_name(c.problems[p]);
+    std::string text = words("fit.summary", problem, optimizer_text(c, fits[0]->optimizer),
+                             std::string(name_of(record.status)), record.summary.loss,
+                             record.summary.work, record.fit->target.size());
+    const Doubt doubt = doubt_of(record);
+    if (doubt != Doubt::none) text += " " + doubt_text(record);
+    if (const auto test = noise_test(record); test && doubt == Doubt::none)
+      text += " " + words("fit.test", test->chi_square, test->freedom, test->p);
+    if (!record.message.empty()) text += " " + record.message;
+    section.readings.push_back({"", text});
+    std::vector<Table> tables = {parameters_table(problem, record)};
+    if (doubt == Doubt::none && record.uncertainty->x.size() > 1)
+      tables.push_back(correlation_table(problem, record));
+    if (fits.size() > 1) tables.push_back(basins_table(problem, fits));
+    if (Table failures = failures_table(problem, c, p); !failures.rows.empty())
+      tables.push_back(std::move(failures));
+    for (Table& table : tables) {
+      table.id += fmt::format("-{}", p);
+      section.tables.push_back(std::move(table));
+    }
+    for (Plot& plot :
+         std::vector{fit_plot(problem, *record.fit, false), fit_plot(problem, *record.fit, true),
+                     calls_plot(problem, fits, c)}) {
+      plot.id += fmt::format("-{}", p);
+      if (!plot.series.empty()) section.plots.push_back(plot);
+    }
+  }
+  return section;
+}
+
+}  // namespace isoline::reports
