@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "core/text.h"
 
@@ -15,10 +16,24 @@ struct CallReport {
   std::int64_t afresh = 0, afresh_failed = 0;  // made again to compare with known answers
 };
 
-inline CallReport& call_report() {
-  static CallReport report;
-  return report;
+// Where this process counts: its own, or that in the trace of the cell that it runs.
+inline CallReport*& call_sink() {
+  static CallReport own;
+  static CallReport* sink = &own;
+  return sink;
 }
+inline CallReport& call_report() { return *call_sink(); }
+
+class CallSink {
+ public:
+  explicit CallSink(CallReport& report) : before_(std::exchange(call_sink(), &report)) {}
+  ~CallSink() { call_sink() = before_; }
+  CallSink(const CallSink&) = delete;
+  CallSink& operator=(const CallSink&) = delete;
+
+ private:
+  CallReport* before_;
+};
 
 // A sentence for the user, once in a process. The line goes to the output of a cell, from
 // where the process that runs the cells passes it on.

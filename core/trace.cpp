@@ -181,7 +181,9 @@ std::string defect_of(const Trace& trace) {
   if (!are_sound(trace.failures)) return "failed evaluations of an invalid number";
   if (!are_texts_sound(trace)) return "an unterminated text";
   if (!are_series_sound(trace)) return "more series than the trace has room for";
-  if (!are_amounts(trace.prices) || !is_amount(trace.rejected_steps)) return "invalid counts";
+  if (!are_amounts(trace.prices) || !is_amount(trace.rejected_steps) ||
+      !is_amount(trace.calls.made) || !is_amount(trace.calls.answered))
+    return "invalid counts";
   return "";
 }
 

@@ -12,6 +12,7 @@
 #include <string>
 #include <string_view>
 
+#include "core/calls.h"
 #include "core/failures.h"
 #include "core/oracle.h"
 #include "core/status.h"
@@ -172,6 +173,7 @@ struct Trace {
     double target[kData], y[kData], sigma[kData];
   };
   Fit fit;
+  CallReport calls;
 };
 
 // The part that fits, cut at a character.

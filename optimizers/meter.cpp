@@ -330,10 +330,13 @@ void Meter::persist(Archive& archive) {
           known_by_.step, known_by_.is_central, enough_of_deviation_, start_gradient_, origin_,
           in_a_row_.x, in_a_row_.repeats, in_a_row_.failed, in_a_row_.known);
   const bool are_spectra_wanted =
-      trace_.spectra.are_wanted;        // the caller decides this, not the file
+      trace_.spectra.are_wanted;  // the caller decides this, not the file
+  const CallReport since = trace_.calls;
   archive.raw(&trace_, sizeof trace_);  // plain data; no reader waits for its atomics
   trace_.spectra.are_wanted = are_spectra_wanted;
   if (!archive.is_reading()) return;
+  trace_.calls.made += since.made;
+  trace_.calls.answered += since.answered;
   // The state from a file must be valid for this run: all sizes and counts are in their ranges.
   const Index n = problem_.unknowns();
   const bool is_sound = targets_met_ >= 0 && targets_met_ <= kRungs && iteration_ >= 0 &&

@@ -39,7 +39,9 @@ class Session {
         key_(given.command, declared, seed),
         failures_allowed_(given.failures > 0 ? given.failures
                                              : std::max<Index>(100, 10 * said().inputs)),
-        announced_point_(take_point()) {}
+        announced_point_(take_point()) {
+    workers_.on_finished([this](const Workers::Finished& call) { keep_announced(call); });
+  }
 
   const ProblemHandshake& said() const { return workers_.said(); }
   int starts() const { return workers_.starts(); }
@@ -68,15 +70,12 @@ class Session {
     is_late_ = false;
     const std::string why = is_announced ? answered(verb, [&] { workers_.take(answer); })
                                          : ask_program(verb, number, sent, answer);
-    const bool is_repeated = Afresh::is_on() && store.has(key_, verb, request);
-    if (!is_repeated)
-      store.keep(key_, verb, request, answer, why,
-                 1e-9 * static_cast<double>(monotonic_nanoseconds() - begin), is_late_);
-    CallReport& report = call_report();
-    ++report.made;
+    if (!is_announced)
+      keep(verb, request, answer, why, 1e-9 * static_cast<double>(monotonic_nanoseconds() - begin),
+           is_late_, !has_own_products());
     if (Afresh::is_on() && verb == Verb::linearize) {
-      ++report.afresh;
-      if (!why.empty()) ++report.afresh_failed;
+      ++call_report().afresh;
+      if (!why.empty()) ++call_report().afresh_failed;
     }
     return why;
   }
@@ -84,6 +83,7 @@ class Session {
   // The call to the first program, without the store.
   std::string ask_program(Verb verb, std::uint32_t number,
                           std::span<const std::span<const Real>> numbers, std::span<Real> answer) {
+    ++call_report().made;
     const std::string why = answered(verb, [&] { workers_.ask(verb, number, numbers, answer); });
     workers_.restart_if_lost();
     return why;
@@ -114,6 +114,40 @@ class Session {
   static constexpr int kNowhere = -1;
 
  private:
+  // A product needs a program that knows its point.
+  bool has_own_products() const {
+    const OracleSet& own = said().oracles;
+    return own.contains(Oracle::pullback) || own.contains(Oracle::pushforward) ||
+           own.contains(Oracle::jacobian);
+  }
+  void keep(Verb verb, Evaluations::Numbers request, std::span<const Real> answer,
+            const std::string& why, double seconds, bool is_late, bool is_remembered) {
+    const bool is_repeated = Afresh::is_on() && evaluations().has(key_, verb, request);
+    if (!is_repeated)
+      evaluations().keep(key_, verb, request, answer, why, seconds, is_late, is_remembered);
+  }
+
+  // Before it is taken, since this process may be killed first.
+  void keep_announced(const Workers::Finished& call) {
+    ++call_report().made;
+    const std::array<std::span<const Real>, 2> request = {std::span<const Real>(), call.x};
+    try {
+      if (call.error) std::rethrow_exception(call.error);
+      keep(Verb::linearize, request, call.y, "", call.seconds, false, false);
+    } catch (const FailedCall& error) {
+      const bool is_late = dynamic_cast<const LateProgram*>(&error) != nullptr;
+      if (!is_late || ends_one_call_when_late())
+        keep(Verb::linearize, request, {}, reason_of(error), call.seconds, is_late, false);
+    } catch (const std::exception&) {  // no answer
+      return;
+    }
+  }
+
+  bool ends_one_call_when_late() const { return has_answered_ && has_call_time_; }
+  static std::string reason_of(const FailedCall& error) {
+    return error.reason.empty() ? "the program names no reason" : error.reason;
+  }
+
   std::string answered(Verb verb, const auto& ask) {
     try {
       ask();
@@ -122,13 +156,13 @@ class Session {
       return "";
     } catch (const FailedCall& error) {
       is_late_ = dynamic_cast<const LateProgram*>(&error) != nullptr;
-      if (is_late_ && !(has_answered_ && has_call_time_))
+      if (is_late_ && !ends_one_call_when_late())
         throw LineError(fmt::format(
             "{}; process[…,call-time=SECONDS] sets another limit, and lets such calls fail where "
             "the program answers others",
             error.what()));
       count_failure(verb, error.what());
-      return error.reason.empty() ? "the program names no reason" : error.reason;
+      return reason_of(error);
     }
   }
   void count_failure(Verb verb, const std::string& why) {  // empty: none

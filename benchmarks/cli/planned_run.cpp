@@ -167,8 +167,8 @@ void declare_run(VerbArguments& verb, RunArguments& given) {
   verb.flag("--keep-output", given.keeps_output,
             "Keep the output of each cell in its record, up to 64 KiB");
   verb.flag("--log-evaluations", given.logs_evaluations,
-            "Log every call of problems from other programs until the run ends, so that a run that "
-            "was killed repeats none of them (default: if the first call takes 0.1 s or longer)");
+            "Keep every call of problems from other programs in the store of evaluations, which "
+            "answers later calls (default: calls that take 0.1 s or longer)");
   verb.flag(
       "--fields", given.keeps_fields,
       "For problems on a grid, keep x at six iterations for every seed (default: only for seed 0)");

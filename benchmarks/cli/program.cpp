@@ -99,6 +99,9 @@ int code_of(const std::string& program, int count, char** arguments, benchmarks:
     return left_with(kUsage, program, error.what());
   } catch (const std::bad_alloc&) {
     return left_with(kWorse, program, "out of memory");
+  } catch (const std::filesystem::filesystem_error& error) {
+    return left_with(kWorse, program,
+                     fmt::format("{}: {}", error.path1().string(), error.code().message()).c_str());
   } catch (const std::exception& error) {
     return left_with(kWorse, program, error.what());
   }

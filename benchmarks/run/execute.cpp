@@ -56,6 +56,7 @@ void note_failures(Trace& trace) {
 
 void run(const Catalog& catalog, const Request& request, Trace& trace, Checkpoint& checkpoint,
          Vector* returned, int perturbation) {
+  const CallSink calls(trace.calls);
   const Problem problem = make_for_methods(catalog, request.problem, request.seed);
   const OptimizerEntry& entry = catalog.optimizers.at(request.optimizer.name);
   const std::string reason = why_inapplicable(entry, request.optimizer.options, problem);

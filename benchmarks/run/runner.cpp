@@ -427,6 +427,11 @@ class Runner {
     if (!is_elsewhere(task.request->problem)) return;
     for (const std::string& remark : remarks_in(workers_[slot].output().text()))
       store_.remark(fmt::format("{}: {}", title_of(*task.request), remark));
+    const CallReport& made = workers_[slot].trace().calls;
+    record.calls = Calls{.made = made.made,
+                         .answered = made.answered,
+                         .verified = task.verdict.afresh,
+                         .failed = task.verdict.afresh_failed};
     if (task.verdict.afresh > task.verdict.afresh_failed) return;
     for (auto* each : {&record.verified, &record.found})
       for (auto& [tolerance, is_met] : *each) is_met.reset();

@@ -339,10 +339,6 @@ std::string check_stem(const Component& problem) {
 
 }  // namespace
 
-fs::path Store::check_path(const Component& problem, std::uint64_t seed) const {
-  return folder_ / "checkpoints" / fmt::format("{}{}.calls", check_stem(problem), seed);
-}
-
 void Store::remove_checks(const Component& problem) const {
   for (const std::string& name : names_in(folder_ / "checkpoints"))
     if (std::error_code missing; name.starts_with(check_stem(problem)))

@@ -58,7 +58,6 @@ class Store {
   std::filesystem::path checkpoint_path(const Request& request) const;
   void remove_checkpoint(const Request& request) const;
   // The calls of the checks of a problem of another program and of its metadata, at a seed.
-  std::filesystem::path check_path(const Component& problem, std::uint64_t seed) const;
   void remove_checks(const Component& problem) const;
   // States of runs of this build that differ from the request in their budget of iterations and
   // work alone: what their files' names begin with; the file of one that needs this budget; and the

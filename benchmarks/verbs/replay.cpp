@@ -70,7 +70,14 @@ int replay(const std::string& path, const ReplayArguments& given, Session& sessi
         "{0} is a folder: pass the files of records, such as {0}/runs/*.json, or --sample 20",
         path);
   });
-  const Record record = read_unchecked_record(path);
+  const Record record = [&] {
+    try {
+      return read_unchecked_record(path);
+    } catch (const UsageError& error) {
+      const std::string why = error.what();
+      throw UsageError(why.find(path) == why.npos ? path + ": " + why : why);
+    }
+  }();
   require_trust(given.trust, record);
   const std::string title = fmt::format("{}: {}", path, title_of(record.request));
   Request request;

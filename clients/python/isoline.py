@@ -29,6 +29,7 @@ import subprocess
 import sys
 import tempfile
 import threading
+import warnings
 import zlib
 
 try:
@@ -534,7 +535,9 @@ class command:
     """
 
     def __init__(self, run, template, read=None, input=None, files=(), seconds=None, instructions=None):
-        self.read, self.seconds = read, seconds
+        if seconds is not None and not 0 < float(seconds) <= 1e6:
+            raise Refused(f"seconds must be a positive number of at most 1e6, or None, got {seconds!r}")
+        self.read, self.seconds = read, seconds and float(seconds)
         self.files = [os.path.abspath(each) for each in files]
         self.input = input or os.path.splitext(os.path.basename(template))[0] + ".txt"
         self.words = [
@@ -542,7 +545,7 @@ class command:
             for word in shlex.split(run)
         ]
         self.instructions = _instructions(instructions) if instructions else None
-        with open(template, encoding="utf-8") as file:
+        with open(template, encoding="utf-8", errors="surrogateescape") as file:
             text = file.read()
         marked = re.match(r"ptf[ \t]+(\S)[^\n]*\n", text, re.IGNORECASE)
         self.is_pest = marked is not None
@@ -559,7 +562,7 @@ class command:
                     f"begin the file with a line 'ptf {self.mark}', which keeps their widths"
                 )
         for field in fields:
-            if not field.strip() or "\n" in field:
+            if not field.strip().isprintable() or not field.strip() or "\n" in field:
                 raise Refused(f"{template}: a field must be {self.mark} name {self.mark} in one line, got {field!r}")
         typed = {field.strip().lower(): field.strip() for field in reversed(fields)}
         self.names = [typed[name] for name in dict.fromkeys(field.strip().lower() for field in fields)]
@@ -594,7 +597,7 @@ class command:
         with tempfile.TemporaryDirectory(prefix=f"{_folder_prefix()}{os.getpid()}-", ignore_cleanup_errors=True) as folder:
             for path in self.files:
                 os.symlink(path, os.path.join(folder, os.path.basename(path)))
-            with open(os.path.join(folder, self.input), "w", encoding="utf-8") as file:
+            with open(os.path.join(folder, self.input), "w", encoding="utf-8", errors="surrogateescape") as file:
                 file.write("".join(parts))
             return self._results(folder, self._printed(folder))
 
@@ -633,13 +636,14 @@ class command:
                 printed = file.read()
         numbers = _read_by(self.instructions, printed, name) if self.instructions else _numbers(printed, name)
         if not numbers:
-            raise RuntimeError(f"{name} contains no numbers")
+            near = re.search(r"(?<!\S)[+-]*\.?[0-9]\S*", printed)
+            raise RuntimeError(f"{name} contains no numbers" + (f"; {near[0][:64]!r} is not a number" if near else ""))
         return numbers
 
 
 # As programs write them; Fortran has the exponents d and q, and none before three digits.
 _NUMBER = re.compile(
-    r"[+-]?(?:(?:\d+\.?\d*|\.\d+)(?:[eEdDqQ][+-]?\d+)?|(?:\d+\.\d*|\.\d+)[+-]\d{3}|nan|inf(?:inity)?)", re.IGNORECASE
+    r"[+-]?(?:(?:\d+\.?\d*|\.\d+)(?:[eEdDqQ][+-]?\d+)?|(?:\d+\.\d*|\.\d+)[+-]\d{3}|nan|inf(?:inity)?)", re.ASCII | re.IGNORECASE
 )
 _LIKE_NUMBER = re.compile(r"[+-]?\.?\d[\d_.eEdDqQ+-]*")
 _OVERFLOW = re.compile(r"[+-]?\*{2,25}")
@@ -673,13 +677,14 @@ def _numbers(text, name):
 
 def _instructions(path):
     """The instruction lines of a file of PEST, each a list of words."""
-    with open(path, encoding="utf-8") as file:
+    with open(path, encoding="utf-8", errors="replace") as file:
         lines = file.read().splitlines()
     first = re.match(r"pif[ \t]+(\S)\s*$", lines[0] if lines else "", re.IGNORECASE)
     if not first:
         raise Refused(f"{path}: the first line of an instruction file must be 'pif' and a mark, such as 'pif @'")
     mark = re.escape(first[1])
-    word = re.compile(rf"\s*({mark}[^{mark}]+{mark}|![^!\s]+!|\[[^\]\s]+\]\d+:\d+|\([^)\s]+\)\d+:\d+|[lLtT]\d+|[wW]|&)(?=\s|$)")
+    places = r"\d{1,9}:\d{1,9}"
+    word = re.compile(rf"\s*({mark}[^{mark}]+{mark}|![^!\s]+!|\[[^\]\s]+\]{places}|\([^)\s]+\){places}|[lLtT]\d{{1,9}}|[wW]|&)(?=\s|$)")
     all_lines = []
     for number, line in enumerate(lines[1:], 2):
         words, at = [], 0
@@ -689,10 +694,14 @@ def _instructions(path):
                 raise Refused(f"{path}, line {number}: cannot read the instruction {line[at:].strip()!r}")
             words.append(found[1])
             at = found.end()
-        if words[:1] == ["&"] and all_lines:
+        if "&" in (words[1:] if all_lines else words):
+            raise Refused(f"{path}, line {number}: & continues the line before it, and stands first")
+        if words[:1] == ["&"]:
             all_lines[-1] += words[1:]
         elif words:
             all_lines.append(words)
+    if not any(word[0] in "![(" and word.lower() != "!dum!" for words in all_lines for word in words):
+        raise Refused(f"{path} names no observation")
     return first[1], all_lines
 
 
@@ -1070,19 +1079,30 @@ def load(*folders, only=None):
         for file in sorted(os.scandir(os.path.join(folder, "runs")), key=lambda one: one.name):
             if not file.name.endswith(".json"):
                 continue
-            with open(file.path, encoding="utf-8") as text:
-                record = json.load(text)
-            key = {name: record[name] for name in KEYS}
-            pair = (record["cell"], record["build"])
-            if pair in known or (only is not None and pair not in only):
+            parts = []
+            try:
+                with open(file.path, encoding="utf-8") as text:
+                    record = json.load(text)
+                key = {name: record[name] for name in KEYS}
+                pair = (record["cell"], record["build"])
+                if pair in known or (only is not None and pair not in only):
+                    continue
+                row = {**key, **_run(record)}
+                for part, frames in (("curve", curves), ("hits", hits)):
+                    if record.get(part):
+                        columns = _columns_of(record[part])
+                        length = len(columns["work"])
+                        if any(len(column) > length for column in columns.values()):
+                            raise ValueError("its columns differ in length")
+                        parts.append((frames, {**{name: [value] * length for name, value in key.items()}, **columns}))
+            except (ValueError, LookupError, TypeError, AttributeError, RecursionError):
+                if only is None:
+                    warnings.warn(f"{file.path} is left out: it is not a record, see `isoline validate`", stacklevel=2)
                 continue
             known.add(pair)
-            runs.append({**key, **_run(record)})
-            for part, frames in (("curve", curves), ("hits", hits)):
-                if record.get(part):
-                    columns = _columns_of(record[part])
-                    length = len(columns["work"])
-                    frames.append({**{name: [value] * length for name, value in key.items()}, **columns})
+            runs.append(row)
+            for frames, columns in parts:
+                frames.append(columns)
     return Results(pandas.DataFrame(runs, columns=None if runs else KEYS), _stacked(pandas, curves),
                    _stacked(pandas, hits))
 

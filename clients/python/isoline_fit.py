@@ -57,10 +57,12 @@ def read_data(source, y="y", sigma="sigma"):
     y: the column of measured values. sigma: that of their standard deviations, in units of y, if there is one.
     Raises Refused, with the line, for a missing value, and for a word that is not a number, in any column.
     """
-    rows = _rows_of_file(source) if isinstance(source, (str, os.PathLike)) else _rows_of_frame(source)
+    is_file = isinstance(source, (str, os.PathLike))
+    rows = _rows_of_file(source) if is_file else _rows_of_frame(source)
     names = next(rows)
     if names.count(y) != 1 or len(set(names)) < len(names):
-        raise Refused(f"the data must have one column {y!r} and no name twice, got {', '.join(names)}; y= sets another name")
+        raise Refused(f"{source if is_file else 'the data'} must have one column {y!r} and no name twice, "
+                      f"got {', '.join(names)[:200]}; y= sets another name")
     columns = []
     for place, row in rows:
         if len(row) != len(names):
@@ -70,7 +72,7 @@ def read_data(source, y="y", sigma="sigma"):
 
 
 def _rows_of_file(path):
-    with open(path, newline="", encoding="utf-8-sig") as file:
+    with open(path, newline="", encoding="utf-8-sig", errors="replace") as file:
         header = file.readline()
         mark = next((mark for mark in ";\t" if mark in header), ",")
         yield [name.strip() for name in header.split(mark)]
@@ -85,8 +87,8 @@ def _rows_of_frame(frame):
 
 def _datum(word, place):
     try:
-        value = float(word)
-    except (TypeError, ValueError):
+        value = isoline._number(word.strip(), place) if isinstance(word, str) else float(word)
+    except (TypeError, ValueError, RuntimeError):
         value = math.nan
     if not math.isfinite(value):
         raise Refused(f"{place}: expected a number, found {str(word).strip() or 'an empty field'}; complete or remove this row")

@@ -176,6 +176,7 @@ void Workers::hand_out() {
       again_.pop_back();
     }
     worker.waited = 0;
+    worker.begun = monotonic_nanoseconds();
     worker.state = State::busy;
     const std::span<const Real> x = numbers_of(calls_[worker.call].x);
     try {
@@ -259,6 +260,8 @@ void Workers::end_call(Worker& worker, const auto& exchange) {
     worker.state = State::lost;
   }
   call.is_done = true;
+  const double seconds = 1e-9 * static_cast<double>(monotonic_nanoseconds() - worker.begun);
+  act_({numbers_of(call.x), numbers_of(call.y), call.error, seconds});
   if (is_lost) guarded(worker, [&] { launch(worker); });
 }
 

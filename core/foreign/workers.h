@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <exception>
+#include <functional>
 #include <memory>
 #include <span>
 #include <vector>
@@ -33,6 +34,14 @@ class Workers {
   }
   int starts() const { return workers_[0].starts; }  // of the first program
 
+  // An announced call whose answer, or error, has come: at once, whether it will be taken or not.
+  struct Finished {
+    std::span<const Real> x, y;
+    std::exception_ptr error;
+    double seconds;
+  };
+  void on_finished(std::function<void(const Finished&)> act) { act_ = std::move(act); }
+
   // A call to the first program. LineError as Line has it.
   void ask(Verb verb, std::uint32_t point, std::span<const std::span<const Real>> numbers,
            std::span<Real> answer);
@@ -54,8 +63,9 @@ class Workers {
     std::unique_ptr<Line> line = nullptr;
     State state = State::absent;
     int starts = 0;
-    std::size_t call = 0;  // that it is busy with
-    double waited = 0;     // seconds, for its greeting or its answer
+    std::size_t call = 0;    // that it is busy with
+    double waited = 0;       // seconds, for its greeting or its answer
+    std::int64_t begun = 0;  // its call: monotonic nanoseconds
   };
   struct Call {
     Vector x, y;
@@ -85,6 +95,7 @@ class Workers {
   OptionValues declared_;
   std::vector<Worker> workers_;
   ProblemHandshake said_;
+  std::function<void(const Finished&)> act_;
   std::vector<Call> calls_;
   std::size_t next_ = 0, begun_ = 0;  // calls_ before them were taken, and were handed out
   std::vector<std::size_t> again_;    // calls_ that retired copies gave back

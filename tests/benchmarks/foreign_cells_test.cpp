@@ -449,6 +449,13 @@ class SlowProgram : public ForeignCells {
   std::int64_t run(const Request& request) {
     return run_plan(catalog(), "trial", {request}, folder.path(), options, {}).run;
   }
+  std::optional<Calls> stated_calls(std::int64_t work) const {
+    for (const std::string& name : names_in(folder.path() / "runs"))
+      if (Record record = read_record(folder.path() / "runs" / name);
+          record.request.budget.work == work)
+        return record.calls;
+    return std::nullopt;
+  }
 
   std::filesystem::path script = folder.path() / "slow.py", log = folder.path() / "calls",
                         mortal = folder.path() / "mortal";
@@ -461,6 +468,7 @@ TEST_F(SlowProgram, MakesTheAnnouncedCallsThoseOfItsCellAndOneForTheVerifier) {
       {"", 3}, {", jacobian=lambda x: [[2 * x[0], -1], [0, 2]]", 9}, {", differences=True", 15}};
   for (const auto& [derivatives, count] : expected) {
     const Request request = request_with(derivatives, "nlopt-neldermead");
+    std::filesystem::remove_all(folder.path() / "runs");  // of the other scripts, and the same cell
     testing::internal::CaptureStderr();
     EXPECT_EQ(run(request), 1);
     const std::string shown = testing::internal::GetCapturedStderr();
@@ -476,8 +484,21 @@ TEST_F(SlowProgram, MakesTheAnnouncedCallsThoseOfItsCellAndOneForTheVerifier) {
     if (derivatives.empty()) {
       EXPECT_EQ(made[1], 10U) << "the checks have made the call at the start";
     }
+    const std::optional<Calls> stated = stated_calls(12);
+    ASSERT_TRUE(stated);
+    const bool has_products = derivatives.find("jacobian") != std::string::npos;
+    if (!has_products) {  // the script logs none
+      EXPECT_EQ(stated->made, made[1]);
+    }
+    EXPECT_EQ(stated->verified, 1);
+    EXPECT_EQ(stated->failed, 0);
     EXPECT_EQ(run(request), 0);
     EXPECT_EQ(calls(), made) << "a second run makes none";
+    EXPECT_EQ(run(request_of(request.problem.spec, "nlopt-neldermead", {.work = 18})), 1);
+    const std::optional<Calls> after = stated_calls(18);
+    ASSERT_TRUE(after);
+    EXPECT_GE(after->answered, made[1]) << "the calls of the shorter run";
+    EXPECT_GT(after->made, 0);
     EXPECT_TRUE(names_in(folder.path() / "checkpoints").empty());
     const Component& problem = request.problem;
     Sheet sheet{.kind = "problem", .name = problem.name, .spec = problem.spec};

@@ -508,6 +508,8 @@ TEST_F(Replay, OfRecordsOfThisBuildIsEqualAndWritesNothing) {
   shell.expect("./isoline replay out", {.exit_code = 1});
   write_text(shell.folder() / "x.npy", "\x93NUMPY");
   shell.expect("./isoline replay x.npy", {.exit_code = 1, .err = {"x.npy is binary, not JSON"}});
+  replay("gd", [](Json& record) { record["status"] = true; },
+         {.exit_code = 1, .err = {"changed.json: not a record"}});
 }
 
 TEST_F(Replay, NamesTheFirstDifferenceInTheCurveOrBesideIt) {

@@ -367,6 +367,12 @@ TEST(Terminal, ClosedAndFullStreamsAreNoticed) {
 }
 
 // A limit of the size of a file, which is a signal to a program that does not expect it.
+TEST(ForeignText, ANameThatIsTooLongIsAMessage) {
+  const Shell shell;
+  shell.expect("./isoline site " + std::string(300, 'x') + " --out page",
+               {.exit_code = 2, .err = {"isoline: xxx", "xxx: File name too long"}});
+}
+
 TEST(Terminal, AFileThatMayNotGrowIsAMessage) {
   Shell().expect(
       "./isoline describe --json >/dev/null && (ulimit -f 2; ./isoline describe --json >big)",

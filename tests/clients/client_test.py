@@ -281,13 +281,15 @@ class Commands(unittest.TestCase):
         self.assertIn("no numbers", self.ask("echo none", "model([1, 2])"))
         self.assertIn("0.2 s", self.ask("exec sleep 60", "model([1, 2])", ", seconds=0.2"))
         self.assertIn("0.2 s", self.ask("sleep 60; echo 1", "model([1, 2])", ", seconds=0.2"))
+        for seconds in ("-1", "0", "float('nan')"):
+            self.assertIn("positive", self.ask("true", f"isoline.command('true', 'in.tpl', seconds={seconds})"))
 
     def test_reads_numbers_as_programs_write_them(self):
         for printed, expected in (
             ("1.0D+00 -2d0 1.234-105", "[1.0, -2.0, 1.234e-105]"), ("steps 3 of 2nd kind", "[3.0]"),
             ("***** RESULTS *****", "no numbers"), ("1 1_000", "1_000"), ("head = ****", "overflow: ****"),
             ("3 *** 4", "overflow"), ("ERROR 42: no mesh", "ERROR 42"), ("Error: mesh 3", "Error: mesh"),
-            ("error: 0.5", "[0.5]"),
+            ("error: 0.5", "[0.5]"), ("dose 0x10", "0x10"), ("٣ mol", "٣"),
         ):
             self.assertIn(expected, self.ask(f"printf '%s' '{printed}'", "model([1, 2])"))
 
@@ -319,6 +321,25 @@ class Commands(unittest.TestCase):
             said = self.ask(program, "model([1])", f", instructions={file.name!r}")
             self.assertEqual(said, "[1.0, 8.0, 5.0, 1.25, -32.5, 99.0, 4.0, 6.0]")
             self.assertIn("flow rate", self.ask("echo 1 2 3", "model([1])", f", instructions={file.name!r}"))
+
+    def test_names_the_file_that_it_cannot_use(self):
+        good = {"in.tpl": b"# \xb5 in Latin-1\n~ a ~\n", "out.ins": b"pif @\nl1 !y! \n"}
+        for name, content, word in (
+            ("in.tpl", b"~ \xb5 ~\n", "in.tpl"), ("out.ins", b"pif @\nl1 !dum!\n", "out.ins"),
+            ("out.ins", b"pif @\n\xb5\n", "out.ins"), ("out.ins", b"pif @\n@k@ & !a!\n", "out.ins"),
+            ("out.ins", b"pif @\nl1 [y]1:99999999999\n", "out.ins"),
+            ("in.tpl", good["in.tpl"], "[2.5]"),
+        ):
+            with tempfile.TemporaryDirectory() as folder:
+                for each, text in {**good, name: content}.items():
+                    with open(os.path.join(folder, each), "wb") as file:
+                        file.write(text)
+                call = "isoline.command('tail -n 1 in.txt', 'in.tpl', instructions='out.ins')([2.5])"
+                ran = subprocess.run(
+                    [sys.executable, "-c", f"import isoline; print({call})"], cwd=folder,
+                    env=dict(os.environ, PYTHONPATH=CLIENT), capture_output=True, text=True,
+                )
+            self.assertIn(word, (ran.stderr.strip() or ran.stdout).splitlines()[-1])
 
     def test_leaves_nothing_behind_when_it_is_killed(self):
         with tempfile.TemporaryDirectory() as folder:

@@ -316,8 +316,8 @@ class Tables(unittest.TestCase):
     def setUp(self):
         self.path = self.enterContext(tempfile.TemporaryDirectory()) + "/data.csv"
 
-    def read(self, text, **more):
-        with open(self.path, "w") as file:
+    def read(self, text, encoding="utf-8", **more):
+        with open(self.path, "w", encoding=encoding) as file:
             file.write(text)
         return isoline.read_data(self.path, **more)
 
@@ -327,10 +327,12 @@ class Tables(unittest.TestCase):
         data = self.read("t;u;e\n1;2;0.1\n", y="u", sigma="e")
         self.assertEqual((list(data.y), list(data.sigma)), ([2], [0.1]))
         self.assertIsNone(self.read("t,y\n1,2\n").sigma)
+        self.assertEqual(list(self.read("t,y,\xb5\n1,2,3\n", encoding="latin-1").y), [2])
 
     def test_refuses_missing_values_by_their_line(self):
         for text, word in (("t,y\n1,2\n2,\n", "line 3, column y"), ("t,y\n1,NA\n", "line 2, column y"), ("t,y\n1,2\n\n3\n", "line 4"),
-                           ("t,y\nnan,2\n", "line 2, column t"), ("t,z\n1,2\n", "'y'"), ("y,y\n1,2\n", "no name twice")):
+                           ("t,y\nnan,2\n", "line 2, column t"), ("t,y\n1_0,2\n", "line 2, column t"),
+                           ("t,z\n1,2\n", "data.csv.*'y'"), ("y,y\n1,2\n", "no name twice")):
             with self.assertRaisesRegex(isoline.Refused, word):
                 self.read(text)
         with self.assertRaisesRegex(isoline.Refused, "data"):
@@ -343,6 +345,17 @@ class Tables(unittest.TestCase):
         frame.loc[1, "y"] = None
         with self.assertRaisesRegex(isoline.Refused, "row 1, column y"):
             isoline.read_data(frame)
+
+    @unittest.skipUnless(pandas, "pandas is not installed")
+    def test_names_records_that_it_cannot_load(self):
+        folder = os.path.dirname(self.path)
+        os.mkdir(folder + "/runs")
+        for name, text in (("a.json", '{"cell": '), ("b.json", "[]")):
+            with open(f"{folder}/runs/{name}", "w") as file:
+                file.write(text)
+        with self.assertWarnsRegex(UserWarning, "a.json.*") as seen:
+            self.assertEqual(len(isoline.load(folder).runs), 0)
+        self.assertEqual(len(seen.warnings), 2)
 
     def test_prints_what_its_page_shows(self):
         with open(os.path.join(CLIENTS, "../../docs/bring-a-simulator.md"), encoding="utf-8") as file:

@@ -193,6 +193,30 @@ TEST_F(Copies, ThatCrashAreStartedAgainAndNoOthers) {
   expect_same(one, three, "exits");
 }
 
+// The copies of the second run answer no call: each one of the first run is in the store, slow as
+// the calls were, although the answers of copies were there before they were asked for.
+TEST_F(Copies, OfASlowProgramHaveTheirCallsKept) {
+  write_text(script,
+             "import os, time, isoline\n"
+             "def forward(x):\n"
+             "    time.sleep(0.12)\n"
+             "    return [10 * (x[1] - x[0] * x[0]), 1 - x[0], 0.1 * x[1]]\n"
+             "isoline.problem(forward, [-1.2, 1.0])\n");
+  CallReport report;
+  const CallSink sink(report);
+  for (const bool is_again : {false, true}) {
+    report = {};
+    evaluations().begin({.folder = folder.path()});
+    run(make(process_of("python3 " + script.string(), ",workers=3")), "eki",
+        {.iterations = 100, .work = 20, .target = 0});
+    if (is_again) {
+      EXPECT_EQ(report.made, 0);
+    } else {
+      EXPECT_GE(report.made, 20);
+    }
+  }
+}
+
 // A store that ends in the middle of an entry.
 TEST_F(Copies, ContinueAStoreThatWasCutOff) {
   const Result whole = result_of("cma-es", 2);

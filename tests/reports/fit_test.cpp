@@ -20,6 +20,9 @@ Record fit_of(const std::string& optimizer, Real loss) {
   record.scale.reset();
   record.hits.reset();
   record.summary.loss = record.summary.best_loss = loss;
+  record.summary.start_loss = 100;
+  record.curve.loss.assign(record.curve.loss.size(), 100);
+  record.curve.loss.back() = loss;
   record.answer = AnswerPoints{.unknowns = 2,
                                .names = {"k", "c"},
                                .units = {"N/m", ""},
