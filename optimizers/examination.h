@@ -11,7 +11,7 @@
 
 namespace isoline::optimizers {
 
-// Gauss-Newton steps that are too small to count: of an unknown, half of 1e-6, since it is of
+// Gauss-Newton steps that are too small to count: of an unknown, under half of 1e-6, as it is of
 // first order; and of its standard deviation, which says how many of its digits the data determine.
 inline constexpr Real kEnoughOfUnknown = 4e-7, kEnoughOfDeviation = 5e-7;
 // The size that it is compared with: an unknown may be far smaller than at its start, or 0.

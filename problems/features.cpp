@@ -268,18 +268,8 @@ void wrap(ProblemParts& parts, Map map, FailingLayers layers, const Features& fe
     };
   if (!to.is_identity()) parts.names = parts.units = {};
   const Index rows = physics->penalties();
-  parts.penalties += rows;  // beside those of priors
-  if (rows > 0) {
-    parts.target.conservativeResize(parts.target.rows() + rows, Eigen::NoChange);
-    parts.target.bottomRows(rows).setZero();
-  }
-  if (!to.is_identity() || rows > 0) {
-    parts.field.reset();
-    parts.history = {};
-    parts.series = {};
-    parts.window.reset();
-    parts.y_window.reset();
-  }
+  add_penalties(parts, rows);  // beside those of priors
+  if (!to.is_identity() || rows > 0) leave_views_out(parts);
   parts.physics = std::move(physics);
 }
 

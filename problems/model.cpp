@@ -443,19 +443,13 @@ Problem with_model(Problem plain, const ModelWords& words, const Draw& draw) {
 
   const Index priors = std::ssize(map.priors);
   if (is_weighted) parts.target.array().colwise() *= map.factors.array();
-  parts.penalties += priors;
-  parts.target.conservativeResize(m + priors, Eigen::NoChange);
-  parts.target.bottomRows(priors).setZero();
+  add_penalties(parts, priors);
   if (!words.sigma.empty())
     parts.noise_level = std::sqrt(static_cast<Real>(m));
   else if (is_weighted)
     parts.noise_level.reset();
   parts.scale.reset();
-  parts.field.reset();
-  parts.history = {};
-  parts.series = {};
-  parts.window.reset();
-  parts.y_window.reset();
+  leave_views_out(parts);
   parts.physics = std::move(physics);
   if (steps) replace_derivatives(parts, "central", true, *steps);
   return Problem(std::move(parts));
