@@ -68,8 +68,10 @@ class Then final : public Optimizer {
       if (taken_ == steps_) second_->start(f, theta);
       return Status::running;
     }
+    second_reports_ = second_->reports_iterations();
     return second_->step(f, theta);
   }
+  bool reports_iterations() const override { return second_reports_; }
 
   bool persist(Archive& archive) override {
     archive(taken_);
@@ -82,6 +84,7 @@ class Then final : public Optimizer {
   std::unique_ptr<Optimizer> first_, second_;
   Meter* meter_ = nullptr;
   Index steps_, taken_ = 0;
+  bool second_reports_ = false;  // iterations to the meter: it solves in one call
 };
 
 }  // namespace
@@ -112,9 +115,10 @@ void register_then(OptimizerRegistry& registry) {
       const Named named(built_in(), text);
       if (std::string why = why_inapplicable(named.entry, named.options, problem); !why.empty())
         return named.entry.name + ": " + why;
-      if (named.entry.make(named.options, built_in())->reports_iterations())
-        return named.entry.name + " solves in one call, which has no steps to count";
     }
+    const Named first(built_in(), options.text("first"));
+    if (first.entry.make(first.options, built_in())->reports_iterations())
+      return first.entry.name + " solves in one call, which has no steps to count";
     return "";
   };
   entry.make = [](const OptionValues& options,

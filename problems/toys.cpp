@@ -64,20 +64,32 @@ void fields(SquareOptions& o, auto& field) {
 
 class Square final : public DensePhysics {
  public:
-  Square() : DensePhysics(2, 2) {}
-  void value(VectorRef x, VectorOut y) const override { y << x[0], x[1] * x[1]; }
+  explicit Square(Real ripple = 0) : DensePhysics(2, 2), ripple_(ripple) {}
+  void value(VectorRef x, VectorOut y) const override {
+    y << x[0], x[1] * x[1];
+    if (ripple_ > 0) y += ripple_ * (kFrequency * x.array()).sin().matrix();
+  }
   void derivative(VectorRef x, BatchOut J) const override {
     J(0, 0) = 1;
     J(1, 1) = 2 * x[1];
+    if (ripple_ > 0) J.diagonal() += ripple_ * kFrequency * (kFrequency * x.array()).cos().matrix();
   }
   bool has_curvature() const override { return true; }
-  void second(VectorRef, VectorRef u, BatchOut H) const override { H(1, 1) = 2 * u[1]; }
-  Inverse inverse_kind() const override { return Inverse::exact; }
+  void second(VectorRef x, VectorRef u, BatchOut H) const override {
+    H(1, 1) = 2 * u[1];
+    const Real bend = ripple_ * kFrequency * kFrequency;
+    if (bend > 0) H.diagonal().array() -= bend * u.array() * (kFrequency * x.array()).sin();
+  }
+  Inverse inverse_kind() const override { return ripple_ > 0 ? Inverse::none : Inverse::exact; }
   bool invert(VectorRef y, VectorRef x0, VectorOut x) const override {  // the root on x0's side
     if (y[1] < 0) return false;
     x << y[0], std::copysign(std::sqrt(y[1]), x0[1]);
     return true;
   }
+
+ private:
+  static constexpr Real kFrequency = 100;
+  Real ripple_;
 };
 
 ProblemParts make_square(const SquareOptions& o, const Draw& draw) {
@@ -92,6 +104,21 @@ ProblemParts make_square(const SquareOptions& o, const Draw& draw) {
           .window = {{-0.3, 3.2, -0.1, 3.5}},  // the axes and levels of Fig. 1
           .y_window = {{-0.3, 3.2, -0.1, 9.5}},
           .contour_spacing = "powers of two"};
+}
+
+// P(x) = (x1, x2²) + ε sin 100x: the second derivatives of an error of high frequency exceed those
+// of P. Thuerey et al., chapter "Scale-Invariance and Inversion", on Newton's method and noise.
+struct RippleOptions {
+  Real ripple = 1e-3;
+};
+void fields(RippleOptions& o, auto& field) {
+  field("ripple", o.ripple, between(0, 1), "size ε of the error");
+}
+
+ProblemParts make_rippled_square(const RippleOptions& o, const Draw& draw) {
+  ProblemParts parts = make_square({}, draw);
+  parts.physics = std::make_unique<Square>(o.ripple);
+  return parts;
 }
 
 // The toy of half-inverse gradients, Schnell, Holl, Thuerey (2022), as in the figure of the
@@ -166,6 +193,16 @@ void register_toys(ProblemRegistry& registry) {
                               .note = "The loss has no factor ½, as in the published notebook.",
                               .aim = Aim::x},  // y* = 0 comes of x = 0 alone
                              make_square));
+  registry.add(problem_entry({.name = "rippled-square",
+                              .title = "One squared coordinate with an error of high frequency",
+                              .group = Group::toy,
+                              .formula = "P(x) = (x₁, x₂²) + ε sin 100x,  L = ‖P(x)‖²",
+                              .source = "Thuerey et al., Physics-based Deep Learning, chapter "
+                                        "Scale-Invariance and Inversion",
+                              .aim = Aim::x,
+                              .family = "square",
+                              .in_all = false},
+                             make_rippled_square));
   registry.add(problem_entry(
       {.name = "hig-toy",
        .title = "Toy of half-inverse gradients",

@@ -527,7 +527,7 @@ Judgement judge_one(const Json& claim, const ByCell& runs) {
   if (claim.contains("caveat")) out.caveats = {claim["caveat"]};
   out.published = published_text(claim);
   out.reading = reading_text(claim);
-  out.is_of_one_run = claim.at("published").contains("runs");
+  out.is_of_one_run = claim.at("published").value("runs", 0) == 1;
   out.why = claim.value("undecidable", claim.value("not_comparable", ""));
   if (claim.contains("undecidable")) out.verdict = Verdict::undecidable;
   if (claim.contains("quantity")) {
@@ -609,8 +609,10 @@ Beginnings beginnings_of(const Json& claims, const std::vector<Record>& publishe
 }
 
 // The part of a set of cells that published records have: the seeds that all its terms have, with
-// the iterations that all have made. Nothing if there are none.
-std::optional<Json> published_part(const Json& set, const Beginnings& beginnings) {
+// the iterations that all have made; a record of fewer than `least` counts as none. Nothing if
+// there are none.
+std::optional<Json> published_part(const Json& set, const Beginnings& beginnings,
+                                   std::int64_t least) {
   Json part = set;
   std::vector<Json*> lists;  // of digests, by seed
   const auto add = [&](Json& terms) {
@@ -628,7 +630,8 @@ std::optional<Json> published_part(const Json& set, const Beginnings& beginnings
     std::vector<const Record*> records;
     for (const Json* list : lists) {
       const auto found = beginnings.find(list->at(seed).get<std::string>());
-      if (found != beginnings.end()) records.push_back(found->second);
+      if (found != beginnings.end() && reached_iterations(*found->second) >= least)
+        records.push_back(found->second);
     }
     if (records.size() < lists.size()) continue;
     for (std::size_t i = 0; i < lists.size(); ++i) {
@@ -657,7 +660,14 @@ Json with_published(Json claim, const Beginnings& beginnings) {
   };
   Json sets = claim["cells"];
   for (const Json& set : claim["cells"]) {
-    const std::optional<Json> part = published_part(set, beginnings);
+    std::optional<Json> part = published_part(set, beginnings, needed_iterations(claim));
+    if (!part) {  // all are too short, which the verdict says: the longest
+      std::int64_t least = 0;
+      while (std::optional<Json> longer = published_part(set, beginnings, least)) {
+        least = longer->at("iterations").get<std::int64_t>() + 1;
+        part = std::move(longer);
+      }
+    }
     if (!part) continue;
     auto at = std::ranges::find(sets, set) + 1;
     const bool is_long_enough = part->at("iterations") >= needed_iterations(claim);

@@ -130,6 +130,13 @@ Real slowdown(const Curve& curve, std::size_t index) {
   return last > 0 ? first / last : kNever;
 }
 
+// The share of steps that raised the loss, of those up to the place between kept iterations.
+Real rises(const Curve& curve, std::size_t index) {
+  Real raised = 0;
+  for (std::size_t i = 1; i <= index; ++i) raised += curve.loss[i] > curve.loss[i - 1] ? 1 : 0;
+  return index > 0 ? raised / static_cast<Real>(index) : kUnknown;
+}
+
 // The cost, in the unit of the place, when the column was first at most a bound; infinite if it
 // never was.
 Real spent_until(const Record& record, const Place& place) {
@@ -203,6 +210,7 @@ Real figure_of(const Record& record, const Place& place) {
   if (name == "loss_peak") return std::ranges::max(curve.loss | std::views::take(index + 1));
   if (name == "loss_drop") return curve.loss[0] - curve.loss[index];
   if (name == "slowdown") return slowdown(curve, index);
+  if (name == "rises") return rises(curve, index);
   if (name == "loss_digits") return loss_digits(record, curve.iteration[index]);
   if (name == "digits")
     return record.x_scale ? log_relative_error(curve.x_error.at(index) / *record.x_scale)

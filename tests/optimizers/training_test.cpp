@@ -382,9 +382,21 @@ TEST(Then, GoesOnFromWhereTheFirstStopped) {
   EXPECT_EQ(whole.path[2], start.theta);
   EXPECT_EQ(whole.theta, end.theta);
   EXPECT_NE(why_inapplicable(optimizers().at("then"),
-                             options_of_spec(optimizers().at("then"), "then[second=ceres-lbfgs]"),
+                             options_of_spec(optimizers().at("then"), "then[first=ceres-lbfgs]"),
                              problem),
             "");
+}
+
+TEST(Then, EndsWithAMethodThatSolvesInOneCall) {
+  const Problem problem = easy();
+  const Outcome start = run(problem, "adam[rate=0.01]", iterations(3)),
+                alone = run_from(start.theta, problem, "nlopt-lbfgs", iterations(4)),
+                whole = run(problem, "then[second=nlopt-lbfgs,first=adam[rate=0.01],steps=3]",
+                            iterations(7));
+  EXPECT_EQ(whole.theta, alone.theta);
+  EXPECT_EQ(whole.trace->last.iteration, 3 + alone.trace->last.iteration);
+  // The point between them is evaluated twice in a row, and counts once.
+  EXPECT_EQ(whole.trace->last.work, start.trace->last.work + alone.trace->last.work - 1);
 }
 
 // L = 1000 + weight Σ ¼(y − y*)⁴, whose Newton step in y is a third of the way to y*, or away from

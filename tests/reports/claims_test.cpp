@@ -104,6 +104,32 @@ TEST(Claims, TakeTheBeginningsThatPublishedRecordsHave) {
   EXPECT_EQ(judged(claim).verdict, Verdict::not_comparable);
 }
 
+// A published run of 40 iterations does not shorten those of 60 of another seed.
+TEST(Claims, TakeThePublishedSeedsThatAreLongEnough) {
+  Json claim = claim_of({.more = {{"iteration", 5}}});
+  std::vector<Record> published;
+  for (const char* optimizer : {"adam", "sip"})
+    for (const int seed : {0, 1}) {
+      Record record = run_of(optimizer, static_cast<std::uint64_t>(seed), seed + 1);
+      record.request.budget.iterations = 100;
+      for (Json& term : claim["cells"][0]["terms"])
+        for (Json& cell : term[0]["cells"])
+          if (cell == record.cell) cell = cell_digest(record.request);
+      record.request.budget.iterations = seed == 0 ? 60 : 40;
+      record.cell = cell_digest(record.request);
+      record.status = Status::budget;
+      published.push_back(record);
+    }
+  const auto judged = [&] { return judge(Json::array({claim}), {}, published).at(0); };
+  EXPECT_EQ(judged().measured->n, 2U);
+  claim["quantity"]["iteration"] = 50;
+  EXPECT_EQ(judged().measured->n, 1U);
+  EXPECT_EQ(judged().reached, words("claim.published-part", "60", "100", 1, 3));
+  claim["quantity"]["iteration"] = 90;
+  EXPECT_EQ(judged().verdict, Verdict::too_short);
+  EXPECT_EQ(judged().reached, words("claim.published-part", "60", "100", 1, 3)) << "the longest";
+}
+
 const Json kText{{"from", "text"}, {"relative", 0.05}};
 const Json kFigure{{"from", "figure"}, {"relative", 0.2}};
 const Json kTwo{{"from", "figure"}, {"relative", 0.2}, {"values", 2}};
@@ -631,6 +657,15 @@ TEST(RunFigures, AnExponentialDoesNotSlowDownAndAHyperbolaDoes) {
               (mean(15) - mean(0)) / (mean(75) - mean(60)), 1e-9);
   EXPECT_EQ(slowdown_of([](Real i) { return i < 40 ? 50 - i : 10; }), kNever);
   EXPECT_TRUE(std::isnan(slowdown_of([](Real) { return 1.0; })));
+}
+
+TEST(RunFigures, RisesAreTheShareOfStepsThatRaiseTheLoss) {
+  Record record = curve_with([](Real) { return 1.0; });
+  record.curve.loss[3] = 2;
+  record.curve.loss[7] = 0.5;
+  const Place place{.column = "rises", .iteration = 10, .seconds = {}, .table = {}};
+  EXPECT_EQ(figure_of(record, place), 0.2);
+  EXPECT_TRUE(std::isnan(figure_of(record, {.column = "rises", .iteration = 0})));
 }
 
 TEST(Quantities, AShareCountsSeedsOfTheAlternativeThatSpeaksForTheMethod) {
