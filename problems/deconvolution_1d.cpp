@@ -16,12 +16,14 @@ namespace isoline::problems {
 namespace {
 
 struct Deconvolution1d {
-  Index N = 128;
+  Index N = 128, refine = 1;
   Real width = 10;
 };
 void fields(Deconvolution1d& o, auto& field) {
   field("N", o.N, between(2, 2048), "points");
   field("width", o.width, above(0), "standard deviation s of the Gaussian, in points");
+  field("refine", o.refine, between(1, 16),
+        "data of so many times as many points, of which each refine-th counts");
 }
 
 class Convolution final : public SelfAdjointPhysics {
@@ -47,16 +49,17 @@ class Convolution final : public SelfAdjointPhysics {
   Matrix A_;  // (N, N)
 };
 
-Vector truth_of(Index N, const Draw& draw) {
+// At N points, each a `refine`-th of the unit apart.
+Vector truth_of(Index N, Index refine, const Draw& draw) {
   Real p = 5, c = 0;
   if (!draw.is_published()) {
     RandomStream stream = draw.stream("target");
     p = stream.uniform(3, 7);
     c = stream.uniform(-0.5, 0.5);
   }
-  Vector truth(N);
-  for (Index i = 0; i < N; ++i) {
-    const Real t = -1 + 2 * static_cast<Real>(i) / static_cast<Real>(N - 1);
+  Vector truth(N * refine);
+  for (Index i = 0; i < truth.size(); ++i) {
+    const Real t = -1 + 2 * static_cast<Real>(i) / static_cast<Real>(refine * (N - 1));
     const Real angle = std::numbers::pi * p * (t - c);
     truth[i] = angle == 0 ? 1 : std::sin(angle) / angle;
   }
@@ -64,8 +67,14 @@ Vector truth_of(Index N, const Draw& draw) {
 }
 
 ProblemParts make_deconvolution_1d(const Deconvolution1d& o, const Draw& draw) {
-  return from_exact_data(std::make_unique<Convolution>(o.N, o.width), truth_of(o.N, draw), draw,
-                         StartScale::own);
+  ProblemParts parts = from_exact_data(std::make_unique<Convolution>(o.N, o.width),
+                                       truth_of(o.N, 1, draw), draw, StartScale::own);
+  if (o.refine == 1) return parts;
+  const Real width = o.width * static_cast<Real>(o.refine);
+  Matrix fine(o.N * o.refine, 1);
+  Convolution(fine.rows(), width).apply(truth_of(o.N, o.refine, draw), fine);
+  for (Index i = 0; i < o.N; ++i) parts.target(i, 0) = fine(i * o.refine, 0);
+  return parts;
 }
 
 }  // namespace

@@ -20,10 +20,12 @@ namespace isoline::problems {
 namespace {
 
 struct Diffusivity {
-  Index n = 16;
+  Index n = 16, refine = 1;
 };
 void fields(Diffusivity& o, auto& field) {
   field("n", o.n, between(3, 1024), "nodes along each side");
+  field("refine", o.refine, between(1, 16),
+        "sources of the data from a grid so many times as fine");
 }
 
 // A node i = row + n column and its neighbours on the grid, ascending.
@@ -135,21 +137,37 @@ class Diffusion final : public BySparseJacobian {
   int n_;
 };
 
-ProblemParts make_diffusivity(const Diffusivity& o, const Draw& draw) {
-  const Index nodes = o.n * o.n;
+Vector truth_of(Index n) {
+  const Index nodes = n * n;
   Vector truth(2 * nodes);
   for (Index i = 0; i < nodes; ++i) {
-    const Real width = 1 / static_cast<Real>(o.n + 1);
-    const Real x1 = static_cast<Real>(i % o.n + 1) * width;
-    const Real x2 = static_cast<Real>(i / o.n + 1) * width;
+    const Real width = 1 / static_cast<Real>(n + 1);
+    const Real x1 = static_cast<Real>(i % n + 1) * width;
+    const Real x2 = static_cast<Real>(i / n + 1) * width;
     truth[i] = x1 * x1 - x2 * x2 + 2 * x1 * x2;
     truth[nodes + i] = std::sin(std::numbers::pi * x1) * std::sin(std::numbers::pi * x2);
   }
+  return truth;
+}
+
+ProblemParts make_diffusivity(const Diffusivity& o, const Draw& draw) {
+  const Vector truth = truth_of(o.n);
   ProblemParts parts =
       from_exact_data(std::make_unique<Diffusion>(static_cast<int>(o.n)), truth, draw);
   Vector start = truth;  // u as observed, and a diffusivity of 1
-  start.head(nodes).setZero();
+  start.head(o.n * o.n).setZero();
   parts.start = draw.start(start);
+  if (o.refine == 1) return parts;
+  const Index n = o.refine * (o.n + 1) - 1;
+  const Diffusion finer(static_cast<int>(n));
+  Matrix y(finer.outputs(), 1);
+  Workspace w;
+  finer.forward(truth_of(n), Matrix(0, 1), y, w);
+  const auto area = static_cast<Real>(o.refine * o.refine);  // h² over that of the finer grid
+  for (Index i = 0; i < o.n * o.n; ++i) {
+    const Index row = o.refine * (i % o.n + 1) - 1, column = o.refine * (i / o.n + 1) - 1;
+    parts.target(i, 0) = area * y(row + n * column, 0);
+  }
   return parts;
 }
 

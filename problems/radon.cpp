@@ -2,10 +2,8 @@
 // along parallel rays.
 //
 //   y(φ, s) = ∫ x(s cos φ − t sin φ, s sin φ + t cos φ) dt
-//
-// Radon (1917); the discrete form is that of Hansen, Jørgensen (2018), AIR Tools II, paralleltomo:
-// an element of A is the length of a ray inside a square. The number of rays does not depend on N,
-// so data can come from a finer image: model="N=32". The image is a sum of smooth bells.
+// Radon (1917); in the form of Hansen, Jørgensen (2018), AIR Tools II, paralleltomo: A holds the
+// lengths of rays inside squares. Data can be of a finer image, a sum of bells: model="N=32".
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -32,15 +30,13 @@ class RaySums final : public DensePhysics {
     A_.setZero(outputs(), inputs());
     for (Index a = 0; a < o.angles; ++a)
       for (Index r = 0; r < o.rays; ++r) {
-        const Real angle = std::numbers::pi * static_cast<Real>(a) / static_cast<Real>(o.angles);
+        const Real angle = std::numbers::pi * Real(a) / Real(o.angles);
         const Real s = -1 + (2 * static_cast<Real>(r) + 1) / static_cast<Real>(o.rays);
         add_ray(std::cos(angle), std::sin(angle), s, o.N, a * o.rays + r);
       }
   }
   void value(VectorRef x, VectorOut y) const override { y.noalias() = A_ * x; }
   void derivative(VectorRef, BatchOut J) const override { J = A_; }
-  bool has_curvature() const override { return true; }
-  void second(VectorRef, VectorRef, BatchOut) const override {}
 
  private:
   // The ray between two crossings of grid lines lies in the square of their midpoint.
@@ -61,36 +57,28 @@ class RaySums final : public DensePhysics {
       A_(row, i + N * j) += crossings[k] - crossings[k - 1];
     }
   }
-
   Matrix A_;  // (angles·rays, N²)
 };
 
-// Bells in the disc of radius 0.6: the published instance has fixed ones.
-Vector truth_of(Index N, const Draw& draw) {
-  constexpr Index kBells = 4;
-  Matrix bells(4, kBells);  // centre, width, height
-  bells << -0.3, 0.25, 0.1, -0.15, 0.2, 0.3, -0.35, -0.2, 0.3, 0.2, 0.25, 0.15, 1, 0.7, -0.5, 0.9;
-  if (!draw.is_published()) {
-    RandomStream stream = draw.stream("target");
-    for (auto bell : bells.colwise()) {
-      const Real radius = 0.6 * std::sqrt(stream.uniform());
-      const Real angle = 2 * std::numbers::pi * stream.uniform();
-      bell << radius * std::cos(angle), radius * std::sin(angle), stream.uniform(0.15, 0.35),
-          stream.uniform(-1, 1);
+// Bells with centres in the disc of radius 0.6.
+Vector truth_of(Index N, RandomStream stream) {
+  Vector truth = Vector::Zero(N * N);
+  for (int bell = 0; bell < 4; ++bell) {
+    const Real radius = 0.6 * std::sqrt(stream.uniform());
+    const Real angle = 2 * std::numbers::pi * stream.uniform();
+    const Real width = stream.uniform(0.15, 0.35), height = stream.uniform(-1, 1);
+    for (Index k = 0; k < truth.size(); ++k) {
+      const Real u = Real(2 * (k % N) + 1) / Real(N) - 1, v = Real(2 * (k / N) + 1) / Real(N) - 1;
+      const Real apart = std::hypot(u - radius * std::cos(angle), v - radius * std::sin(angle));
+      truth[k] += height * std::exp(-apart * apart / (2 * width * width));
     }
   }
-  Vector truth = Vector::Zero(N * N);
-  for (Index k = 0; k < truth.size(); ++k)
-    for (const auto bell : bells.colwise()) {
-      const Real u = -1 + (2 * static_cast<Real>(k % N) + 1) / static_cast<Real>(N) - bell[0];
-      const Real v = -1 + (2 * static_cast<Real>(k / N) + 1) / static_cast<Real>(N) - bell[1];
-      truth[k] += bell[3] * std::exp(-(u * u + v * v) / (2 * bell[2] * bell[2]));
-    }
   return truth;
 }
 
 ProblemParts make_radon(const Radon& o, const Draw& draw) {
-  return from_exact_data(std::make_unique<RaySums>(o), truth_of(o.N, draw), draw, StartScale::own);
+  return from_exact_data(std::make_unique<RaySums>(o), truth_of(o.N, draw.stream("target")), draw,
+                         StartScale::own);
 }
 
 }  // namespace
@@ -102,8 +90,7 @@ void register_radon(ProblemRegistry& registry) {
        .group = Group::physics,
        .formula = "P(x) = A x,  Aᵣₖ the length of ray r in square k,  L = ½‖P(x) − y*‖²",
        .source = "Radon (1917); Hansen, Jørgensen (2018), AIR Tools II",
-       .note = "With fewer rays than squares, no data determine a part of x*: run it with the "
-               "option noise. Every start is 0.",
+       .note = "With fewer rays than squares, no data determine a part of x*. Every start is 0.",
        .aim = Aim::x,
        .is_linear = true,
        .in_all = false},

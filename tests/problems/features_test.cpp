@@ -91,6 +91,22 @@ TEST(Features, TheErrorOfAnotherModelIsPartOfTheNoiseLevel) {
   EXPECT_NEAR(*both.noise_level(), std::hypot(1.1 * *alone.noise_level(), error), 1e-9);
 }
 
+// At x*, the data of a finer grid differ from P(x*) less, the finer both are.
+TEST(Features, DataOfAFinerGridDifferByTheDiscretizationError) {
+  for (const auto& [coarse, fine] :
+       {std::pair{"diffusivity[n=7,refine=2]", "diffusivity[n=31,refine=2]"},
+        {"deconvolution-1d[N=32,width=3,refine=2]", "deconvolution-1d[N=128,width=12,refine=2]"}}) {
+    const auto error = [](const Problem& problem) {
+      Point at;
+      problem.forward(*problem.truth(), at);
+      const Real count = std::sqrt(static_cast<Real>(problem.outputs()));
+      return (at.y - problem.target()).norm() / (count * problem.target().cwiseAbs().maxCoeff());
+    };
+    EXPECT_GT(error(make(coarse)), 0) << coarse;
+    EXPECT_LT(error(make(fine)), 0.5 * error(make(coarse))) << coarse;
+  }
+}
+
 // Jᵀ and J agree with differences of the loss; errors in x are those of the plain problem.
 TEST(Features, ScaledAndRotatedUnknownsAreTheSameProblem) {
   const OptionValues mapped{{"scale", 1e3}, {"rotate", true}};
