@@ -14,13 +14,16 @@
 #include "benchmarks/cli/terminal.h"
 #include "benchmarks/cli/verb.h"
 #include "benchmarks/run/isolate.h"
+#include "benchmarks/run/run_plan.h"
 #include "benchmarks/run/trained.h"
 #include "core/errors.h"
+#include "core/files.h"
 #include "core/json.h"
 #include "core/output.h"
 #include "core/records/naming.h"
 #include "core/records/npy.h"
 #include "core/results/answers.h"
+#include "core/results/profile.h"
 #include "core/results/uncertainty.h"
 #include "core/text.h"
 #include "reports/formats/formats.h"
@@ -38,6 +41,7 @@ struct SolutionArguments {
   std::string input, training_data;  // of a trained network, whose file then is the only folder
   std::int64_t memory_bytes = 0;     // 0: as a cell's
   double seconds = 600;
+  bool profile = false, trust = false;
 };
 
 void declare(VerbArguments& verb, SolutionArguments& given) {
@@ -52,6 +56,11 @@ void declare(VerbArguments& verb, SolutionArguments& given) {
   verb.text("--format", given.format, "Format of the output")
       .one_of({"table", "csv", "json", "npy"})
       .shown();
+  verb.flag(
+      "--profile", given.profile,
+      "Add profile-likelihood intervals: at values of each unknown, all others are fitted "
+      "again from there. Its runs are kept in DIR/profile, and repeating the command goes on");
+  verb.flag("--trust", given.trust, kTrust);
   verb.text("--out,--output", given.out,
             "Output file, which npy and networks require (default: standard output)");
   verb.text(
@@ -71,6 +80,7 @@ struct Solution {
   AnswerPoints answer = {};
   std::size_t others = 0;  // runs that reach its loss at another point
   Real distance = 0;       // to the farthest of those points
+  std::vector<results::LikelihoodProfile> profiles = {};
 
   Real loss() const {
     const Summary& summary = record->summary;
@@ -164,6 +174,12 @@ std::string table_text(const Solution& solution) {
   }
   if (shown < rows)
     text += fmt::format("  {} more unknowns; --format csv prints all\n", rows - shown);
+  if (!solution.profiles.empty()) text += "  profile intervals (95 %)\n";
+  for (const results::LikelihoodProfile& profile : solution.profiles) {
+    text += fmt::format("  {:>{}}  {:.6g} … {:.6g}\n", profile.name, columns[0].name.size(),
+                        profile.low, profile.high);
+    for (const std::string& message : profile.messages) text += fmt::format("    {}\n", message);
+  }
   if (solution.others > 0)
     text += fmt::format(
         "  {} with the same loss {} at another point, up to {:.3g} away: the problem has more than "
@@ -220,6 +236,13 @@ Json to_json(const Solution& solution) {
   if (!solution.answer.units.empty()) json["units"] = solution.answer.units;
   for (std::size_t i = 0; solution.answer.is_bound_active() && i < solution.point().size(); ++i)
     json["active_bounds"].push_back(solution.answer.bound(i));
+  for (const results::LikelihoodProfile& profile : solution.profiles)
+    json["profile"].push_back({{"unknown", profile.name},
+                               {"low", json_number(profile.low)},
+                               {"high", json_number(profile.high)},
+                               {"value", json_numbers(profile.value)},
+                               {"rise", json_numbers(profile.rise)},
+                               {"messages", profile.messages}});
   if (record.failures) json["failed_evaluations"] = record.failures->total;
   if (solution.answer.residual_norm)
     json["residual_norm"] = json_number(*solution.answer.residual_norm);
@@ -237,6 +260,146 @@ std::string text_of(const std::vector<Solution>& solutions, const std::string& f
   for (const Solution& solution : solutions)
     text += (text.empty() ? "" : "\n") + table_text(solution);
   return text;
+}
+
+// --- profiles
+
+struct Interrupted {};  // by the user, during a profile
+
+// A fit with the bounds of its problem; UsageError if the run has no standard deviations.
+results::ProfiledFit profiled_fit(const Solution& solution, const Problem& problem) {
+  const Record& record = *solution.record;
+  require(!solution.deviations().empty() && solution.answer.residual_norm, [&] {
+    const std::string doubt = reports::doubt_text(record);
+    return fmt::format("a profile requires a fit with standard deviations{}{}",
+                       doubt.empty() ? "" : ": ", doubt);
+  });
+  const std::span<const Real> x = solution.answer.point(kReturned);
+  results::ProfiledFit fit{
+      .best = {std::pow(*solution.answer.residual_norm, 2), {x.begin(), x.end()}},
+      .deviation = record.uncertainty->standard_deviation,
+      .variance = record.uncertainty->variance,
+      .freedom = std::size_t(record.uncertainty->degrees_of_freedom)};
+  constexpr Real kInfinity = std::numeric_limits<Real>::infinity();
+  fit.lower.assign(x.size(), -kInfinity);
+  fit.upper.assign(x.size(), kInfinity);
+  if (const problems::Bounds* const bounds = problem.bounds()) {
+    const Vector lower = problem.in_own_units(bounds->lower),
+                 upper = problem.in_own_units(bounds->upper);
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      if (!std::isnan(lower[Index(i)])) fit.lower[i] = lower[Index(i)];
+      if (!std::isnan(upper[Index(i)])) fit.upper[i] = upper[Index(i)];
+    }
+  }
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    fit.names.push_back(solution.answer.name(i));
+    fit.is_log.push_back(x[i] > 0 && results::has_log(record, fit.names[i]));
+  }
+  return fit;
+}
+
+// A run of the record's method with one more unknown fixed, kept in that folder.
+std::optional<results::Refit> refitted(const Record& record, const std::string& name,
+                                       std::size_t unknown, const std::vector<Real>& start,
+                                       const fs::path& folder, Session& session) {
+  const std::string bytes(reinterpret_cast<const char*>(start.data()), start.size() * sizeof(Real));
+  const fs::path file = folder / fmt::format("start-{:016x}.npy", fnv1a(bytes));
+  make_output_folder(folder);
+  write_npy(file, {{static_cast<Index>(start.size())}, start});
+  OptionValues options = record.request.problem.options;
+  const std::string fixed = options.text("fixed");
+  options.set("fixed",
+              fmt::format("{}{}{}={}", fixed, fixed.empty() ? "" : "; ", name, start[unknown]));
+  options.set(kStartOption, file.string());
+  Request request = record.request;
+  request.problem = complete_problem(session.catalog(), request.problem.name, options);
+  request.optimizer =
+      complete_optimizer(session.catalog(), request.optimizer.name, request.optimizer.options);
+  request = named(std::move(request));
+  const RunOptions run{.uncertified = true, .command = session.command()};
+  if (run_plan(session.catalog(), "profile", {request}, folder, run).is_interrupted)
+    throw Interrupted{};
+  const std::optional<Record> done = Store::find_in(folder, request);
+  if (!done || !done->answer || !done->answer->residual_norm || is_failure(done->status) ||
+      done->status == Status::failed || done->status == Status::diverged)
+    return std::nullopt;
+  const std::span<const Real> x = done->answer->point(kReturned);
+  return results::Refit{std::pow(*done->answer->residual_norm, 2), {x.begin(), x.end()}};
+}
+
+// P at a value of the only unknown, where no other is left to fit.
+std::optional<results::Refit> evaluated(const Problem& problem, std::size_t unknown, Real value,
+                                        bool is_log) {
+  const auto i = static_cast<Index>(unknown);
+  const Real at_0 = problem.in_own_units(Vector::Zero(1))[i],
+             at_1 = problem.in_own_units(Vector::Ones(1))[i];
+  const Vector theta =
+      Vector::Constant(1, is_log ? std::log(value) : (value - at_0) / (at_1 - at_0));
+  problems::Point at;
+  try {
+    problem.forward(theta, at);
+  } catch (const std::exception&) {
+    return std::nullopt;
+  }
+  const Vector x = problem.in_own_units(theta);
+  return results::Refit{(at.y - problem.target()).squaredNorm(), {x.begin(), x.end()}};
+}
+
+// Puts the profiles in place of earlier ones of the cell.
+void keep_profiles(const fs::path& folder, const std::string& cell,
+                   const std::vector<results::LikelihoodProfile>& profiles) {
+  const fs::path file = folder / "profile.json";
+  std::vector<results::ProfiledCell> all;
+  if (std::error_code unknown; fs::exists(file, unknown))
+    all = results::profiles_from_text(read_text(file), file.string());
+  std::erase_if(all, [&](const auto& each) { return each.cell == cell; });
+  all.push_back({cell, profiles});
+  write_text(file, json_text(results::profiles_to_json(all)) + "\n");
+}
+
+// The folder that has the record.
+fs::path folder_of(const std::vector<std::string>& folders, const Record& record) {
+  for (const fs::path folder : folders)
+    if (fs::exists(folder / "runs" / record.file_name())) return folder;
+  return folders.front();
+}
+
+void add_profiles(Solution& solution, const SolutionArguments& given, Session& session) {
+  const Record& record = *solution.record;
+  require_trust(given.trust, record);
+  const Component component = complete_problem(session.catalog(), record.request.problem.name,
+                                               record.request.problem.options);
+  const Problem problem = make_problem(session.catalog(), component, record.request.seed);
+  const results::ProfiledFit fit = profiled_fit(solution, problem);
+  const fs::path from = folder_of(given.folders, record), folder = from / "profile";
+  if (std::error_code unknown; fs::exists(from / "evaluations", unknown)) {
+    make_output_folder(folder);  // its runs are answered from the calls of the fit
+    fs::copy(from / "evaluations", folder / "evaluations",
+             fs::copy_options::recursive | fs::copy_options::skip_existing, unknown);
+  }
+  const auto is_profiled = [&](std::size_t i) {
+    return std::isfinite(fit.deviation[i]) || fit.best.x[i] == fit.lower[i] ||
+           fit.best.x[i] == fit.upper[i];
+  };
+  std::vector<std::size_t> unknowns;
+  for (std::size_t i = 0; i < fit.names.size(); ++i)
+    if (is_profiled(i)) unknowns.push_back(i);
+  constexpr std::size_t kFits = 8,
+                        kCalls = 12;  // of an unknown; of a fit, beside a difference each
+  say(stderr, fmt::format("profile: {} unknowns, about {} forward solves; more if P is strongly "
+                          "nonlinear\n",
+                          unknowns.size(), unknowns.size() * kFits * (kCalls + fit.names.size())));
+  for (const std::size_t i : unknowns) {
+    solution.profiles.push_back(
+        results::profile_of(fit, i, [&](std::size_t unknown, const std::vector<Real>& start) {
+          return problem.unknowns() == 1
+                     ? evaluated(problem, unknown, start[unknown], fit.is_log[unknown])
+                     : refitted(record, fit.names[unknown], unknown, start, folder, session);
+        }));
+    const results::LikelihoodProfile& done = solution.profiles.back();
+    say(stderr, fmt::format("profile: {}: {:.5g} … {:.5g}\n", done.name, done.low, done.high));
+  }
+  keep_profiles(from, record.cell, solution.profiles);
 }
 
 // --- the x of a trained network
@@ -306,7 +469,7 @@ int run(const SolutionArguments& given, Session& session) {
   require(given.format != "npy" || !given.out.empty(),
           "--format npy writes a binary file: name it with --out x.npy");
   const results::Study study = study_of(given.folders);
-  const std::vector<Solution> solutions = solutions_of(study, given);
+  std::vector<Solution> solutions = solutions_of(study, given);
   require(!solutions.empty(), [&] {
     return fmt::format(
         "no record of {}{} in {} contains an x; records of network training, and those that "
@@ -314,6 +477,12 @@ int run(const SolutionArguments& given, Session& session) {
         given.optimizer == "best" ? "any optimizer" : given.optimizer,
         given.problem.empty() ? "" : " on " + given.problem, reports::joined(given.folders));
   });
+  try {
+    for (Solution& solution : solutions)
+      if (given.profile) add_profiles(solution, given, session);
+  } catch (const Interrupted&) {
+    return kInterrupted;
+  }
   if (given.format == "npy") {
     require(solutions.size() == 1, [&] {
       return fmt::format("--format npy writes one x, but {} problems match: choose with --problem",
@@ -348,6 +517,7 @@ void register_solution(VerbRegistry& registry) {
            R"(  isoline solution results/quick     for each problem, the run of least loss
   isoline solution results/quick --problem rosenbrock --optimizer ceres-bfgs
   isoline solution results/quick --problem rosenbrock --format npy --out x.npy
+  isoline solution results/mine --profile --trust    intervals by profiles
   isoline solution net.json --input observed.csv --out x.csv)",
        .notes =
            "The exit code is 2 if a point that is printed is `unconfirmed`: its method stopped by "

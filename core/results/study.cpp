@@ -152,6 +152,10 @@ void read_rest(Study& study, const fs::path& folder, std::set<std::string>& know
   read_file(study, folder / "rates.json", [&](const auto& text, const auto& name) {
     for (TunedRate& rate : rates_from_text(text, name)) study.rates.push_back(std::move(rate));
   });
+  read_file(study, folder / "profile.json", [&](const auto& text, const auto& name) {
+    for (ProfiledCell& cell : profiles_from_text(text, name))
+      study.profiles.push_back(std::move(cell));
+  });
   for (const std::string& suite : suites) add_suite(study.plan.suites, suite);
 }
 

@@ -18,6 +18,7 @@
 #include "core/records/record.h"
 #include "core/records/request.h"
 #include "core/records/sheet.h"
+#include "core/results/profile.h"
 #include "core/results/statistics.h"
 #include "core/status.h"
 #include "core/threads.h"
@@ -63,6 +64,7 @@ struct Study {
   std::vector<Sheet> sheets;
   std::vector<AuditedOptimizer> audits;  // by name; of several folders the first that has it
   std::vector<TunedRate> rates;          // rows of tables of rates that runs used
+  std::vector<ProfiledCell> profiles;    // of fits, by their cells
   std::vector<Unreadable> unreadable;
   std::size_t superseded = 0;      // readable records left aside for a newer one of the same cell
   std::set<std::string> disputed;  // cells of which two records of one build hold other results

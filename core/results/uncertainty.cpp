@@ -14,14 +14,6 @@ bool is_examined(Status status) {
   return status == Status::converged || status == Status::target || status == Status::discrepancy;
 }
 
-// Whether methods saw its logarithm.
-bool has_log(const Record& record, const std::string& name) {
-  std::string names = record.request.problem.options.text("log");
-  std::ranges::replace(names, ',', ';');
-  const auto cells = cells_of_line(names + ";");
-  return std::ranges::find(cells, name) != cells.end();
-}
-
 }  // namespace
 
 std::optional<NoiseTest> noise_test(const Record& record) {
@@ -45,6 +37,13 @@ Doubt doubt_of(const Record& record) {
   if (!record.uncertainty || record.uncertainty->degrees_of_freedom < 1) return Doubt::unknown;
   const auto test = noise_test(record);
   return test && test->p < kLeastP ? Doubt::contradicted : Doubt::none;
+}
+
+bool has_log(const Record& record, const std::string& name) {
+  std::string names = record.request.problem.options.text("log");
+  std::ranges::replace(names, ',', ';');
+  const auto cells = cells_of_line(names + ";");
+  return std::ranges::find(cells, name) != cells.end();
 }
 
 std::vector<XInterval> intervals_of(const Record& record) {

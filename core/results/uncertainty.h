@@ -23,6 +23,9 @@ enum class Doubt { none, not_minimum, contradicted, unknown };
 // minimum, its residuals contradict the noise of the data, or none were computed.
 Doubt doubt_of(const Record& record);
 
+// Whether methods saw the logarithm of the unknown.
+bool has_log(const Record& record, const std::string& name);
+
 // x ± t s, 95 %; of an unknown of the option log, symmetric in the logarithm. Not-a-number without
 // s.
 struct XInterval {

@@ -117,6 +117,46 @@ Table basins_table(const std::string& problem, const std::vector<const Run*>& fi
   return table;
 }
 
+// Nothing if the fit was not profiled.
+const std::vector<LikelihoodProfile>* profiles_of(const Comparison& c, const Record& record) {
+  const auto found =
+      std::ranges::find(c.study->profiles, record.cell, &results::ProfiledCell::cell);
+  return found == c.study->profiles.end() ? nullptr : &found->profiles;
+}
+
+Table profiles_table(const std::string& problem, const std::vector<LikelihoodProfile>& profiles) {
+  Table table = worded_table("fit-profiles", problem);
+  for (const LikelihoodProfile& profile : profiles)
+    table.rows.push_back({profile.name,
+                          {fmt::format("{:.5g} … {:.5g}", profile.low, profile.high),
+                           {{"low", profile.low}, {"high", profile.high}}},
+                          joined(profile.messages, "; ")});
+  return table;
+}
+
+// ±√((S − S_min)/s²) over the distance from the fit in standard deviations: straight where x ± t·s
+// holds.
+Plot profiles_plot(const std::string& problem, const Record& record,
+                   const std::vector<LikelihoodProfile>& profiles) {
+  Plot plot = worded_plot("plot-profiles", problem);
+  plot.kind = Plot::Kind::lines;
+  for (const LikelihoodProfile& profile : profiles) {
+    PlotSeries line{.name = profile.name};
+    for (std::size_t i = 0; i < record.uncertainty->x.size(); ++i) {
+      const Real s = record.uncertainty->standard_deviation[i], x = record.uncertainty->x[i];
+      if (record.answer->name(i) != profile.name || !(s > 0)) continue;
+      for (std::size_t j = 0; j < profile.value.size(); ++j) {
+        const Real distance = (profile.value[j] - x) / s;
+        line.x.push_back(distance);
+        line.y.push_back(std::copysign(std::sqrt(std::max<Real>(profile.rise[j], 0)), distance));
+      }
+    }
+    if (line.x.size() > 1 && plot.series.size() < kMostLines)
+      plot.series.push_back(std::move(line));
+  }
+  return plot;
+}
+
 // Empty where none failed.
 Table failures_table(const std::string& problem, const Comparison& c, std::size_t p) {
   constexpr std::size_t kShown = 12;
@@ -200,6 +240,8 @@ Section fit_section(const Comparison& c) {
     std::vector<Table> tables = {parameters_table(problem, record)};
     if (doubt == Doubt::none && record.uncertainty->x.size() > 1)
       tables.push_back(correlation_table(problem, record));
+    const auto* const profiles = doubt == Doubt::none ? profiles_of(c, record) : nullptr;
+    if (profiles) tables.push_back(profiles_table(problem, *profiles));
     if (fits.size() > 1) tables.push_back(basins_table(problem, fits));
     if (Table failures = failures_table(problem, c, p); !failures.rows.empty())
       tables.push_back(std::move(failures));
@@ -209,6 +251,7 @@ Section fit_section(const Comparison& c) {
     }
     for (Plot& plot :
          std::vector{fit_plot(problem, *record.fit, false), fit_plot(problem, *record.fit, true),
+                     profiles ? profiles_plot(problem, record, *profiles) : Plot{},
                      calls_plot(problem, fits, c)}) {
       plot.id += fmt::format("-{}", p);
       if (!plot.series.empty()) section.plots.push_back(plot);

@@ -409,6 +409,43 @@ TEST(SolutionVerb, PrintsValuesAndDeviationsOfTheRunOfLeastLoss) {
   shell.expect("./isoline solution out --problem heat", {.exit_code = 1, .err = {"heat"}});
 }
 
+// The regression is nearly linear: its profiles are close to the intervals by t.
+TEST(SolutionVerb, ProfilesEachUnknownAndAnswersTheSecondTimeFromItsRuns) {
+  const Shell shell;
+  shell.expect(
+      "./isoline run --problem 'nist[dataset=Misra1a,start=2]' --optimizer levenberg-marquardt "
+      "--seeds =0 --quiet --no-report --out out");
+  const std::string profile = "./isoline solution out --profile --format json --out ";
+  shell.expect(profile + "x.json", {.err = {"2 unknowns", "b2"}});
+  const auto runs = [&] {
+    return std::distance(
+        std::filesystem::directory_iterator(shell.folder() / "out" / "profile" / "runs"), {});
+  };
+  const auto count = runs();
+  const Json found = read_json(shell.folder() / "x.json").at(0);
+  ASSERT_EQ(found.at("profile").size(), 2U);
+  constexpr Real kT = 2.1788;  // for 12 degrees of freedom
+  for (std::size_t i = 0; i < 2; ++i) {
+    const Json& one = found.at("profile")[i];
+    const Real x = found.at("returned")[i], deviation = found.at("standard_deviation")[i];
+    EXPECT_NEAR((x - one.at("low").get<Real>()) / deviation, kT, 0.1) << i;
+    EXPECT_NEAR((one.at("high").get<Real>() - x) / deviation, kT, 0.1) << i;
+    EXPECT_TRUE(one.at("messages").empty());
+  }
+  // With one unknown, its profile is P itself.
+  shell.expect(
+      "./isoline run --problem 'nist[dataset=Misra1a,start=2,fixed=\"b1=240\"]' --optimizer "
+      "levenberg-marquardt --seeds =0 --quiet --no-report --out one");
+  shell.expect("./isoline solution one --profile --format json --out one.json");
+  const Json one = read_json(shell.folder() / "one.json").at(0), b2 = one.at("profile").at(0);
+  EXPECT_EQ(b2.at("unknown"), "b2");
+  const Real s = one.at("standard_deviation")[1];
+  EXPECT_NEAR((b2.at("high").get<Real>() - b2.at("low").get<Real>()) / s, 2 * 2.1604, 0.1);
+  shell.expect(profile + "again.json");
+  EXPECT_EQ(read_json(shell.folder() / "again.json").at(0), found);
+  EXPECT_EQ(runs(), count);
+}
+
 TEST(SolutionVerb, ReadsManyUnknownsFromTheFileThatMergeCopiesAndValidateExamines) {
   const Shell shell;
   shell.expect(

@@ -23,6 +23,7 @@
 #include "core/records/npy.h"
 #include "core/records/request.h"
 #include "core/records/sheet.h"
+#include "core/results/profile.h"
 #include "tests/refusal.h"
 #include "tests/temporary_folder.h"
 
@@ -248,6 +249,7 @@ TEST(Schemas, AreWhatTheFieldsSay) {
   expect_renewed("run.json", run_schema());
   expect_renewed("component.json", sheet_schema());
   expect_renewed("plan.json", plan_schema());
+  expect_renewed("profile.json", results::profile_schema());
 }
 
 // A record with all that it must have and nothing more.

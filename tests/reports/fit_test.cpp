@@ -69,6 +69,26 @@ TEST(Fit, IsTheFirstSectionAndHasIntervalsAndBasins) {
   EXPECT_LT(c.taken(c.runs[0], Measure::work, 0), kNever);
 }
 
+TEST(Fit, HasTheProfilesOfItsCellAndNoOthers) {
+  Compared c({fit_of("a", 2)});
+  const std::string cell = c.runs[0].record->cell;
+  // twice as steep above the fit as below
+  c.owned.profiles = {
+      {"0000000000000000", {{.name = "k", .low = 0, .high = 9}}},
+      {cell,
+       {{.name = "k", .low = 1.97, .high = 2.015, .value = {1.98, 2, 2.01}, .rise = {4, 0, 4}}}}};
+  const Document document = document_of(c);
+  const Section& fit = document.sections[0];
+  const Table& profiles = table_of(fit, "fit-profiles");
+  ASSERT_EQ(profiles.rows.size(), 1U);
+  EXPECT_EQ(profiles.rows[0][1].text, "1.97 … 2.015");
+  ASSERT_EQ(fit.plots.size(), 4U);
+  const PlotSeries& line = fit.plots[2].series.at(0);
+  ASSERT_EQ(line.x.size(), 3U);
+  EXPECT_NEAR(line.x[0], -2, 1e-9);
+  EXPECT_EQ(line.y, (std::vector<Real>{-2, 0, 2}));
+}
+
 TEST(Fit, IsAbsentWithoutAProblemOfOnesOwn) {
   const Compared c({record_of({.optimizer = "a", .hits = 6})});
   EXPECT_NE(document_of(c).sections[0].id, "fit");

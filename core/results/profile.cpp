@@ -1,0 +1,209 @@
+// Ends of profile-likelihood intervals, by fits of the other unknowns at values of one, and their
+// file.
+#include "core/results/profile.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/records/fields.h"
+#include "core/results/statistics.h"
+
+namespace isoline::results {
+namespace {
+
+constexpr Real kNowhere = std::numeric_limits<Real>::infinity();
+constexpr Real kExact = 0.005;  // of t
+
+struct Tried {
+  Real distance, u;  // u = √((S − S_min)/s²)
+  std::vector<Real> x;
+};
+
+// One side of the profile of one unknown, over z: the unknown or its logarithm.
+class Side {
+ public:
+  Side(const ProfiledFit& fit, std::size_t unknown, int sign, LikelihoodProfile& out)
+      : fit_(fit), unknown_(unknown), sign_(sign), out_(out) {
+    t_ = student_quantile(0.975, fit.freedom);
+    const Real x = fit.best.x[unknown];
+    const Real deviation = fit.deviation[unknown] / (fit.is_log[unknown] ? x : 1);
+    reach_ = std::isfinite(deviation) && deviation > 0 ? t_ * deviation
+             : x != 0                                  ? 0.1 * std::abs(z_of(x))
+                                                       : 1;
+    const Real bound = sign > 0 ? fit.upper[unknown] : fit.lower[unknown];
+    room_ = std::isfinite(bound) ? std::abs(z_of(bound) - z_of(x)) : kNowhere;
+    tried_ = {{0, 0, fit.best.x}};
+  }
+
+  Real end(const RefitAt& refit) {
+    Real distance = reach_ < room_ ? reach_ : room_ / 2;
+    for (std::size_t i = 0; i < kProfilePoints && room_ > 0; ++i) {
+      if (is_at_end(add(distance, refit)) || is_beaten_) break;
+      const std::optional<Real> next = next_distance();
+      if (!next) break;
+      distance = *next;
+    }
+    return concluded();
+  }
+
+ private:
+  Real z_of(Real x) const { return fit_.is_log[unknown_] ? std::log(x) : x; }
+  Real value_at(Real distance) const {
+    const Real z = z_of(fit_.best.x[unknown_]) + sign_ * distance;
+    return fit_.is_log[unknown_] ? std::exp(z) : z;
+  }
+
+  const Tried* add(Real distance, const RefitAt& refit) {
+    const auto nearest = std::ranges::min_element(
+        tried_, {}, [&](const Tried& each) { return std::abs(each.distance - distance); });
+    std::vector<Real> start = nearest->x;
+    const Real value = start[unknown_] = value_at(distance);
+    const std::optional<Refit> found = refit(unknown_, start);
+    if (!found || !std::isfinite(found->sum_of_squares)) {
+      failed_ = std::min(failed_, distance);
+      return nullptr;
+    }
+    const Real rise = (found->sum_of_squares - fit_.best.sum_of_squares) / fit_.variance;
+    if (found->sum_of_squares < fit_.best.sum_of_squares * (1 - 1e-6)) {
+      is_beaten_ = true;
+      out_.messages.push_back(
+          fmt::format("at {} = {:.6g} the fit is better than the one that is profiled: fit again "
+                      "from there",
+                      out_.name, value));
+    }
+    out_.value.push_back(value);
+    out_.rise.push_back(rise);
+    const auto at = std::ranges::lower_bound(tried_, distance, {}, &Tried::distance);
+    return &*tried_.insert(at, {distance, std::sqrt(std::max<Real>(rise, 0)), found->x});
+  }
+  bool is_at_end(const Tried* last) const {
+    return last != nullptr &&
+           (std::abs(last->u - t_) <= kExact * t_ || (last->distance == room_ && last->u < t_));
+  }
+
+  auto first_above() const {
+    return std::ranges::find_if(tried_, [&](const Tried& each) { return each.u >= t_; });
+  }
+  // Where a line through the points around the end meets t.
+  Real crossing() const {
+    const auto above = first_above();
+    const Tried &low = *(above - 1), &high = *above;
+    return low.distance + (t_ - low.u) / (high.u - low.u) * (high.distance - low.distance);
+  }
+  std::optional<Real> next_distance() const {
+    const Tried& last = tried_.back();
+    if (const auto above = first_above(); above != tried_.end()) {
+      const Real low = (above - 1)->distance, width = above->distance - low;
+      return std::clamp(crossing(), low + 0.02 * width, low + 0.98 * width);
+    }
+    if (failed_ < kNowhere) {
+      constexpr Real kNear = 0.02;
+      if (failed_ - last.distance <= kNear * failed_) return std::nullopt;
+      return (last.distance + failed_) / 2;
+    }
+    constexpr Real kFlat = 100;
+    if (last.distance > kFlat * reach_) return std::nullopt;
+    const Real longer = last.u > 0 ? std::clamp(1.05 * t_ / last.u, 1.2, 2.5) : 2.5;
+    return std::min(last.distance > 0 ? longer * last.distance : reach_ / 2, room_);
+  }
+
+  Real concluded() const {
+    if (is_beaten_) return std::numeric_limits<Real>::quiet_NaN();
+    const char* const side = sign_ > 0 ? "upper" : "lower";
+    const Tried& last = tried_.back();
+    if (const auto above = first_above(); above != tried_.end()) return value_at(crossing());
+    if (std::abs(last.u - t_) <= kExact * t_) return value_at(last.distance);
+    const Real value = value_at(last.distance);
+    if (last.distance >= room_) {
+      out_.messages.push_back(fmt::format(
+          "{} has no {} limit within its bounds: the interval is one-sided", out_.name, side));
+      return value;
+    }
+    if (failed_ < kNowhere) {
+      out_.messages.push_back(fmt::format(
+          "the {} limit of {} lies where evaluations fail; {:.6g} is the last value before", side,
+          out_.name, value));
+      return value;
+    }
+    out_.messages.push_back(fmt::format("{} is not identifiable {} {:.6g}: the profile is flat",
+                                        out_.name, sign_ > 0 ? "above" : "below", value));
+    return sign_ * kNowhere;
+  }
+
+  const ProfiledFit& fit_;
+  std::size_t unknown_;
+  int sign_;
+  LikelihoodProfile& out_;
+  Real t_ = 0, reach_ = 0, room_ = 0, failed_ = kNowhere;
+  bool is_beaten_ = false;    // by a better fit
+  std::vector<Tried> tried_;  // ascending distances
+};
+
+}  // namespace
+
+LikelihoodProfile profile_of(const ProfiledFit& fit, std::size_t unknown, const RefitAt& refit) {
+  LikelihoodProfile out{.name = fit.names[unknown]};
+  out.low = Side(fit, unknown, -1, out).end(refit);
+  out.high = Side(fit, unknown, 1, out).end(refit);
+  std::vector<std::pair<Real, Real>> points;
+  for (std::size_t i = 0; i < out.value.size(); ++i) points.emplace_back(out.value[i], out.rise[i]);
+  points.emplace_back(fit.best.x[unknown], 0);
+  std::ranges::sort(points);
+  out.value.clear();
+  out.rise.clear();
+  for (const auto& [value, rise] : points) {
+    out.value.push_back(value);
+    out.rise.push_back(rise);
+  }
+  return out;
+}
+
+// The file.
+
+void fields(Like<LikelihoodProfile> auto& profile, auto& field) {
+  field("unknown", profile.name);
+  field("low", profile.low);
+  field("high", profile.high);
+  field("value", profile.value);
+  field("rise", profile.rise);
+  field("messages", profile.messages);
+}
+
+void fields(Like<ProfiledCell> auto& cell, auto& field) {
+  field("cell", cell.cell, R"({"pattern": "^[0-9a-f]{16}$"})");
+  field("profiles", cell.profiles);
+}
+
+namespace {
+
+struct ProfileFile {
+  std::vector<ProfiledCell> cells;
+};
+
+void fields(Like<ProfileFile> auto& file, auto& field) {
+  field.constant("schema", "isoline.profile/1");
+  field("cells", file.cells);
+}
+
+}  // namespace
+
+Json profiles_to_json(const std::vector<ProfiledCell>& all) { return json_of(ProfileFile{all}); }
+
+std::vector<ProfiledCell> profiles_from_text(const std::string& text, const std::string& origin) {
+  std::vector<ProfiledCell> cells =
+      from_text<ProfileFile>(text, origin, "not a file of profiles (isoline.profile/1)").cells;
+  for (const ProfiledCell& cell : cells)
+    for (const LikelihoodProfile& profile : cell.profiles)
+      require(profile.value.size() == profile.rise.size() && std::ranges::is_sorted(profile.value),
+              [&] { return origin + ": the values of a profile must ascend, with a rise each"; });
+  return cells;
+}
+
+Json profile_schema() {
+  return schema_of<ProfileFile>("isoline.profile/1: profile-likelihood intervals of fits");
+}
+
+}  // namespace isoline::results
