@@ -16,6 +16,7 @@
 #include "core/oracle.h"
 #include "core/seeds.h"
 #include "core/threads.h"
+#include "core/trace.h"
 #include "reports/page/page.h"
 #include "reports/sections/answers.h"
 #include "reports/sections/words.h"
@@ -275,8 +276,8 @@ std::string pinned_json(const Comparison& c) {
 
 // The nominal cost of a Jacobian on each common setting and, for each ranked method, the calls of
 // its runs until they reached the tolerance: [work without pullbacks and Jacobians, pullbacks,
-// Jacobians] of each run, one after the other; null of a run that did not, and of one that is
-// missing.
+// Jacobians, the first in rounds of 8 workers, of 64] of each run, one after the other; null of a
+// run that did not, and of one that is missing.
 std::string calls_json(const Comparison& c) {
   if (is_large(c)) return "[]";
   constexpr auto kPullback = static_cast<std::size_t>(Oracle::pullback),
@@ -285,12 +286,13 @@ std::string calls_json(const Comparison& c) {
     std::uint64_t declared = 0;
     const std::string methods = json_list(c.order.methods, [&](std::size_t s) {
       const Cell& cell = c.cell(p, s);
-      std::vector<std::string> texts(cell.missing(), "null,null,null");
+      constexpr const char* kNone = "null,null,null,null,null";
+      std::vector<std::string> texts(cell.missing(), kNone);
       for (const std::size_t row : cell.runs) {
         const Record& record = *c.runs[row].record;
         const Real work = c.taken(c.runs[row], Measure::work, kTightest);
         if (work == kNever) {
-          texts.emplace_back("null,null,null");
+          texts.emplace_back(kNone);
           continue;
         }
         const OracleCounts counts = counts_at(record, work);
@@ -298,8 +300,11 @@ std::string calls_json(const Comparison& c) {
           return Real(record.prices[kind]) * Real(counts[kind]);
         };
         declared = std::max<std::uint64_t>(declared, record.prices[kJacobian]);
-        texts.push_back(fmt::format("{},{},{}", work - spent(kPullback) - spent(kJacobian),
-                                    counts[kPullback], counts[kJacobian]));
+        const Real derivatives = spent(kPullback) + spent(kJacobian);
+        texts.push_back(
+            fmt::format("{},{},{}", work - derivatives, counts[kPullback], counts[kJacobian]));
+        for (const std::int64_t workers : kWorkers)
+          texts.back() += fmt::format(",{}", rounds_at(record, work, workers) - derivatives);
       }
       return "[" + joined(texts, ",") + "]";
     });

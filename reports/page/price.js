@@ -4,18 +4,20 @@
 const PRICE_STEPS = 60;  // of a slider, from 1 to 1,000
 const priceOf = (step) => 10 ** (step / 20);
 const price = {gradient: 0, jacobian: -1};  // steps; −1: the nominal cost, min(n, m)
+const WORKERS = [1, 8, 64], WIDTH = 5, FORWARDS = [0, 3, 4];  // of a run in DATA.calls: the forward solves in rounds of so many workers
+let workers = 0;  // index in WORKERS
 
-function costOf(flat, gradient, jacobian) {
+function costOf(flat, gradient, jacobian, crew = 0) {
   const costs = [];
-  for (let i = 0; i < flat.length; i += 3) costs.push(flat[i] === null ? Infinity : flat[i] + gradient * flat[i + 1] + jacobian * flat[i + 2]);
+  for (let i = 0; i < flat.length; i += WIDTH) costs.push(flat[i] === null ? Infinity : flat[i + FORWARDS[crew]] + gradient * flat[i + 1] + jacobian * flat[i + 2]);
   return costs.length === 0 ? Infinity : medianOf(costs.sort((x, y) => x - y));
 }
 
 // Best first; a Jacobian without a price has its nominal cost.
-function standingsAtPrices(gradient, jacobian) {
+function standingsAtPrices(gradient, jacobian, crew = 0) {
   const all = DATA.ranked.map((s) => ({s, score: 0, solved: 0})), end = 64;
   for (const [declared, methods] of DATA.calls) {
-    const costs = methods.map((flat) => costOf(flat, gradient, jacobian ?? declared)), least = Math.max(1, Math.min(...costs));
+    const costs = methods.map((flat) => costOf(flat, gradient, jacobian ?? declared, crew)), least = Math.max(1, Math.min(...costs));
     costs.forEach((cost, i) => {
       if (cost === Infinity) return;
       all[i].score += Math.max(0, Math.log2(end) - Math.log2(Math.max(1, cost) / least)) / Math.log2(end) / DATA.calls.length;
@@ -25,11 +27,17 @@ function standingsAtPrices(gradient, jacobian) {
   return all.sort((a, b) => (Math.abs(a.score - b.score) > 1e-12 ? b.score - a.score : b.solved - a.solved));
 }
 
+// Whether a method hands several forward solves over at once, so that workers share them.
+function sharesWork(s) {
+  const i = DATA.ranked.indexOf(s);
+  return DATA.calls.some(([, methods]) => methods[i].some((value, at) => at % WIDTH === FORWARDS[2] && value !== methods[i][at - FORWARDS[2]]));
+}
+
 // The method that ranks first from each price of a Jacobian on.
 function leadersBy(gradient) {
   const leaders = [];
   for (let step = 0; step <= PRICE_STEPS; ++step) {
-    const [{s}] = standingsAtPrices(gradient, priceOf(step));
+    const [{s}] = standingsAtPrices(gradient, priceOf(step), workers);
     if (leaders.length === 0 || leaders[leaders.length - 1].s !== s) leaders.push({s, from: priceOf(step)});
   }
   return leaders;
@@ -40,7 +48,7 @@ function leadersText(gradient) {
 }
 
 function drawPrices(list, sentence) {
-  const gradient = priceOf(price.gradient), jacobian = price.jacobian < 0 ? undefined : priceOf(price.jacobian), places = standingsAtPrices(gradient, jacobian);
+  const gradient = priceOf(price.gradient), jacobian = price.jacobian < 0 ? undefined : priceOf(price.jacobian), places = standingsAtPrices(gradient, jacobian, workers);
   if (list.childElementCount === 0)
     for (const s of DATA.ranked) {
       const row = element('li', {}, element('span', {}, ...nameOfMethod(s)), element('span', {className: 'way'}, element('i')), element('small'));
@@ -53,7 +61,8 @@ function drawPrices(list, sentence) {
     const row = rows.get(s);
     row.style.setProperty('--place', place);
     row.querySelector('i').style.setProperty('--at', score);
-    row.querySelector('small').textContent = `${score.toFixed(2)}, ${solved}/${DATA.calls.length}`;
+    const alone = workers > 0 && !sharesWork(s) ? ` ${worded('price-alone')}` : '';
+    row.querySelector('small').textContent = `${score.toFixed(2)}, ${solved}/${DATA.calls.length}${alone}`;
   });
   list.style.setProperty('--places', places.length);
   sentence.textContent = worded('price-leaders', {gradient: short(gradient), leaders: leadersText(gradient)});
@@ -75,19 +84,31 @@ function priceSlider(key, redraw) {
   return element('label', {className: 'tolerance'}, worded(`price-${key}`), ' ', input, output);
 }
 
+function workerSwitch(redraw) {
+  const select = element('select', {}, ...WORKERS.map((count, i) => element('option', {value: i, selected: i === workers}, String(count))));
+  select.addEventListener('change', () => {
+    workers = Number(select.value);
+    redraw();
+    writeAddress();
+  });
+  return element('label', {className: 'tolerance'}, worded('price-workers'), ' ', select);
+}
+
 function readPrices(asked) {
+  workers = Math.max(0, WORKERS.indexOf(Number(asked.get('workers'))));
   for (const key of Object.keys(price)) if (Number(asked.get(key)) > 0) price[key] = Math.min(PRICE_STEPS, Math.max(0, Math.round(20 * Math.log10(Number(asked.get(key))))));
 }
 
 function writePrices(asked) {
   if (price.gradient > 0) asked.set('gradient', short(priceOf(price.gradient)));
   if (price.jacobian >= 0) asked.set('jacobian', short(priceOf(price.jacobian)));
+  if (workers > 0) asked.set('workers', String(WORKERS[workers]));
 }
 
 function livePrices(place) {
   if (DATA.calls.length === 0 || DATA.ranked.length < 2) return place.previousElementSibling.remove();
   const list = element('ol', {className: 'bars-of placed'}), sentence = element('p', {className: 'verdict'}), draw = () => drawPrices(list, sentence);
   sentence.setAttribute('aria-live', 'polite');
-  place.append(element('p', {className: 'lead'}, worded('price-lead', {tau: tauName(DEFAULT_TARGET)})), element('p', {className: 'steps'}, priceSlider('gradient', draw), ' ', priceSlider('jacobian', draw)), sentence, list);
+  place.append(element('p', {className: 'lead'}, worded('price-lead', {tau: tauName(DEFAULT_TARGET)})), element('p', {className: 'steps'}, priceSlider('gradient', draw), ' ', priceSlider('jacobian', draw), ' ', workerSwitch(draw)), sentence, list);
   live(list, draw);
 }

@@ -35,7 +35,9 @@ const RULES = document.head.appendChild(document.createElement('style'));
 function hideElements() {
   const selectors = ['s', 'p'].flatMap((kind) => [...view.hidden[kind]].map((index) => `[data-${kind}="${index}"]`));
   selectors.push(...hiddenMethods().map((method) => `[data-method="${CSS.escape(method)}"]`));
-  RULES.textContent = selectors.length === 0 ? '' : `:is(${selectors.join(',')}) { display: none !important; }`;
+  const shown = shownOf('s');  // up to eight have a hue each, in their order, which the address keeps
+  const hues = isFiltered() && shown.length <= 8 ? shown.map((s, i) => `[data-s="${s}"] { --series: var(--s${i}); }`) : [];
+  RULES.textContent = [selectors.length === 0 ? '' : `:is(${selectors.join(',')}) { display: none !important; }`, ...hues].join('\n');
   document.documentElement.classList.toggle('filtered', isFiltered());
 }
 

@@ -513,10 +513,26 @@ class Page(InBrowser):
             self.browser.run("show('s', [arguments[0]])", index)
             is_ranked = optimizer["standings"]["1e-6"]["settings"] > 0
             for table in ("standings-table", "heat") if is_ranked else ("heat",):
+                self.browser.run("document.getElementById(arguments[0]).scrollIntoView()", table)
                 self.browser.wait(
                     "return [...document.querySelectorAll(`#${arguments[0]} tbody tr`)].filter("
                     "(row) => row.getClientRects().length > 0).map((row) => row.dataset.s).join() "
                     "=== String(arguments[1])", table, index)
+
+    def test_a_small_selection_has_a_hue_for_each_method_in_its_order(self):
+        self.open("")
+        hue = "return arguments[0].map((s) => { const one = document.createElement('i'); one.dataset.s = s;" \
+              "document.body.append(one); return getComputedStyle(one).getPropertyValue('--series').trim(); })"
+        become = f"return JSON.stringify((function () {{ {hue} }})(arguments[0])) === JSON.stringify(arguments[1])"
+        own = self.browser.run(hue, [0, 1, 2])
+        first, second, third = (self.browser.run(f"return getComputedStyle(document.body).getPropertyValue('--s{i}').trim()")
+                                for i in range(3))
+        self.assertEqual(len({first, second, third}), 3)
+        for shown, hues in (([0, 1, 2], [first, second, third]), ([1, 2], [first, second])):
+            self.browser.run("show('s', arguments[0])", shown)
+            self.browser.wait(become, shown, hues)
+        self.browser.run("show('s', DATA.optimizers.map((_, s) => s))")
+        self.browser.wait(become, [0, 1, 2], own)
 
     def test_a_chart_is_zoomed_turned_and_kept_as_a_file(self):
         self.open(f"#problem-{self.problem('beale')}")
@@ -799,6 +815,38 @@ class Page(InBrowser):
         self.assertTrue(self.browser.run(
             "return [...document.querySelectorAll('.tab.open .chart')].every((chart) => "
             "linesOf(chart).length > 0)"))
+
+
+class Workers(InBrowser):
+    """Methods that hand several forward solves over at once, and others."""
+
+    @classmethod
+    def made(cls, folder):
+        run("run", "--problem", "rosenbrock,burgers[N=8],poisson[N=8]", "--optimizer", "cma-es,dfo-gn,gd,ceres-lm", "--seeds", "2",
+            "--work", "2000", "--rates", "none", "--out", folder, "--quiet")
+        cls.results = pathlib.Path(folder)
+        return pathlib.Path(folder, "report", "index.html")
+
+    def test_workers_share_the_rounds_that_records_count(self):
+        counted, shared = set(), 0
+        for file in (self.results / "runs").glob("*.json"):
+            record = json.loads(file.read_text())
+            for columns in (record["curve"], record.get("hits", {})):
+                counted.update(zip(columns.get("work", []), columns.get("rounds", {}).get("64", [])))
+        self.open("")
+        calls = self.browser.run("return DATA.calls.map(([, methods]) => methods)")
+        for flat in (flat for methods in calls for flat in methods):
+            for work, gradients, jacobians, _, rounds in zip(*[iter(flat)] * 5):
+                if work != rounds:
+                    self.assertEqual((gradients, jacobians), (0, 0))
+                    self.assertIn((work, rounds), counted)
+                    shared += 1
+        self.assertGreater(shared, 0)
+        self.open("?workers=64#price")
+        self.browser.wait("return document.querySelectorAll('.placed li').length > 1")
+        marked = self.browser.run("return [...document.querySelectorAll('.placed li')].map((row) => "
+                                  "row.innerText.includes('one call'))")
+        self.assertEqual(sorted(set(marked)), [False, True])
 
 
 class Whole(InBrowser):

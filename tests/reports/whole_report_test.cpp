@@ -177,7 +177,9 @@ TEST_F(SameFigures, HaveColumnsOfNumbersInCsv) {
       EXPECT_TRUE(fields[i] == "inf" || std::isfinite(std::stod(fields[i]))) << line;
       ++filled[std::to_string(i)];
     }
-    if (fields[7] == "%") EXPECT_TRUE(fields[8].ends_with(" %")) << line;
+    if (fields[7] == "%") {
+      EXPECT_TRUE(fields[8].ends_with(" %")) << line;
+    }
   }
   EXPECT_GT(filled["3"], 100U) << "values";
   EXPECT_GT(filled["4"], 10U) << "lower ends";
