@@ -309,7 +309,7 @@ void Store::remove(const Request& request) const {
 }
 
 void Store::try_to_write(const std::function<void()>& write) {
-  constexpr int kTries = 3;
+  constexpr int kTries = 6;  // somebody may remove the folder again and again
   for (int i = 1;; ++i) {
     try {
       if (i > 1) make_folders();

@@ -425,8 +425,11 @@ std::vector<ComparedCell> baseline_from_json(const Json& json) {
     std::vector<ComparedCell> cells;
     for (const Json& cell : json.at("cells")) cells.push_back(cell_from_json(cell, json));
     return cells;
-  } catch (const Json::exception& error) {
-    throw UsageError(fmt::format("not a valid {}: {}", kBaselineSchema, error.what()));
+  } catch (const Json::exception&) {
+    throw UsageError(
+        fmt::format("not a valid {}: a member of it, or what a cell refers to, is "
+                    "missing or of another type",
+                    kBaselineSchema));
   }
 }
 

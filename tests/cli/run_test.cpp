@@ -326,7 +326,8 @@ TEST_F(Run, FitsTheTargetOfAFileWhoseSolutionIsUnknown) {
 
 TEST_F(Run, DamagedFilesAreNamedWithTheirPlace) {
   shell(kMatrix + "--no-report");
-  for (const char* text : {R"({"schema": "isoline.baseline/1", "cells": 3})", "[]",
+  for (const char* text : {R"({"schema": "isoline.baseline/1", "cells": 3})",
+                           R"({"schema": "isoline.baseline/1", "cells": [{"given": 99}]})", "[]",
                            R"({"schema": "isoline.rates/1", "rows": [{"problem": 3}]})",
                            R"({"schema": "isoline.suite/1", "name": "x", "matrix": 3})"}) {
     write_text(shell.folder() / "bad.json", text);
