@@ -1,10 +1,9 @@
 // A network that solves an equation for u(x, t) with known coefficients, by least squares in θ:
 //
 //   L = ½ (1/N_Ω Σ r² + 1/N_∂ Σ (u − u*)²),  u = N(x, t; θ),
-//   burgers     r = u_t + u u_x − ν u_xx,  |x| < 1,  u* = −sin πx at t = 0, 0 at x = ±1; solution
-//   of
-//               Cole and Hopf; ν = 0.01/π; three layers of 20. SSBroyden on it: Urbán, Stefanou,
-//               Pons (2025), arXiv 2405.04230; Kiyani et al. (2025), arXiv 2501.16371
+//   burgers     r = u_t + u u_x − ν u_xx,  |x| < 1,  u* = −sin πx at t = 0, 0 at x = ±1;
+//               solution of Cole and Hopf; ν = 0.01/π; three layers of 20. SSBroyden on it: Urbán,
+//               Stefanou, Pons (2025), arXiv 2405.04230; Kiyani et al. (2025), arXiv 2501.16371
 //   convection  r = u_t + β u_x,  0 < x < 2π,  u* = sin(x − βt) at t = 0 and at both ends; β = 40;
 //               four layers of 50. Rathore, Lei, Frangella, Lu, Udell (2024), arXiv 2402.01868
 //

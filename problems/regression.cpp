@@ -4,9 +4,8 @@
 //
 //   L = 1/B Σ (N(t; θ) − y*(t))²,  y* = (f − mean f)/(standard deviation of f)
 //   bump        f(t) = exp(−10 t²) sin 2t,  t uniform in [−1, 1]
-//   polynomial  f(t) = Σ cₘ m(t)/rms(m) over the 210 monomials m of degree 4 or less of 6
-//   variables,
-//               t and c normal, rms(m)² = E m² = Π (2pⱼ − 1)!! for the powers pⱼ
+//   polynomial  f(t) = Σ cₘ m(t)/rms(m) over the 210 monomials m of degree 4 or less of
+//               6 variables, t and c normal, rms(m)² = E m² = Π (2pⱼ − 1)!! for the powers pⱼ
 //
 // N is a perceptron of three layers of 16 gelu neurons in single precision, with PyTorch's start;
 // batches of 32 are consecutive slices of a fixed set of 313 batches, 20 times. Deviations: the

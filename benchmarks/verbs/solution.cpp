@@ -237,12 +237,7 @@ Json to_json(const Solution& solution) {
   for (std::size_t i = 0; solution.answer.is_bound_active() && i < solution.point().size(); ++i)
     json["active_bounds"].push_back(solution.answer.bound(i));
   for (const results::LikelihoodProfile& profile : solution.profiles)
-    json["profile"].push_back({{"unknown", profile.name},
-                               {"low", json_number(profile.low)},
-                               {"high", json_number(profile.high)},
-                               {"value", json_numbers(profile.value)},
-                               {"rise", json_numbers(profile.rise)},
-                               {"messages", profile.messages}});
+    json["profile"].push_back(results::to_json(profile));
   if (record.failures) json["failed_evaluations"] = record.failures->total;
   if (solution.answer.residual_norm)
     json["residual_norm"] = json_number(*solution.answer.residual_norm);
@@ -298,23 +293,19 @@ results::ProfiledFit profiled_fit(const Solution& solution, const Problem& probl
   return fit;
 }
 
-// A run of the record's method with one more unknown fixed, kept in that folder.
-std::optional<results::Refit> refitted(const Record& record, const std::string& name,
+// A run of that request with one more unknown fixed, kept in that folder.
+std::optional<results::Refit> refitted(Request request, const std::string& name,
                                        std::size_t unknown, const std::vector<Real>& start,
                                        const fs::path& folder, Session& session) {
   const std::string bytes(reinterpret_cast<const char*>(start.data()), start.size() * sizeof(Real));
   const fs::path file = folder / fmt::format("start-{:016x}.npy", fnv1a(bytes));
-  make_output_folder(folder);
   write_npy(file, {{static_cast<Index>(start.size())}, start});
-  OptionValues options = record.request.problem.options;
+  OptionValues options = request.problem.options;
   const std::string fixed = options.text("fixed");
   options.set("fixed",
               fmt::format("{}{}{}={}", fixed, fixed.empty() ? "" : "; ", name, start[unknown]));
   options.set(kStartOption, file.string());
-  Request request = record.request;
   request.problem = complete_problem(session.catalog(), request.problem.name, options);
-  request.optimizer =
-      complete_optimizer(session.catalog(), request.optimizer.name, request.optimizer.options);
   request = named(std::move(request));
   const RunOptions run{.uncertified = true, .command = session.command()};
   if (run_plan(session.catalog(), "profile", {request}, folder, run).is_interrupted)
@@ -367,16 +358,14 @@ fs::path folder_of(const std::vector<std::string>& folders, const Record& record
 void add_profiles(Solution& solution, const SolutionArguments& given, Session& session) {
   const Record& record = *solution.record;
   require_trust(given.trust, record);
-  const Component component = complete_problem(session.catalog(), record.request.problem.name,
-                                               record.request.problem.options);
-  const Problem problem = make_problem(session.catalog(), component, record.request.seed);
+  const Request request = request_again(session.catalog(), record, record.request.hard_seconds);
+  const Problem problem = make_problem(session.catalog(), request.problem, request.seed);
   const results::ProfiledFit fit = profiled_fit(solution, problem);
   const fs::path from = folder_of(given.folders, record), folder = from / "profile";
-  if (std::error_code unknown; fs::exists(from / "evaluations", unknown)) {
-    make_output_folder(folder);  // its runs are answered from the calls of the fit
-    fs::copy(from / "evaluations", folder / "evaluations",
+  make_output_folder(folder);
+  if (std::error_code unknown; fs::exists(from / "evaluations", unknown))
+    fs::copy(from / "evaluations", folder / "evaluations",  // which answer its runs
              fs::copy_options::recursive | fs::copy_options::skip_existing, unknown);
-  }
   const auto is_profiled = [&](std::size_t i) {
     return std::isfinite(fit.deviation[i]) || fit.best.x[i] == fit.lower[i] ||
            fit.best.x[i] == fit.upper[i];
@@ -394,7 +383,7 @@ void add_profiles(Solution& solution, const SolutionArguments& given, Session& s
         results::profile_of(fit, i, [&](std::size_t unknown, const std::vector<Real>& start) {
           return problem.unknowns() == 1
                      ? evaluated(problem, unknown, start[unknown], fit.is_log[unknown])
-                     : refitted(record, fit.names[unknown], unknown, start, folder, session);
+                     : refitted(request, fit.names[unknown], unknown, start, folder, session);
         }));
     const results::LikelihoodProfile& done = solution.profiles.back();
     say(stderr, fmt::format("profile: {}: {:.5g} … {:.5g}\n", done.name, done.low, done.high));

@@ -190,6 +190,8 @@ void fields(Like<ProfileFile> auto& file, auto& field) {
 
 }  // namespace
 
+Json to_json(const LikelihoodProfile& profile) { return json_of(profile); }
+
 Json profiles_to_json(const std::vector<ProfiledCell>& all) { return json_of(ProfileFile{all}); }
 
 std::vector<ProfiledCell> profiles_from_text(const std::string& text, const std::string& origin) {

@@ -1,4 +1,4 @@
-// LikelihoodProfile-likelihood intervals of the unknowns of a fit.
+// Profile-likelihood intervals of the unknowns of a fit.
 #pragma once
 
 #include <functional>
@@ -53,6 +53,7 @@ struct ProfiledCell {
   std::string cell;
   std::vector<LikelihoodProfile> profiles = {};
 };
+Json to_json(const LikelihoodProfile& profile);
 Json profiles_to_json(const std::vector<ProfiledCell>& all);
 std::vector<ProfiledCell> profiles_from_text(const std::string& text, const std::string& origin);
 Json profile_schema();  // what benchmarks/schemas/profile.json holds

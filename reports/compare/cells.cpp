@@ -418,7 +418,7 @@ std::string baseline_json(const Study& study, const std::vector<Study>& perturbe
   return text + fmt::format("\"cells\": [\n{}\n]}}\n", fmt::join(lines, ",\n"));
 }
 
-std::vector<ComparedCell> baseline_from_json(const Json& json) {
+std::vector<ComparedCell> baseline_from_json(const Json& json, const std::string& origin) {
   try {
     require(json.at("schema") == kBaselineSchema,
             [&] { return fmt::format("the schema is not {}", kBaselineSchema); });
@@ -427,9 +427,11 @@ std::vector<ComparedCell> baseline_from_json(const Json& json) {
     return cells;
   } catch (const Json::exception&) {
     throw UsageError(
-        fmt::format("not a valid {}: a member of it, or what a cell refers to, is "
+        fmt::format("{}: not a valid {}: a member of it, or what a cell refers to, is "
                     "missing or of another type",
-                    kBaselineSchema));
+                    origin, kBaselineSchema));
+  } catch (const UsageError& error) {
+    throw UsageError(fmt::format("{}: {}", origin, error.what()));
   }
 }
 

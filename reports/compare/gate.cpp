@@ -495,11 +495,7 @@ std::optional<std::vector<ComparedCell>> read_baseline(const std::filesystem::pa
   require(json.is_object() && json.value("schema", "") == kBaselineSchema,
           "compare needs two result folders, or a baseline and a result folder: "
           "isoline compare BASE NEW");
-  try {
-    return baseline_from_json(json);
-  } catch (const std::exception& error) {
-    throw UsageError(fmt::format("{}: {}", path.string(), error.what()));
-  }
+  return baseline_from_json(json, path.string());
 }
 
 }  // namespace

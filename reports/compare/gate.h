@@ -101,7 +101,8 @@ FolderCells read_cells(const std::string& folder,  // UsageError if it does not 
 // `perturbed`: a study per perturbation of the starts' last bit, of which the movement is kept.
 inline constexpr const char* kBaselineSchema = "isoline.baseline/1";
 std::string baseline_json(const Study& study, const std::vector<Study>& perturbed = {});
-std::vector<ComparedCell> baseline_from_json(const Json& json);  // UsageError if it is not valid
+// UsageError, which names the origin, if it is not valid.
+std::vector<ComparedCell> baseline_from_json(const Json& json, const std::string& origin);
 
 // Cells that NEW may lack, or may judge by another criterion of success. Patterns, with '*' for any
 // text, hold for a name or a specification.

@@ -27,11 +27,8 @@ function standingsAtPrices(gradient, jacobian, crew = 0) {
   return all.sort((a, b) => (Math.abs(a.score - b.score) > 1e-12 ? b.score - a.score : b.solved - a.solved));
 }
 
-// Whether a method hands several forward solves over at once, so that workers share them.
-function sharesWork(s) {
-  const i = DATA.ranked.indexOf(s);
-  return DATA.calls.some(([, methods]) => methods[i].some((value, at) => at % WIDTH === FORWARDS[2] && value !== methods[i][at - FORWARDS[2]]));
-}
+// The methods that hand several forward solves over at once, so that workers share them.
+const sharing = () => new Set(DATA.ranked.filter((_, i) => DATA.calls.some(([, methods]) => methods[i].some((value, at) => at % WIDTH === FORWARDS[2] && value !== methods[i][at - FORWARDS[2]]))));
 
 // The method that ranks first from each price of a Jacobian on.
 function leadersBy(gradient) {
@@ -47,7 +44,7 @@ function leadersText(gradient) {
   return leadersBy(gradient).map(({s, from}, i) => (i === 0 ? DATA.optimizers[s] : worded('price-from', {from: short(from), method: DATA.optimizers[s]}))).join(', ');
 }
 
-function drawPrices(list, sentence) {
+function drawPrices(list, sentence, shares) {
   const gradient = priceOf(price.gradient), jacobian = price.jacobian < 0 ? undefined : priceOf(price.jacobian), places = standingsAtPrices(gradient, jacobian, workers);
   if (list.childElementCount === 0)
     for (const s of DATA.ranked) {
@@ -61,7 +58,7 @@ function drawPrices(list, sentence) {
     const row = rows.get(s);
     row.style.setProperty('--place', place);
     row.querySelector('i').style.setProperty('--at', score);
-    const alone = workers > 0 && !sharesWork(s) ? ` ${worded('price-alone')}` : '';
+    const alone = workers > 0 && !shares.has(s) ? ` ${worded('price-alone')}` : '';
     row.querySelector('small').textContent = `${score.toFixed(2)}, ${solved}/${DATA.calls.length}${alone}`;
   });
   list.style.setProperty('--places', places.length);
@@ -107,7 +104,7 @@ function writePrices(asked) {
 
 function livePrices(place) {
   if (DATA.calls.length === 0 || DATA.ranked.length < 2) return place.previousElementSibling.remove();
-  const list = element('ol', {className: 'bars-of placed'}), sentence = element('p', {className: 'verdict'}), draw = () => drawPrices(list, sentence);
+  const list = element('ol', {className: 'bars-of placed'}), sentence = element('p', {className: 'verdict'}), shares = sharing(), draw = () => drawPrices(list, sentence, shares);
   sentence.setAttribute('aria-live', 'polite');
   place.append(element('p', {className: 'lead'}, worded('price-lead', {tau: tauName(DEFAULT_TARGET)})), element('p', {className: 'steps'}, priceSlider('gradient', draw), ' ', priceSlider('jacobian', draw), ' ', workerSwitch(draw)), sentence, list);
   live(list, draw);

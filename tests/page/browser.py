@@ -77,7 +77,7 @@ class Browser:
 
     def wait(self, script, *arguments):
         """Until the script's value is true: what is drawn, is drawn when seen."""
-        for _ in range(600):
+        for _ in range(200):
             if value := self.run(script, *arguments):
                 return value
             time.sleep(0.05)

@@ -84,7 +84,7 @@ TEST(Baseline, StandsOnTheLeftOfAResultFolder) {
   folder.add_file("baseline.json", baseline_json(read_study({folder.path()})));
   EXPECT_THROW(compare_results(folder.path(), file, {}), UsageError);
   EXPECT_THROW(compare_results(file, file, {}), UsageError);
-  EXPECT_THROW(baseline_from_json(Json{{"schema", kBaselineSchema}}), UsageError);
+  EXPECT_THROW(baseline_from_json(Json{{"schema", kBaselineSchema}}, "base"), UsageError);
   folder.add_file("report.json", "{\"schema\": \"isoline.report/1\"}");
   EXPECT_THROW(compare_results(folder.path() / "report.json", folder.path(), {}), UsageError);
 }

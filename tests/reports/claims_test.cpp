@@ -66,23 +66,27 @@ TEST(Claims, TakeRunsThatNoLimitOfTimeHasEnded) {
   EXPECT_EQ(judge(Json::array({claim}), runs).at(0).verdict, Verdict::not_comparable);
 }
 
+// A run of `length` iterations, for a claim that asks for 100.
+Record published_run(const char* optimizer, int seed, Real error, Index length, Json& claim) {
+  Record record = run_of(optimizer, static_cast<std::uint64_t>(seed), error);
+  record.request.budget.iterations = 100;
+  for (Json& term : claim["cells"][0]["terms"])
+    for (Json& cell : term[0]["cells"])
+      if (cell == record.cell) cell = cell_digest(record.request);
+  record.request.budget.iterations = length;
+  record.cell = cell_digest(record.request);
+  record.status = Status::budget;
+  return record;
+}
+
 // Adam and SIP over 3 seeds and 100 iterations are asked for; published are seeds 0 and 1 of SIP
 // and 0 of Adam, of 40 and 60 iterations.
 TEST(Claims, TakeTheBeginningsThatPublishedRecordsHave) {
   Json claim = claim_of({.more = {{"iteration", 5}}});
   std::vector<Record> published;
   for (const auto& [optimizer, seed, error, length] :
-       {std::tuple{"adam", 0, 20.0, 40}, {"sip", 0, 2.0, 60}, {"sip", 1, 3.0, 60}}) {
-    Record record = run_of(optimizer, static_cast<std::uint64_t>(seed), error);
-    record.request.budget.iterations = 100;
-    for (Json& term : claim["cells"][0]["terms"])
-      for (Json& cell : term[0]["cells"])
-        if (cell == record.cell) cell = cell_digest(record.request);
-    record.request.budget.iterations = length;
-    record.cell = cell_digest(record.request);
-    record.status = Status::budget;
-    published.push_back(record);
-  }
+       {std::tuple{"adam", 0, 20.0, 40}, {"sip", 0, 2.0, 60}, {"sip", 1, 3.0, 60}})
+    published.push_back(published_run(optimizer, seed, error, length, claim));
   const auto judged = [&](const Json& asked, const std::vector<Record>& runs = {}) {
     return judge(Json::array({asked}), runs, published).at(0);
   };
@@ -109,17 +113,8 @@ TEST(Claims, TakeThePublishedSeedsThatAreLongEnough) {
   Json claim = claim_of({.more = {{"iteration", 5}}});
   std::vector<Record> published;
   for (const char* optimizer : {"adam", "sip"})
-    for (const int seed : {0, 1}) {
-      Record record = run_of(optimizer, static_cast<std::uint64_t>(seed), seed + 1);
-      record.request.budget.iterations = 100;
-      for (Json& term : claim["cells"][0]["terms"])
-        for (Json& cell : term[0]["cells"])
-          if (cell == record.cell) cell = cell_digest(record.request);
-      record.request.budget.iterations = seed == 0 ? 60 : 40;
-      record.cell = cell_digest(record.request);
-      record.status = Status::budget;
-      published.push_back(record);
-    }
+    for (const int seed : {0, 1})
+      published.push_back(published_run(optimizer, seed, seed + 1, seed == 0 ? 60 : 40, claim));
   const auto judged = [&] { return judge(Json::array({claim}), {}, published).at(0); };
   EXPECT_EQ(judged().measured->n, 2U);
   claim["quantity"]["iteration"] = 50;
