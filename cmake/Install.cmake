@@ -8,6 +8,7 @@ foreach(library IN LISTS libraries)
   install(TARGETS isoline_${library} EXPORT IsolineTargets)
   install(DIRECTORY ${library} DESTINATION include/isoline FILES_MATCHING PATTERN "*.h")
 endforeach()
+install(DIRECTORY ${PROJECT_BINARY_DIR}/core/generated/ DESTINATION include/isoline)
 set_target_properties(isoline_cli PROPERTIES EXPORT_NAME cli)  # its headers are benchmarks'
 install(TARGETS isoline_cli EXPORT IsolineTargets)
 install(DIRECTORY clients/python DESTINATION share/isoline COMPONENT program FILES_MATCHING

@@ -5,6 +5,8 @@
 #include <atomic>
 #include <cmath>
 
+#include "core/trace.h"
+
 namespace isoline {
 
 Vector curl(VectorRef velocity, Index rows, Index columns) {
@@ -42,7 +44,7 @@ Picture::Picture(const Matrix& batch, const std::optional<Field>& field, const H
   cells_ = {drawn_.data(), static_cast<std::size_t>(drawn_.size())};
 }
 
-// Frames in the places of a trace.
+// Frames in their places.
 
 namespace {
 
@@ -50,16 +52,16 @@ constexpr std::int64_t kFree = -1;
 
 Real depth(std::int64_t iteration) { return std::log1p(static_cast<Real>(iteration)); }
 
-std::vector<std::size_t> taken_places(const Trace::Frames& frames) {
+std::vector<std::size_t> taken_places(const Frames& frames) {
   std::vector<std::size_t> places;
-  for (std::size_t i = 0; i < Trace::Frames::kPlaces; ++i)
+  for (std::size_t i = 0; i < Frames::kPlaces; ++i)
     if (frames.iteration[i] >= 0) places.push_back(i);
   std::ranges::sort(places, {}, [&](std::size_t i) { return frames.iteration[i]; });
   return places;
 }
 
 // Free, that of the same iteration, or that of the frame missed least once there is a later one.
-std::size_t place_for(const Trace::Frames& frames, std::int64_t iteration) {
+std::size_t place_for(const Frames& frames, std::int64_t iteration) {
   for (const std::int64_t wanted : {iteration, kFree}) {
     const std::int64_t* const place = std::ranges::find(frames.iteration, wanted);
     if (place != std::end(frames.iteration))
@@ -87,10 +89,26 @@ void copy(std::span<const Real> values, float* out) {
 
 }  // namespace
 
-void open_frames(Trace::Frames& frames, Index rows, Index columns, std::span<const Real> target,
+bool are_sound(const Frames& frames) {
+  constexpr int kMost = Frames::kCells;
+  if (!is_flag(frames.has_truth) || !is_flag(frames.has_context) || !is_flag(frames.has_y) ||
+      !is_within(frames.rows, kMost) || !is_within(frames.columns, kMost))
+    return false;
+  if ((frames.rows == 0) != (frames.columns == 0) ||
+      std::int64_t{frames.rows} * frames.columns > kMost)
+    return false;
+  std::vector<std::int64_t> iterations;
+  for (const std::int64_t iteration : frames.iteration) {
+    if (iteration < -1) return false;
+    if (iteration >= 0) iterations.push_back(iteration);
+  }
+  std::ranges::sort(iterations);
+  return std::ranges::adjacent_find(iterations) == iterations.end();
+}
+
+void open_frames(Frames& frames, Index rows, Index columns, std::span<const Real> target,
                  std::span<const Real> truth, std::span<const Real> context) {
-  if (rows * columns > Trace::Frames::kCells || !fits(target) || !fits(truth) || !fits(context))
-    return;
+  if (rows * columns > Frames::kCells || !fits(target) || !fits(truth) || !fits(context)) return;
   copy(target, frames.target);
   copy(truth, frames.truth);
   copy(context, frames.context);
@@ -100,7 +118,7 @@ void open_frames(Trace::Frames& frames, Index rows, Index columns, std::span<con
   frames.rows = static_cast<int>(rows);
 }
 
-void keep_frame(Trace::Frames& frames, std::int64_t iteration, std::span<const Real> x,
+void keep_frame(Frames& frames, std::int64_t iteration, std::span<const Real> x,
                 std::span<const Real> y) {
   if (frames.rows == 0 || !fits(x) || !fits(y)) return;
   const std::size_t place = place_for(frames, iteration);
@@ -114,7 +132,7 @@ void keep_frame(Trace::Frames& frames, std::int64_t iteration, std::span<const R
   frames.iteration[place] = iteration;
 }
 
-std::vector<std::size_t> chosen_frames(const Trace::Frames& frames) {
+std::vector<std::size_t> chosen_frames(const Frames& frames) {
   std::vector<std::size_t> taken = taken_places(frames);
   if (taken.size() <= kMostFrames) return taken;
   const auto depth_of = [&](std::size_t i) { return depth(frames.iteration[taken[i]]); };

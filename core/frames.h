@@ -2,6 +2,8 @@
 // run stores.
 #pragma once
 
+#include <algorithm>
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <span>
@@ -10,7 +12,6 @@
 
 #include "core/array.h"
 #include "core/field.h"
-#include "core/trace.h"
 
 namespace isoline {
 
@@ -41,19 +42,33 @@ class Picture {
 
 inline constexpr std::size_t kMostFrames = 6;  // that a record keeps
 
+// y*, x* and x of the first sample that judges, in the single precision that files keep.
+struct Frames {
+  static constexpr std::size_t kPlaces = 12;
+  static constexpr int kCells = 128 * 128;  // of the largest grid
+  int rows = 0, columns = 0;                // 0: nothing is kept
+  bool has_truth = false, has_context = false, has_y = false;
+  std::int64_t iteration[kPlaces];  // −1: nothing there
+  float target[kCells], truth[kCells], x[kPlaces][kCells];
+  float y[kCells], context[kCells];  // y of the last x
+
+  Frames() { std::fill_n(iteration, kPlaces, -1); }
+};
+bool are_sound(const Frames& frames);  // of a valid size, and at valid iterations
+
 // Reserves storage for x (rows · columns), and stores y* and, if known, x* and the context of the
 // same size. Stores nothing if the grid has too many cells.
-void open_frames(Trace::Frames& frames, Index rows, Index columns, std::span<const Real> target,
+void open_frames(Frames& frames, Index rows, Index columns, std::span<const Real> target,
                  std::span<const Real> truth, std::span<const Real> context = {});
 
 // Stores x of an iteration after the previous one, or replaces the last one. Skips an x that is not
 // finite in single precision. If all places are taken, drops the x whose neighbours, in the
 // logarithm of iterations, are nearest.
-void keep_frame(Trace::Frames& frames, std::int64_t iteration, std::span<const Real> x,
+void keep_frame(Frames& frames, std::int64_t iteration, std::span<const Real> x,
                 std::span<const Real> y = {});
 
 // The places of at most six frames by iteration: the first, the last, and between them those
 // nearest to an even spread of log(1 + iteration).
-std::vector<std::size_t> chosen_frames(const Trace::Frames& frames);
+std::vector<std::size_t> chosen_frames(const Frames& frames);
 
 }  // namespace isoline

@@ -2,7 +2,6 @@
 #include "core/trace.h"
 
 #include <cmath>
-#include <cstring>
 #include <vector>
 
 #include "core/text.h"
@@ -15,17 +14,6 @@ bool is_amount(double seconds) { return std::isfinite(seconds) && seconds >= 0; 
 
 bool are_amounts(const auto& counts) {
   return std::ranges::all_of(counts, [](std::int64_t count) { return is_amount(count); });
-}
-
-bool is_within(int value, int most) { return value >= 0 && value <= most; }
-
-// A byte that is neither 0 nor 1 must not be read as a bool.
-template <class Flag>
-bool is_flag(const Flag& flag) {
-  static_assert(sizeof flag == 1);
-  unsigned char byte = 0;
-  std::memcpy(&byte, reinterpret_cast<const unsigned char*>(&flag), 1);
-  return byte <= 1;
 }
 
 template <std::size_t size>
@@ -67,44 +55,6 @@ bool are_hits_sound(const Trace& trace) {
   return true;
 }
 
-bool is_sound(const Trace::Exhibit& shown) {
-  return is_within(shown.rows, Trace::kExhibit) && is_within(shown.columns, Trace::kExhibit) &&
-         is_within(shown.rows * shown.columns, Trace::kExhibit);
-}
-
-bool are_exhibits_sound(const Trace& trace) {
-  return is_sound(trace.shown_target) && is_sound(trace.shown_x) && is_sound(trace.shown_truth);
-}
-
-bool are_frames_sound(const Trace::Frames& frames) {
-  constexpr int kMost = Trace::Frames::kCells;
-  if (!is_flag(frames.has_truth) || !is_within(frames.rows, kMost) ||
-      !is_within(frames.columns, kMost))
-    return false;
-  if ((frames.rows == 0) != (frames.columns == 0) ||
-      std::int64_t{frames.rows} * frames.columns > kMost)
-    return false;
-  std::vector<std::int64_t> iterations;
-  for (const std::int64_t iteration : frames.iteration) {
-    if (iteration < -1) return false;
-    if (iteration >= 0) iterations.push_back(iteration);
-  }
-  std::ranges::sort(iterations);
-  return std::ranges::adjacent_find(iterations) == iterations.end();
-}
-
-bool are_spectra_sound(const Trace::Spectra& spectra) {
-  if (!is_flag(spectra.are_wanted) || !is_within(spectra.values, Trace::Spectra::kValues) ||
-      !is_within(spectra.taken, Trace::Spectra::kPlaces))
-    return false;
-  std::int64_t last = -1;
-  for (int i = 0; i < spectra.taken; ++i) {
-    if (spectra.iteration[i] <= last) return false;
-    last = spectra.iteration[i];
-  }
-  return true;
-}
-
 bool are_sound(const FailedEvaluations& failures) {
   return is_amount(failures.total) && is_within(failures.kept, FailedEvaluations::kMost) &&
          failures.kept <= failures.total &&
@@ -116,7 +66,7 @@ bool are_sound(const FailedEvaluations& failures) {
 
 bool are_texts_sound(const Trace& trace) {
   return ends(trace.series_names) && ends(trace.message) && ends(trace.privileges) &&
-         ends(trace.claimed) && ends(trace.answer.names);
+         ends(trace.claimed);
 }
 
 // As many as there are numbers of a point, and no two alike.
@@ -135,7 +85,8 @@ bool are_series_sound(const Trace& trace) {
 bool are_choices_sound(const Trace& trace) {
   return is_flag(trace.is_finished) && is_flag(trace.is_learned) &&
          is_flag(trace.stopped_by_clock) && is_flag(trace.is_bounded) &&
-         is_flag(trace.counts_rounds) &&
+         is_flag(trace.counts_rounds) && is_flag(trace.has_best) && is_flag(trace.has_kept) &&
+         is_flag(trace.wants_spectra) &&
          is_within(static_cast<int>(trace.status), static_cast<int>(kStatusNames.size()) - 1) &&
          is_within(static_cast<int>(trace.aim), static_cast<int>(kAimNames.size()) - 1);
 }
@@ -162,22 +113,7 @@ std::string defect_of(const Trace& trace) {
   if (!are_choices_sound(trace)) return "an invalid choice";
   if (!are_points_sound(trace)) return "invalid iterations, counts or times";
   if (!are_hits_sound(trace)) return "targets reached in an invalid order";
-  if (!is_within(trace.path_inputs, Trace::kInputs) ||
-      !is_within(trace.path_outputs, Trace::kOutputs))
-    return "a path of an invalid size";
-  if (!are_exhibits_sound(trace)) return "samples of an invalid size";
-  if (!are_frames_sound(trace.frames)) return "fields of an invalid size or at invalid iterations";
-  if (!are_spectra_sound(trace.spectra))
-    return "spectra of an invalid size or at invalid iterations";
-  if (!is_within(trace.uncertainty.unknowns, Trace::Uncertainty::kUnknowns))
-    return "standard deviations of an invalid size";
-  if (!is_within(trace.answer.unknowns, Trace::Answer::kUnknowns) ||
-      !is_flag(trace.answer.has_best) || !is_flag(trace.answer.has_returned) ||
-      !is_flag(trace.answer.is_bounded) ||
-      !is_within(trace.model_answer.unknowns, Trace::ModelAnswer::kUnknowns))
-    return "an answer of an invalid size";
-  if (!is_within(trace.fit.data, Trace::Fit::kData) || !is_flag(trace.fit.has_sigma))
-    return "data of an invalid size";
+  if (!is_within(trace.unknowns, Trace::kUnknowns)) return "a point of an invalid size";
   if (!are_sound(trace.failures)) return "failed evaluations of an invalid number";
   if (!are_texts_sound(trace)) return "an unterminated text";
   if (!are_series_sound(trace)) return "more series than the trace has room for";

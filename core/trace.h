@@ -7,7 +7,9 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <limits>
 #include <string>
 #include <string_view>
@@ -59,9 +61,7 @@ struct TraceHit {
 
 struct Trace {
   static constexpr int kPoints = 512;  // iterations 0-100, then 32 a decade: enough for 1e14
-  static constexpr int kInputs = 3, kOutputs = 16;  // largest x and y with a stored path
   static constexpr int kSeries = TracePoint::kSeries;
-  static constexpr int kExhibit = 4096;  // numbers of each array of the exhibit
   static constexpr int kText = 1024;
 
   std::atomic<std::int64_t> first_oracle_nanoseconds{0};  // CLOCK_MONOTONIC; 0: not yet
@@ -69,49 +69,6 @@ struct Trace {
   std::atomic<int> points{0};
   TracePoint point[kPoints];
   TraceHit hit[kRungs];
-  double path_x[kPoints][kInputs], path_y[kPoints][kOutputs];
-  int path_inputs = 0, path_outputs = 0;  // sizes of x and y in the path; 0: not kept
-
-  // The results of a network on some validation samples, one per column.
-  struct Exhibit {
-    int rows = 0, columns = 0;
-    double value[kExhibit];
-  };
-  Exhibit shown_target, shown_x, shown_truth;
-  // y*, x* and x of the first sample that judges, where x and y are fields (core/frames.h), in the
-  // single precision that files keep.
-  struct Frames {
-    static constexpr std::size_t kPlaces = 12;
-    static constexpr int kCells = 128 * 128;  // of the largest grid
-    int rows = 0, columns = 0;                // 0: nothing is kept
-    bool has_truth = false, has_context = false, has_y = false;
-    std::int64_t iteration[kPlaces];  // −1: nothing there
-    float target[kCells], truth[kCells], x[kPlaces][kCells];
-    float y[kCells], context[kCells];  // y of the last x
-
-    Frames() { std::fill_n(iteration, kPlaces, -1); }
-  };
-  Frames frames;
-  // Singular values of J = ∂y/∂θ over the batch of a step, at some kept iterations, if requested.
-  struct Spectra {
-    static constexpr int kPlaces = 48;    // iterations 0, 1, 2, 4, 8, …, and the last
-    static constexpr int kValues = 2048;  // of one spectrum
-    bool are_wanted = false;
-    int values = 0, taken = 0;
-    std::int64_t iteration[kPlaces];
-    double sigma[kPlaces][kValues];  // descending
-  };
-  Spectra spectra;
-  // x at the returned point of a direct least-squares problem with more residuals than unknowns,
-  // and its covariance σ̂² (JᵀJ)⁻¹ as standard deviations and correlations.
-  struct Uncertainty {
-    static constexpr int kUnknowns = 64;
-    int unknowns = 0;  // 0: nothing is kept
-    std::int64_t degrees_of_freedom = 0;
-    double variance, condition;  // σ̂²; of J, its columns scaled to norm 1
-    double x[kUnknowns], deviation[kUnknowns], correlation[kUnknowns][kUnknowns];
-  };
-  Uncertainty uncertainty;
   bool is_learned = false;
   char series_names[kText] = "";  // a line each
 
@@ -140,41 +97,28 @@ struct Trace {
   char message[kText] = "";
   char privileges[kText] = "";  // what the method saw that others do not, a line each
   char claimed[kText] = "";     // what the method says of its own success, in its words
-  // θ = x of a direct problem: where the loss was least of all that was evaluated, and as it was
-  // returned, with ‖y − y*‖ there.
-  struct Answer {
-    static constexpr int kUnknowns = 128 * 128;
-    int unknowns = 0;  // 0: nothing is kept
-    bool has_best = false, has_returned = false;
-    double residual_norm;
-    double best[kUnknowns], returned[kUnknowns];
-    bool is_bounded = false;
-    double lower[kUnknowns], upper[kUnknowns];  // of x, infinite where there is no bound
-    bool is_scaled = false;
-    double scale[kUnknowns];  // where it is: x = scale · θ, within the bounds
-    static constexpr int kNames = 16 * 1024;
-    char names[kNames] = "";  // of the unknowns: NAME, tab, UNIT, a line each; empty: x1, x2, …
-  };
-  Answer answer;
+  // θ of a direct problem where the loss was least of all that was evaluated; not of larger ones.
+  static constexpr int kUnknowns = 128 * 128;
+  int unknowns = 0;  // 0: nothing is kept
+  bool has_best = false;
+  double best[kUnknowns];
   FailedEvaluations failures;
-  // x at both points of the answer of a problem with the words of a model, where it is not θ; names
-  // and bounds are then of x.
-  struct ModelAnswer {
-    static constexpr int kUnknowns = 256;
-    int unknowns = 0;  // 0: there is no model
-    double best[kUnknowns], returned[kUnknowns];
-  };
-  ModelAnswer model_answer;
-  // The data of a fit, and y at the returned point, in the units of the data.
-  struct Fit {
-    static constexpr int kData = 4096;
-    int data = 0;  // 0: nothing is kept
-    bool has_sigma = false;
-    double target[kData], y[kData], sigma[kData];
-  };
-  Fit fit;
   CallReport calls;
+  // The data of keepers (benchmarks/run/keepers), each in its place, once they are there.
+  bool wants_spectra = false, has_kept = false;
+  static constexpr std::size_t kKept = std::size_t{3} << 20;
+  alignas(64) std::byte kept[kKept];
 };
+
+// A byte that is neither 0 nor 1 must not be read as a bool.
+template <class Flag>
+bool is_flag(const Flag& flag) {
+  static_assert(sizeof flag == 1);
+  unsigned char byte = 0;
+  std::memcpy(&byte, reinterpret_cast<const unsigned char*>(&flag), 1);
+  return byte <= 1;
+}
+inline bool is_within(int value, int most) { return value >= 0 && value <= most; }
 
 // The part that fits, cut at a character.
 void set_text(char (&out)[Trace::kText], std::string_view text);

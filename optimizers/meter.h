@@ -4,10 +4,11 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <string_view>
+#include <vector>
 
 #include "core/archive.h"
 #include "core/array.h"
@@ -15,142 +16,25 @@
 #include "core/failures.h"
 #include "core/status.h"
 #include "core/trace.h"
-#include "problems/problem.h"
+#include "optimizers/linearization.h"
+#include "optimizers/observer.h"
+#include "optimizers/running.h"
 
 namespace isoline::optimizers {
 
-class RunningMean {
- public:
-  static constexpr std::int64_t kMost = 256;
-
-  void add(Real value) { values_[static_cast<std::size_t>(count_++ % kMost)] = value; }
-  bool is_sound() const { return count_ >= 0; }  // what a file brought back need not be
-  Real last() const { return count_ > 0 ? at(count_ - 1) : 0; }
-  // Over the last `most` values, or all if there are fewer; NaN if there are none.
-  Real mean(std::int64_t most) const {
-    const std::int64_t taken = std::min(most, count_);
-    Real sum = 0;
-    for (std::int64_t i = count_ - taken; i < count_; ++i) sum += at(i);
-    return taken > 0 ? sum / static_cast<Real>(taken) : std::numeric_limits<Real>::quiet_NaN();
-  }
-
- private:
-  Real at(std::int64_t i) const { return values_[static_cast<std::size_t>(i % kMost)]; }
-
-  std::array<Real, kMost> values_{};
-  std::int64_t count_ = 0;
-};
-
-using networks::Block;
-using networks::LayerFactor;
-using networks::LayerMoments;
-using problems::Batch;
-using problems::Bounds;
 using problems::Inverse;
-using problems::Point;
-using problems::Problem;
 
-// A method that asks for one x without end is stopped, and one whose evaluations all fail.
-struct InARow {
-  static constexpr int kMostRepeats = 1000;
-
-  Vector x;  // (n), the last one evaluated
-  int repeats = 0;
-  std::int64_t failed = 0, known = 0;  // of all failures, those before the last evaluation
-
-  bool is_of_one_x() const { return repeats >= kMostRepeats; }
-  void add(VectorRef theta) {
-    const bool is_same = theta.size() == x.size() && theta == x;
-    repeats = is_same ? repeats + 1 : 0;
-    if (!is_same) x = theta;
-  }
-  void add_outcome(const FailedEvaluations& all);  // std::runtime_error where too many have failed
-};
-
-class Meter;
+using Observers = std::vector<std::unique_ptr<Observer>>;
 
 // An oracle throws it if its call would exceed the budget of work: the step is not taken, and the
 // run ends with the status `budget`. No library may let it pass.
 struct BudgetSpent {};
 
-// One forward pass and its products, which never repeat it. Owned and reused by the method.
-class Linearization {
- public:
-  const Matrix& x() const { return point_.x(); }  // (k, B)
-  const Matrix& y() const { return point_.y; }    // (m, B)
-  Real loss() const { return point_.loss; }
-  void set_jacobian(const Matrix& J) {  // the method's own approximation of it
-    J_ = J;
-    has_jacobian_ = true;
-  }
-
-  void cotangent(Matrix& g) const {  // g = ∂L/∂y, (m, B)
-    g.resize(point_.y.rows(), point_.y.cols());
-    problem_->cotangent(point_, g);
-  }
-  void residual(Vector& r) const {  // r = (y − y*)/√B, (m·B)
-    r.resize(point_.y.size());
-    problem_->residual(point_, r);
-  }
-  void loss_curvature(BatchRef dy, BatchOut dg) const {  // (∂²L/∂y²) dy, (m, B)
-    problem_->loss_curvature(point_, dy, dg);
-  }
-  void gradient(Vector& out);  // Jᵀ g, (n)
-  void pullback(BatchRef w, VectorOut out) { ask(Oracle::pullback).pullback(w, out, point_); }
-  // Through the physics alone, (m, B) -> (k, B).
-  void physics_pullback(BatchRef w, BatchOut out) {
-    ask(Oracle::pullback).physics_pullback(w, out, point_);
-  }
-  void pushforward(VectorRef v, BatchOut out) {
-    ask(Oracle::pushforward).pushforward(v, out, point_);
-  }
-  // (m·B, n) and ∇²L (n, n), each computed once a point.
-  const Matrix& jacobian() { return once(Oracle::jacobian, has_jacobian_, J_); }
-  const Matrix& hessian() { return once(Oracle::hessian, has_hessian_, H_); }
-  const Vector& sparse_jacobian() {  // the values by Meter::sparse_pattern(), once a point
-    if (!has_sparse_) ask(Oracle::sparse_jacobian).sparse_jacobian(sparse_, point_);
-    has_sparse_ = true;
-    return sparse_;
-  }
-  const Matrix& sensitivity() {  // ∂y/∂x of each sample side by side, (m, k·B)
-    ask(Oracle::sensitivity).sensitivity(dy_dx_, point_);
-    return dy_dx_;
-  }
-  void hessian_product(VectorRef v, VectorOut out) {  // ∇²L v, (n)
-    ask(Oracle::hessian_product).hessian_product(v, out, point_);
-  }
-  void curvature(BatchRef w, BatchOut out) { ask(Oracle::curvature).curvature(w, out, point_); }
-  Success local_inverse(BatchRef y, BatchOut x) {
-    return ask(Oracle::inverse).local_inverse(y, x, point_);
-  }
-  void network_pullback(BatchRef w, VectorOut out) {
-    ask(Oracle::network).network_pullback(w, out, point_);
-  }
-  // Under the cotangent w, (m, B).
-  void layer_factors(BatchRef w, std::vector<LayerFactor>& out) {
-    ask(Oracle::layer_factors).layer_factors(w, out, point_);
-  }
-  void layer_moments(BatchRef w, std::vector<LayerMoments>& out, VectorOut JTw) {
-    ask(Oracle::layer_moments).layer_moments(w, out, JTw, point_);
-  }
-
- private:
-  friend class Meter;
-  const Problem& ask(Oracle oracle);  // charges for it
-  const Matrix& once(Oracle oracle, bool& is_there, Matrix& out);
-
-  Meter* meter_ = nullptr;
-  const Problem* problem_ = nullptr;
-  Point point_;
-  Matrix g_, J_, H_, dy_dx_;
-  Vector sparse_;
-  bool has_jacobian_ = false, has_hessian_ = false, has_sparse_ = false;
-};
-
 class Meter {
  public:
   // `granted`: what the method declared that it needs. `trace` outlives the meter.
-  Meter(const Problem& problem, const Budget& budget, OracleSet granted, Trace& trace);
+  Meter(const Problem& problem, const Budget& budget, OracleSet granted, Trace& trace,
+        Observers observers = {});
 
   // --- for methods
   void linearize(VectorRef theta, Linearization& at);
@@ -228,6 +112,17 @@ class Meter {
   void leave_gradients_out() { measures_gradients_ = false; }  // of what is judged
   const Problem& problem() const { return problem_; }
   const Vector& judged() const { return judged_theta_; }  // (n), the last θ that was looked at
+  const Point& judged_point() const { return judged_; }
+  std::int64_t iteration() const { return iteration_; }
+  const Batch& samples_of_step() const { return *samples_; }
+  const Batch& judging() const { return problem_.is_learned() ? validation_ : problem_.batch(); }
+  // J at the returned point: the exact one of the problem, that of the method, or by central
+  // differences, which count as calls of the run do. nullptr where the budget has none left.
+  const Matrix* jacobian_at_end();               // (m·B, n)
+  bool knows_jacobian() const;                   // of the point that was judged, by the method
+  bool is_held(Index i, VectorRef slope) const;  // by its bounds, at that point
+  const Trace& trace() const { return trace_; }
+  void remark(std::string_view sentence);  // becomes the message of the run if it has none
   const FailedEvaluations& failures() const { return trace_.failures; }
   // (n), where the last step began in which no evaluation failed; a part of the state of the run.
   Vector& origin() { return origin_; }
@@ -251,7 +146,6 @@ class Meter {
   void disturb(Point& at);
   bool look_at(VectorRef theta);
   std::string doubt();  // why the returned point is not confirmed as a solution; empty where it is
-  bool know_jacobian_at_end();
   bool pay_for_judged();
   bool is_out_of_work() const {
     const std::int64_t price = prices_[static_cast<std::size_t>(Oracle::forward)];
@@ -271,28 +165,17 @@ class Meter {
     if (loss <= next_target_) reach(loss);
   }
   void keep_best(VectorRef theta) {
-    Trace::Answer& kept = trace_.answer;
-    if (kept.unknowns == 0 || theta.size() != kept.unknowns) return;
-    std::copy_n(theta.data(), kept.unknowns, kept.best);
-    kept.has_best = true;
+    if (trace_.unknowns == 0 || theta.size() != trace_.unknowns) return;
+    std::copy_n(theta.data(), trace_.unknowns, trace_.best);
+    trace_.has_best = true;
   }
-  void describe_unknowns();
-  void keep_returned();
-  void keep_model_best();
-  void keep_fit();
   void reach(Real loss);          // records the targets that `loss` meets
   void measure(VectorRef theta);  // fills trace_.last, off the clock
   void measure_series();          // of the problem, at the point that was judged last
   void keep_point();
-  bool is_spectrum_due(bool is_last) const;
-  void keep_spectrum(bool is_last);
-  void keep_uncertainty();
-  bool is_held(Index i, VectorRef slope) const;  // by its bounds, at the returned point
-  void show();                                   // the result of training
-  void prepare();                                // samples and limits
+  void prepare();     // samples and limits
   void set_scales();  // by which this run's targets are measured; after the start's loss
   Real target_at(Real tau) const { return trace_.minimum + tau * trace_.scale; }  // nan where none
-  const Batch& judging() const { return problem_.is_learned() ? validation_ : problem_.batch(); }
   void draw_batch();
   void refine(VectorRef theta);
   void note_batch(const Point& at);
@@ -312,6 +195,7 @@ class Meter {
   Budget budget_;
   OracleSet granted_;
   Trace& trace_;
+  Observers observers_;
   const Batch* samples_;  // of this step
   Batch batch_, validation_;
   RunningMean batch_loss_, batch_x_error_;

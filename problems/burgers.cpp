@@ -9,7 +9,7 @@
 #include <numbers>
 #include <utility>
 
-#include "core/trace.h"
+#include "core/frames.h"
 #include "problems/burgers_flow.h"
 #include "problems/learning.h"
 
@@ -239,7 +239,7 @@ Vector random_state(Index N, RandomStream& stream) {
 // All steps if they are few, otherwise as many as can be distinguished and stored.
 Field field_of(const BurgersFlow& flow, Real time) {
   constexpr Index kMostTimes = 65;
-  const Index room = Trace::Frames::kCells / flow.inputs();
+  const Index room = Frames::kCells / flow.inputs();
   return {.rows = std::min({flow.steps() + 1, kMostTimes, room}),
           .columns = flow.inputs(),
           .x = {"initial speed"},

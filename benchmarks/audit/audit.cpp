@@ -16,6 +16,7 @@
 #include "benchmarks/audit/audit_problems.h"
 #include "benchmarks/run/execute.h"
 #include "benchmarks/run/isolate.h"
+#include "benchmarks/run/keepers/keeper.h"
 #include "core/json.h"
 #include "core/results/statistics.h"
 #include "core/spec.h"
@@ -75,16 +76,19 @@ struct Subject {
     try {
       const auto method = entry.make(options, catalog.optimizers);
       Recorded recorded(*method, path.x);
-      Meter meter(problem, {.iterations = iterations, .target = 0}, every_oracle, *trace);
+      Meter meter(problem, {.iterations = iterations, .target = 0}, every_oracle, *trace,
+                  open_keepers(*trace));
       Checkpoint checkpoint;
       drive(recorded, meter, problem.start(), checkpoint);
     } catch (const std::exception&) {  // what it did until then is judged
     }
     path.counts = trace->last.counts;
     path.iterations = trace->last.iteration;
-    if (path.x.empty())
-      for (int i = 0; i < trace->points; ++i)
-        path.x.emplace_back(Eigen::Map<const Vector>(trace->path_x[i], trace->path_inputs));
+    Parts parts;
+    write_parts(*trace, parts);
+    if (path.x.empty() && parts.trajectory)
+      for (const std::vector<Real>& x : parts.trajectory->x)
+        path.x.emplace_back(Eigen::Map<const Vector>(x.data(), std::ssize(x)));
     return path;
   }
 

@@ -11,11 +11,11 @@
 #include <functional>
 #include <limits>
 #include <new>
-#include <sstream>
 #include <utility>
 
 #include "benchmarks/plan/catalog.h"
 #include "benchmarks/plan/rates.h"
+#include "benchmarks/run/keepers/keeper.h"
 #include "benchmarks/run/store.h"
 #include "core/clock.h"
 #include "core/errors.h"
@@ -23,7 +23,6 @@
 #include "core/files.h"
 #include "core/foreign/handshake.h"
 #include "core/foreign/line.h"
-#include "core/frames.h"
 #include "core/random.h"
 #include "core/records/provenance.h"
 #include "core/records/record.h"
@@ -67,7 +66,7 @@ void run(const Catalog& catalog, const Request& request, Trace& trace, Checkpoin
   const OracleSet granted = needs_of(entry, request.optimizer.options, problem);
   const auto privileges = optimizers::privileges_of(granted, problem.inverse_kind());
   set_text(trace.privileges, fmt::format("{}", fmt::join(privileges, "\n")));
-  Meter meter(problem, request.budget, granted, trace);
+  Meter meter(problem, request.budget, granted, trace, open_keepers(trace));
   Vector start = problem.start();
   if (returned && returned->size() > 0) start = *returned;
   if (perturbation != 0) start = perturbed_start(std::move(start), request, perturbation);
@@ -80,13 +79,6 @@ void run(const Catalog& catalog, const Request& request, Trace& trace, Checkpoin
 }
 
 // --- the record of a run from its trace
-
-std::vector<std::string> lines_of(const char* text) {
-  std::vector<std::string> lines;
-  std::istringstream in(valid_utf8(text));
-  for (std::string line; std::getline(in, line);) lines.push_back(line);
-  return lines;
-}
 
 // One number of each point of the trace.
 template <class Value>
@@ -110,119 +102,6 @@ std::map<std::string, std::vector<Real>> series_of(const Trace& trace) {
   for (std::size_t i = 0; i < names.size(); ++i)  // two names that were no text may be one now
     series[names[i]] = column_of(trace, [i](const TracePoint& point) { return point.series[i]; });
   return series;
-}
-
-Grid grid_of(const Trace::Exhibit& shown) {
-  return {
-      shown.rows, shown.columns, {shown.value, shown.value + Index{shown.rows} * shown.columns}};
-}
-
-std::optional<FieldFrames> fields_of(const Trace::Frames& kept) {
-  const std::vector<std::size_t> chosen = chosen_frames(kept);
-  if (kept.rows == 0 || chosen.empty()) return std::nullopt;
-  FieldFrames frames;
-  const auto add = [&](const float* field) {  // stored column by column; a file holds rows
-    for (Index i = 0; i < kept.rows; ++i)
-      for (Index j = 0; j < kept.columns; ++j) frames.numbers.push_back(field[j * kept.rows + i]);
-  };
-  add(kept.target);
-  if (kept.has_truth) add(kept.truth);
-  for (const std::size_t place : chosen) {
-    frames.iterations.push_back(kept.iteration[place]);
-    add(kept.x[place]);
-  }
-  if (kept.has_truth && kept.has_y) {
-    add(kept.y);
-    if (kept.has_context) add(kept.context);
-  }
-  const auto cells = static_cast<std::size_t>(kept.rows) * static_cast<std::size_t>(kept.columns);
-  frames.shape = {static_cast<Index>(frames.numbers.size() / cells), kept.rows, kept.columns};
-  frames.digest = digest(field_file(frames));
-  return frames;
-}
-
-Spectrum spectrum_of(const Trace::Spectra& kept) {
-  Spectrum spectrum;
-  for (int i = 0; i < kept.taken; ++i) {
-    spectrum.iterations.push_back(kept.iteration[i]);
-    spectrum.sigma.emplace_back(kept.sigma[i], kept.sigma[i] + kept.values);
-  }
-  return spectrum;
-}
-
-std::optional<Uncertainty> uncertainty_of(const Trace::Uncertainty& kept) {
-  if (kept.unknowns == 0) return std::nullopt;
-  const auto first = [&](const double* values) {
-    return std::vector<Real>(values, values + kept.unknowns);
-  };
-  Uncertainty known{.x = first(kept.x),
-                    .standard_deviation = first(kept.deviation),
-                    .correlation = {},
-                    .variance = kept.variance,
-                    .degrees_of_freedom = kept.degrees_of_freedom,
-                    .condition = kept.condition};
-  for (int i = 0; i < kept.unknowns; ++i) known.correlation.push_back(first(kept.correlation[i]));
-  return known;
-}
-
-// Points that are not finite answer nothing. Where the returned one is not the best, both are kept.
-std::optional<AnswerPoints> answer_of(const Trace& trace) {
-  const Trace::Answer& kept = trace.answer;
-  const Trace::ModelAnswer& model = trace.model_answer;
-  const int unknowns = model.unknowns > 0 ? model.unknowns : kept.unknowns;
-  const bool is_scaled = kept.is_scaled && model.unknowns == 0;
-  AnswerPoints answer{.unknowns = unknowns};
-  const auto add = [&](const char* name, const double* values) {
-    std::vector<Real> x(values, values + unknowns);
-    for (std::size_t i = 0; is_scaled && i < x.size(); ++i) {
-      x[i] *= kept.scale[i];
-      if (kept.is_bounded) x[i] = std::max(kept.lower[i], std::min(x[i], kept.upper[i]));
-    }
-    if (!std::ranges::all_of(x, [](Real value) { return std::isfinite(value); })) return;
-    answer.points.emplace_back(name);
-    answer.x.push_back(std::move(x));
-  };
-  if (kept.has_returned) {
-    add(kReturned, model.unknowns > 0 ? model.returned : kept.returned);
-    answer.residual_norm = kept.residual_norm;
-  }
-  const bool is_returned_best = kept.has_returned && trace.last.loss <= trace.best_loss;
-  if (kept.has_best && !is_returned_best) add(kBest, model.unknowns > 0 ? model.best : kept.best);
-  if (kept.unknowns == 0 || answer.points.empty()) return std::nullopt;
-  const std::vector<std::string> lines = lines_of(kept.names);
-  for (const std::string& line : lines) {
-    if (std::ssize(lines) != unknowns) break;
-    const std::size_t tab = std::min(line.find('\t'), line.size());
-    answer.names.push_back(line.substr(0, tab));
-    answer.units.push_back(line.substr(std::min(tab + 1, line.size())));
-  }
-  if (std::ranges::all_of(answer.units, &std::string::empty)) answer.units.clear();
-  if (is_scaled) answer.scales.assign(kept.scale, kept.scale + unknowns);
-  const std::vector<Real>& x = answer.x.back();  // of least loss
-  for (int i = 0; kept.is_bounded && i < unknowns; ++i) {
-    const Real value = x[static_cast<std::size_t>(i)];
-    if (value <= kept.lower[i]) answer.at_lower.push_back(i);
-    if (value >= kept.upper[i]) answer.at_upper.push_back(i);
-  }
-  if (answer.x[0].size() > AnswerPoints::kInline) answer.digest = digest(answer_file(answer));
-  return answer;
-}
-
-std::optional<FitData> fit_of(const Trace::Fit& kept) {
-  if (kept.data == 0) return std::nullopt;
-  FitData fit{.target = {kept.target, kept.target + kept.data}, .y = {kept.y, kept.y + kept.data}};
-  if (kept.has_sigma) fit.sigma.assign(kept.sigma, kept.sigma + kept.data);
-  return fit;
-}
-
-std::optional<Failures> failures_of(const FailedEvaluations& kept) {
-  if (kept.total == 0) return std::nullopt;
-  Failures failures{.total = kept.total};
-  for (int i = 0; i < kept.kept; ++i) {
-    failures.x.emplace_back(kept.point(i).begin(), kept.point(i).end());
-    failures.reasons.push_back(valid_utf8(kept.reason[i]));
-  }
-  return failures;
 }
 
 Curve curve_of(const Trace& trace) {
@@ -282,15 +161,6 @@ Hits hits_of(const Trace& trace) {
   return hits;
 }
 
-Trajectory trajectory_of(const Trace& trace) {
-  Trajectory path;
-  for (int i = 0; i < trace.points; ++i) {
-    path.x.emplace_back(trace.path_x[i], trace.path_x[i] + trace.path_inputs);
-    path.y.emplace_back(trace.path_y[i], trace.path_y[i] + trace.path_outputs);
-  }
-  return path;
-}
-
 Summary summary_of(const Trace& trace) {
   const TracePoint& last = trace.last;
   const bool has_points = trace.points > 0;
@@ -324,8 +194,6 @@ void add_verdicts(const Trace& trace, Record& record) {
   record.x_scale = known(trace.x_scale);
   record.x_floor = trace.x_floor;
   record.noise_level = known(trace.noise_level);
-  if (!std::isnan(trace.difference_noise))
-    record.differences = {trace.difference_noise, known(trace.difference_step)};
   for (const auto& [name, tau] : kVerified) {
     auto &verified = record.verified[name], &found = record.found[name];
     if (record.minimum) verified = meets(trace.last.loss, trace.minimum + tau * trace.scale);
@@ -379,6 +247,8 @@ bool Checkpoint::restore_from(const std::filesystem::path& path, const std::stri
     require(theta.size() == meter.unknowns(), "it has another number of unknowns");
     require(method.persist(archive), "the method does not store its state");
     meter.persist(archive);
+    const std::string defect = defect_of_all(meter.trace());
+    require(meter.trace().has_kept && defect.empty(), [&] { return "its trace holds " + defect; });
     require(archive.bytes_left() == 0, "it contains more than the state of this run");
   } catch (const std::exception& cause) {
     std::error_code error;
@@ -548,9 +418,9 @@ void execute(const Catalog& catalog, const Request& request, Trace& trace, Check
     try {
       run(catalog, request, trace, checkpoint, returned, perturbation);
     } catch (const DamagedCheckpoint&) {  // the checkpoint is set aside, and the run starts again
-      const bool are_spectra_wanted = trace.spectra.are_wanted;
+      const bool wants_spectra = trace.wants_spectra;
       new (&trace) Trace;
-      trace.spectra.are_wanted = are_spectra_wanted;
+      trace.wants_spectra = wants_spectra;
       run(catalog, request, trace, checkpoint, returned, perturbation);
     }
     if (trace.status == Status::running)
@@ -588,18 +458,8 @@ Record record_of(const Request& request, const Trace& trace) {
   record.summary = summary_of(trace);
   record.curve = curve_of(trace);
   if (record.minimum) record.hits = hits_of(trace);
-  if (trace.path_inputs > 0) record.trajectory = trajectory_of(trace);
   record.series = series_of(trace);
-  if (trace.shown_x.rows > 0)
-    record.exhibit = Exhibit{.target = grid_of(trace.shown_target),
-                             .x = grid_of(trace.shown_x),
-                             .truth = grid_of(trace.shown_truth)};
-  record.fields = fields_of(trace.frames);
-  if (trace.spectra.are_wanted) record.spectrum = spectrum_of(trace.spectra);
-  record.uncertainty = uncertainty_of(trace.uncertainty);
-  record.answer = answer_of(trace);
-  record.fit = fit_of(trace.fit);
-  record.failures = failures_of(trace.failures);
+  write_parts(trace, record);
   record.privileges = lines_of(trace.privileges);
   record.foreign = {request.problem.foreign, request.optimizer.foreign};
   record.is_nondeterministic = trace.stopped_by_clock || record.status == Status::timeout ||

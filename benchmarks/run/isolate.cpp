@@ -28,6 +28,7 @@
 #include <vector>
 
 #include "benchmarks/run/calls.h"
+#include "benchmarks/run/keepers/keeper.h"
 #include "core/clock.h"
 #include "core/errors.h"
 #include "core/files.h"
@@ -448,7 +449,7 @@ void Worker::interrupt() {
 void Worker::finish(int wait_status, std::int64_t peak_memory_bytes) {
   is_running_ = false;
   Trace& trace = shared_->trace;
-  const std::string defect = defect_of(trace);
+  const std::string defect = defect_of_all(trace);
   if (!defect.empty()) new (&trace) Trace;
   trace.peak_memory_bytes = peak_memory_bytes;
   const int signal = WIFSIGNALED(wait_status) ? WTERMSIG(wait_status) : 0;

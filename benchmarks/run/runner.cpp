@@ -308,7 +308,7 @@ class Runner {
   void compute(std::size_t i, const Request& request, const std::filesystem::path& from,
                Trace& trace) {
     constexpr double kCheckpointSeconds = 120;  // interval between checkpoints of a long run
-    trace.spectra.are_wanted = options_.keeps_spectra;
+    trace.wants_spectra = options_.keeps_spectra;
     const auto path = store_.checkpoint_path(request);
     Checkpoint checkpoint(path, path.stem().string(), kCheckpointSeconds);
     if (keeps_ends())

@@ -28,13 +28,11 @@
 #include "core/options.h"
 #include "core/oracle.h"
 #include "core/records/json_view.h"
+#include "core/records/part.h"
 #include "core/status.h"
 #include "core/text.h"
 
 namespace isoline {
-
-template <class Given, class Type>
-concept Like = std::is_same_v<std::remove_const_t<Given>, Type>;
 
 // The JSON form of a type's values: write(value, out), read(view, value), law(out), its schema.
 template <class Type>
@@ -93,7 +91,7 @@ class Fields {
 
 class FieldWriter : public Fields<FieldWriter> {
  public:
-  static constexpr bool kReads = false;
+  static constexpr bool kReads = false, kWrites = true;
   explicit FieldWriter(Json& out) : out_(out) { out_ = Json::object(); }
 
   template <Presence presence, class Value>
@@ -116,7 +114,7 @@ class FieldWriter : public Fields<FieldWriter> {
 
 class FieldReader : public Fields<FieldReader> {
  public:
-  static constexpr bool kReads = true;
+  static constexpr bool kReads = true, kWrites = false;
   explicit FieldReader(const JsonView& in) : in_(in) {}
 
   template <Presence presence, class Value>
@@ -145,7 +143,7 @@ class FieldReader : public Fields<FieldReader> {
 
 class FieldSchema : public Fields<FieldSchema> {
  public:
-  static constexpr bool kReads = false;
+  static constexpr bool kReads = false, kWrites = false;
   explicit FieldSchema(Json& out) : out_(out) {
     out_ = {{"type", "object"},
             {"required", Json::array()},

@@ -267,6 +267,20 @@ std::string npy_bytes(const NumberArray& array) {
   return bytes_of("<f8", array.shape, array.values);
 }
 
+NumberArray read_npy_beside(const std::filesystem::path& path, const std::string& digest_of_file,
+                            const std::vector<Index>& shape) {
+  const std::string bytes = read_text(path);
+  require(digest(bytes) == digest_of_file,
+          [&] { return fmt::format("{} is not the file that its record names", path.string()); });
+  try {
+    NumberArray array = npy_from_bytes(bytes);
+    require(array.shape == shape, "its shape differs from the one in its record");
+    return array;
+  } catch (const UsageError& error) {
+    throw UsageError(fmt::format("{}: {}", path.string(), error.what()));
+  }
+}
+
 void write_npy(const std::filesystem::path& path, const NumberArray& array) {
   write_text(path, npy_bytes(array));
 }

@@ -24,6 +24,11 @@ NumberArray npy_from_bytes(const std::string& bytes);
 // the name of the file, if it is invalid or truncated, or holds a number that is not finite.
 NumberArray read_npy(const std::filesystem::path& path);
 
+// The file beside a record that has this digest and this shape; UsageError, naming it, where it is
+// missing, is damaged or is another run's.
+NumberArray read_npy_beside(const std::filesystem::path& path, const std::string& digest_of_file,
+                            const std::vector<Index>& shape);
+
 // The bytes of a float32 file. The number of values must fit the shape.
 std::string npy_bytes(const std::vector<Index>& shape, const std::vector<float>& values);
 

@@ -1,6 +1,4 @@
-// Records, requests and plans: the members of their files, and values that follow from them. A new
-// member of a record costs its line in record.h, its line here, the place that fills it, and the
-// schema renewed (tests/core/record_test.cpp).
+// Records, requests and plans: the members of their files, and values that follow from them.
 #include "core/records/record.h"
 
 #include <fmt/format.h>
@@ -42,26 +40,13 @@ void require_equal_columns(const Record& record) {
            curve.batch_x_error, record.series);
   if (!curve.kkt_residual.empty()) of_curve(curve.kkt_residual);
   if (!curve.discrepancy.empty()) of_curve(curve.discrepancy);
-  if (record.trajectory) of_curve(record.trajectory->x, record.trajectory->y);
-  if (record.fields) require_sound(*record.fields);
-  if (record.answer) require_sound(*record.answer);
-  if (const auto& failures = record.failures)
-    require(failures->x.size() == failures->reasons.size() &&
-                std::ssize(failures->x) <= failures->total,
-            "the numbers of its failed evaluations and of their reasons differ");
-  if (record.spectrum)
-    require(record.spectrum->iterations.size() == record.spectrum->sigma.size(),
-            "the numbers of its spectra and of their iterations differ");
-  if (const auto& fit = record.fit) {
-    require_length(fit->target.size(), "data", fit->y);
-    if (!fit->sigma.empty()) require_length(fit->target.size(), "data", fit->sigma);
-  }
-  if (const auto& known = record.uncertainty) {
-    const char* whose = "standard deviations";
-    require_length(known->x.size(), whose, known->standard_deviation);
-    require_length(known->x.size(), whose, known->correlation);
-    for (const auto& row : known->correlation) require_length(known->x.size(), whose, row);
-  }
+  for_each_part(record, [&](const auto& part) {
+    if (!part) return;
+    if constexpr (requires { require_sound(*part, curve.iteration.size()); })
+      require_sound(*part, curve.iteration.size());
+    else if constexpr (requires { require_sound(*part); })
+      require_sound(*part);
+  });
   if (!record.hits) return;
   const Hits& hits = *record.hits;
   const std::size_t targets = hits.target.size();
@@ -74,8 +59,7 @@ void require_equal_columns(const Record& record) {
 
 }  // namespace
 
-constexpr const char *kCountLaw = R"({"minimum": 0})",
-                     *kCountsLaw = R"({"items": {"type": "integer", "minimum": 0}})",
+constexpr const char *kCountsLaw = R"({"items": {"type": "integer", "minimum": 0}})",
                      *kTimesLaw = R"({"items": {"allOf": [{"$ref": "#/definitions/number"},
                                                           {"minimum": 0}]}})";
 // For hits: −1 if not reached.
@@ -177,8 +161,6 @@ struct Form<Provenance> {
   }
 };
 
-constexpr const char* kDigestLaw = R"({"pattern": "^[0-9a-f]{16}$"})";
-
 constexpr const char* kTolerancesLaw = R"({"required": ["1e-1", "1e-3", "1e-6"]})";
 
 void fields(Like<Curve> auto& curve, auto& field) {
@@ -212,11 +194,6 @@ void fields(Like<Hits> auto& hits, auto& field) {
   field("wall_seconds", hits.wall_seconds, kTimesLaw);
 }
 
-void fields(Like<Trajectory> auto& path, auto& field) {
-  field("x", path.x);
-  field("y", path.y);
-}
-
 void fields(Like<Summary> auto& summary, auto& field) {
   field("iterations", summary.iterations, kCountLaw);
   field("work", summary.work, kCountLaw);
@@ -230,85 +207,6 @@ void fields(Like<Summary> auto& summary, auto& field) {
   field("wall_seconds", summary.wall_seconds, kCountLaw);
   field("processor_seconds", summary.processor_seconds, kCountLaw);
   field("peak_memory_bytes", summary.peak_memory_bytes, kCountLaw);
-}
-
-void fields(Like<Exhibit> auto& exhibit, auto& field) {
-  field("target", exhibit.target);
-  field("x", exhibit.x);
-  field("truth", exhibit.truth);
-}
-
-void fields(Like<FieldFrames> auto& frames, auto& field) {
-  field("iterations", frames.iterations);
-  field("shape", frames.shape);
-  field("digest", frames.digest, kDigestLaw);
-}
-
-void fields(Like<Differences> auto& differences, auto& field) {
-  field("noise", differences.noise, kCountLaw);
-  field.optional("step", differences.step, kCountLaw);
-}
-
-void fields(Like<AnswerPoints> auto& answer, auto& field) {
-  field("unknowns", answer.unknowns, kCountLaw);
-  field.optional("names", answer.names,
-                 R"({"description": "Of the unknowns; x1, x2, … if absent"})");
-  field.optional("units", answer.units,
-                 R"({"description": "Of the unknowns; an empty text if one has no unit"})");
-  field("points", answer.points, R"({"items": {"enum": ["returned", "best"]}})");
-  field.optional("at_lower", answer.at_lower,
-                 R"({"description": "Unknowns on their lower bound, from 0, where L is least"})");
-  field.optional("at_upper", answer.at_upper,
-                 R"({"description": "Unknowns on their upper bound, from 0, where L is least"})");
-  field.optional("scales", answer.scales,
-                 R"({"description": "Of the unknowns: methods saw x divided by them"})");
-  field.optional("digest", answer.digest,
-                 R"({"pattern": "^[0-9a-f]{16}$", "description": "Of the file with the numbers"})");
-  using Field = std::remove_cvref_t<decltype(field)>;
-  if (std::is_same_v<Field, FieldWriter> && answer.is_in_file()) {
-    field.optional("residual_norm", answer.residual_norm);
-    return;
-  }
-  field.optional("x", answer.x, R"({"description": "A list for each of the points"})");
-  field.optional("residual_norm", answer.residual_norm,
-                 R"({"description": "‖y − y*‖ at the returned point"})");
-}
-
-void fields(Like<Calls> auto& calls, auto& field) {
-  field("made", calls.made, kCountLaw);
-  field("answered", calls.answered,
-        R"({"type": "integer", "minimum": 0, "description": "From the store of evaluations"})");
-  field(
-      "verified", calls.verified,
-      R"({"type": "integer", "minimum": 0, "description": "Made again by the verifier for the returned point; with none, verified is null"})");
-  field("failed", calls.failed, R"({"type": "integer", "minimum": 0, "description": "Of these"})");
-}
-
-void fields(Like<FitData> auto& fit, auto& field) {
-  field("target", fit.target);
-  field("y", fit.y);
-  field.optional("sigma", fit.sigma, R"({"description": "Standard deviations of the data"})");
-}
-
-void fields(Like<Failures> auto& failures, auto& field) {
-  field("total", failures.total, kCountLaw);
-  field("x", failures.x,
-        R"({"description": "Of the first ones, at most 1,000; empty if it is too long"})");
-  field("reasons", failures.reasons, R"({"description": "Of each x"})");
-}
-
-void fields(Like<Spectrum> auto& spectrum, auto& field) {
-  field("iterations", spectrum.iterations);
-  field("sigma", spectrum.sigma);
-}
-
-void fields(Like<Uncertainty> auto& known, auto& field) {
-  field("x", known.x);
-  field("standard_deviation", known.standard_deviation);
-  field("correlation", known.correlation);
-  field("variance", known.variance);
-  field("degrees_of_freedom", known.degrees_of_freedom);
-  field("condition", known.condition);
 }
 
 void fields(Like<Foreign> auto& foreign, auto& field) {
@@ -369,24 +267,11 @@ void fields(Like<Record> auto& record, auto& field) {
   field("summary", record.summary);
   field("curve", record.curve);
   field.optional("hits", record.hits);
-  field.optional("trajectory", record.trajectory);
   field.optional("series", record.series);
-  field.optional("exhibit", record.exhibit);
-  field.optional("fields", record.fields,
-                 R"({"description": "x at some iterations, in the .npy file beside the record"})");
-  field.optional("spectrum", record.spectrum,
-                 R"({"description": "Singular values of J, if --spectrum was set"})");
-  field.optional("uncertainty", record.uncertainty,
-                 R"({"description": "Of a least-squares solution: x and its covariance"})");
-  field.optional("answer", record.answer,
-                 R"({"description": "θ = x of a direct problem, as returned and of least loss"})");
-  field.optional(
-      "differences", record.differences,
-      R"({"description": "Of a J by differences: noise of y in a call, and step, relative"})");
-  field.optional("fit", record.fit,
-                 R"({"description": "The data of a fit, and y at the returned point"})");
-  field.optional("calls", record.calls, R"({"description": "To a problem of another program"})");
-  field.optional("failures", record.failures, R"({"description": "Evaluations that failed"})");
+  for_each_part(record, [&](auto& part) {
+    constexpr Part kPart = std::remove_cvref_t<decltype(*part)>::kPart;
+    field.optional(kPart.member, part, kPart.law);
+  });
   field("privileges", record.privileges);
   field.optional("foreign", record.foreign,
                  R"({"description": "Components that other programs computed"})");
@@ -449,11 +334,15 @@ Json result_of(const Json& record) {
 
 Json without_timings(Json record) {
   record.erase("repeat_wall_seconds");
-  record.erase("calls");   // what the store answers depends on earlier runs
   record.erase("output");  // may hold addresses and times
-  if (record.contains("failures")) record["failures"].erase("reasons");  // as these
-  record.erase("fields");
-  record.erase("spectrum");
+  for_each_part(Parts(), [&](const auto& part) {
+    constexpr Part kPart = std::remove_cvref_t<decltype(*part)>::kPart;
+    const std::string_view ignored = kPart.ignored;
+    if (ignored == "*")
+      record.erase(kPart.member);
+    else if (!ignored.empty() && record.contains(kPart.member))
+      record[kPart.member].erase(std::string(ignored));
+  });
   record.at("provenance").erase(kRunKey);  // start time, concurrent jobs, exclusive
   for (const char* name : {"wall_seconds", "processor_seconds", "peak_memory_bytes"}) {
     record.at("summary").erase(name);
@@ -544,90 +433,6 @@ Plan plan_from_text(const std::string& text, const std::string& origin) {
 }
 Json plan_schema() {
   return schema_of<Plan>("isoline.plan/1: every cell ever planned in a result folder");
-}
-
-// Fields in the file beside a record.
-
-void require_sound(const FieldFrames& frames) {
-  const auto count = static_cast<Index>(frames.iterations.size());
-  const bool is_rising = std::ranges::adjacent_find(frames.iterations, std::greater_equal<>()) ==
-                         frames.iterations.end();
-  require(count > 0 && frames.iterations[0] >= 0 && is_rising,
-          "the iterations of its fields must increase");
-  constexpr Index kMostOthers = 4;  // y*, x*, y and the context
-  require(
-      frames.shape.size() == 3 && frames.shape[0] > count && frames.shape[0] <= count + kMostOthers,
-      "the shape of its fields does not match their iterations");
-  require(frames.shape[1] > 0 && frames.shape[2] > 0, "the shape of its fields has no cells");
-}
-
-std::string field_file(const FieldFrames& frames) {
-  return npy_bytes(frames.shape, frames.numbers);
-}
-
-void read_field_numbers(FieldFrames& frames, const std::filesystem::path& path) {
-  const std::string bytes = read_text(path);
-  require(digest(bytes) == frames.digest,
-          [&] { return fmt::format("{} is not the file that its record names", path.string()); });
-  try {
-    const NumberArray array = npy_from_bytes(bytes);
-    require(array.shape == frames.shape, "its shape differs from the one in its record");
-    frames.numbers = {array.values.begin(), array.values.end()};
-  } catch (const UsageError& error) {
-    throw UsageError(fmt::format("{}: {}", path.string(), error.what()));
-  }
-}
-
-// The answer in its record or in the file beside it.
-
-void require_sound(const AnswerPoints& answer) {
-  const bool are_named =
-      !answer.points.empty() && answer.points.size() <= 2 &&
-      std::ranges::all_of(answer.points,
-                          [](const auto& name) { return name == kReturned || name == kBest; }) &&
-      (answer.points.size() == 1 || answer.points[0] != answer.points[1]);
-  require(answer.unknowns > 0 && are_named, "its answer has no unknowns or unknown points");
-  for (const auto* texts : {&answer.names, &answer.units})
-    require(texts->empty() || std::ssize(*texts) == answer.unknowns,
-            "the names or units of its unknowns differ in number from the unknowns");
-  require(answer.scales.empty() || std::ssize(answer.scales) == answer.unknowns,
-          "the scales of its unknowns differ in number from the unknowns");
-  for (const auto* places : {&answer.at_lower, &answer.at_upper})
-    for (const Index i : *places)
-      require(i >= 0 && i < answer.unknowns, "an unknown on a bound does not exist");
-  if (answer.is_in_file()) return;
-  const bool are_all_there =
-      answer.x.size() == answer.points.size() && std::ranges::all_of(answer.x, [&](const auto& x) {
-        return static_cast<Index>(x.size()) == answer.unknowns;
-      });
-  require(are_all_there, "the points of its answer differ in length");
-}
-
-std::string answer_file(const AnswerPoints& answer) {
-  NumberArray array{{static_cast<Index>(answer.points.size()), answer.unknowns}, {}};
-  for (const std::vector<Real>& x : answer.x)
-    array.values.insert(array.values.end(), x.begin(), x.end());
-  return npy_bytes(array);
-}
-
-void read_answer_numbers(AnswerPoints& answer, const std::filesystem::path& path) {
-  if (!answer.is_in_file()) return;
-  const std::string bytes = read_text(path);
-  require(digest(bytes) == answer.digest,
-          [&] { return fmt::format("{} is not the file that its record names", path.string()); });
-  try {
-    const NumberArray array = npy_from_bytes(bytes);
-    const auto points = static_cast<Index>(answer.points.size());
-    require(array.shape == std::vector<Index>{points, answer.unknowns},
-            "its shape differs from the one in its record");
-    answer.x.clear();
-    for (Index i = 0; i < points; ++i) {
-      const auto first = array.values.begin() + i * answer.unknowns;
-      answer.x.emplace_back(first, first + answer.unknowns);
-    }
-  } catch (const UsageError& error) {
-    throw UsageError(fmt::format("{}: {}", path.string(), error.what()));
-  }
 }
 
 }  // namespace isoline

@@ -6,6 +6,7 @@
 
 #include "benchmarks/plan/suite.h"
 #include "benchmarks/run/execute.h"
+#include "benchmarks/run/keepers/keeper.h"
 #include "benchmarks/run/run_plan.h"
 #include "tests/benchmarks/builtin.h"
 #include "tests/benchmarks/hostile.h"
@@ -329,21 +330,28 @@ Record record_after(const std::function<void(Trace&)>& wild_write, const Limits&
   return record_of(request, worker->trace());
 }
 
+// Whatever another process leaves in the data of a keeper that has sizes, it is noticed.
+TEST(BadTrace, OfEachKeeperIsADefect) {
+  for (const Keeper& keeper : keepers()) {
+    constexpr std::size_t kSmall = 64;  // of a keeper whose data the trace has
+    std::vector<std::max_align_t> room(keeper.bytes / sizeof(std::max_align_t) + 1);
+    keeper.construct(room.data());
+    EXPECT_EQ(keeper.defect(room.data()), "");
+    for (const int byte : {0x5a, 0xff}) {
+      std::memset(room.data(), byte, keeper.bytes);
+      EXPECT_EQ(keeper.defect(room.data()).empty(), keeper.bytes <= kSmall) << keeper.bytes;
+    }
+  }
+}
+
 TEST(BadTrace, OfAnyKindIsACrashThatSaysSo) {
   const std::vector<std::function<void(Trace&)>> writes = {
       [](Trace& trace) { trace.points = 1'000'000'000; },
       [](Trace& trace) { trace.points = -1; },
-      [](Trace& trace) { trace.shown_x.rows = trace.shown_x.columns = 1 << 30; },
-      [](Trace& trace) { trace.shown_x.rows = -(trace.shown_x.columns = -7); },
-      [](Trace& trace) { trace.frames.rows = trace.frames.columns = 1 << 20; },
-      [](Trace& trace) { std::memset(&trace.frames.has_truth, 0x5a, 1); },
-      [](Trace& trace) { trace.frames.iteration[3] = trace.frames.iteration[4] = 7; },
-      [](Trace& trace) { trace.spectra.values = 1 << 30; },
-      [](Trace& trace) { trace.spectra.taken = -1; },
-      [](Trace& trace) { std::memset(&trace.spectra.are_wanted, 0x5a, 1); },
-      [](Trace& trace) { trace.uncertainty.unknowns = 1 << 30; },
-      [](Trace& trace) { trace.path_inputs = 1 << 30; },
-      [](Trace& trace) { trace.path_outputs = -1; },
+      [](Trace& trace) { std::memset(trace.kept, 0x5a, sizeof trace.kept); },
+      [](Trace& trace) { trace.unknowns = 1 << 30; },
+      [](Trace& trace) { std::memset(&trace.has_best, 0x5a, 1); },
+      [](Trace& trace) { std::memset(&trace.wants_spectra, 0x5a, 1); },
       [](Trace& trace) { trace.status = static_cast<Status>(77); },
       [](Trace& trace) { trace.aim = static_cast<Aim>(-1); },
       [](Trace& trace) { std::memset(trace.message, 'x', sizeof trace.message); },

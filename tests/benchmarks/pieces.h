@@ -32,7 +32,7 @@ std::unique_ptr<problems::Physics> physics_of(Index k, Index m, Value value, Der
 inline Record executed(const Catalog& catalog, const Request& request, Checkpoint checkpoint = {},
                        bool keeps_spectra = false) {
   const auto trace = std::make_unique<Trace>();  // too large for a stack
-  trace->spectra.are_wanted = keeps_spectra;
+  trace->wants_spectra = keeps_spectra;
   execute(catalog, request, *trace, std::move(checkpoint));
   return record_of(request, *trace);
 }

@@ -16,6 +16,7 @@
 #include <numbers>
 #include <vector>
 
+#include "core/failures.h"
 #include "core/files.h"
 #include "core/frames.h"
 #include "core/json.h"
@@ -441,23 +442,23 @@ class KeptFrames : public testing::Test {
  protected:
   KeptFrames() {
     const std::vector<Real> target = {1, 2}, truth = {3, 4};
-    open_frames(trace->frames, 2, 1, target, truth);
+    open_frames(*frames, 2, 1, target, truth);
   }
   void keep(std::int64_t iteration) {
     const Real value = static_cast<Real>(iteration);
-    keep_frame(trace->frames, iteration, std::vector<Real>{value, -value});
+    keep_frame(*frames, iteration, std::vector<Real>{value, -value});
   }
   std::vector<std::int64_t> chosen() const {
     std::vector<std::int64_t> iterations;
-    for (const std::size_t place : chosen_frames(trace->frames)) {
-      iterations.push_back(trace->frames.iteration[place]);
-      EXPECT_EQ(trace->frames.x[place][0], static_cast<float>(iterations.back()));
-      EXPECT_EQ(trace->frames.x[place][1], -static_cast<float>(iterations.back()));
+    for (const std::size_t place : chosen_frames(*frames)) {
+      iterations.push_back(frames->iteration[place]);
+      EXPECT_EQ(frames->x[place][0], static_cast<float>(iterations.back()));
+      EXPECT_EQ(frames->x[place][1], -static_cast<float>(iterations.back()));
     }
     return iterations;
   }
 
-  std::unique_ptr<Trace> trace = std::make_unique<Trace>();
+  std::unique_ptr<Frames> frames = std::make_unique<Frames>();
 };
 
 TEST_F(KeptFrames, OfAShortRunAreAllOfIt) {
@@ -490,41 +491,40 @@ TEST_F(KeptFrames, AreSpreadAsTheLogarithmOfTheirIteration) {
 TEST_F(KeptFrames, OfOneIterationAreTheLastX) {
   keep(0);
   keep(1);
-  keep_frame(trace->frames, 1, std::vector<Real>{7, 8});
-  ASSERT_EQ(chosen_frames(trace->frames).size(), 2U);
-  EXPECT_EQ(trace->frames.x[chosen_frames(trace->frames)[1]][0], 7);
+  keep_frame(*frames, 1, std::vector<Real>{7, 8});
+  ASSERT_EQ(chosen_frames(*frames).size(), 2U);
+  EXPECT_EQ(frames->x[chosen_frames(*frames)[1]][0], 7);
 }
 
 TEST_F(KeptFrames, WithoutANumberInSinglePrecisionAreNone) {
   keep(0);
   for (const Real wrong : {std::nan(""), 1e39, -std::numeric_limits<Real>::infinity()})
-    keep_frame(trace->frames, 1, std::vector<Real>{1, wrong});
+    keep_frame(*frames, 1, std::vector<Real>{1, wrong});
   EXPECT_EQ(chosen(), std::vector<std::int64_t>{0});
 }
 
 TEST(Frames, OfAGridThatIsTooLargeAreNone) {
   for (const auto& [columns, is_kept] : {std::pair{128, true}, std::pair{129, false}}) {
-    const auto trace = std::make_unique<Trace>();
+    const auto frames = std::make_unique<Frames>();
     const std::vector<Real> cells(static_cast<std::size_t>(128 * columns), 1.0);
-    open_frames(trace->frames, 128, columns, cells, {});
-    keep_frame(trace->frames, 0, cells);
-    EXPECT_EQ(chosen_frames(trace->frames).size(), is_kept ? 1U : 0U);
-    EXPECT_FALSE(trace->frames.has_truth);
+    open_frames(*frames, 128, columns, cells, {});
+    keep_frame(*frames, 0, cells);
+    EXPECT_EQ(chosen_frames(*frames).size(), is_kept ? 1U : 0U);
+    EXPECT_FALSE(frames->has_truth);
   }
 }
 
-TEST_F(KeptFrames, ThatCannotBeAreADefectOfTheirTrace) {
+TEST_F(KeptFrames, ThatCannotBeAreNotSound) {
   for (std::int64_t i = 0; i < 20; ++i) keep(i);
-  trace->points = 0;
-  ASSERT_EQ(defect_of(*trace), "");
-  const std::int64_t other = trace->frames.iteration[1];
-  for (const std::int64_t wrong : {trace->frames.iteration[0], std::int64_t{-2}}) {
-    trace->frames.iteration[1] = wrong;
-    EXPECT_NE(defect_of(*trace), "") << wrong;
+  ASSERT_TRUE(are_sound(*frames));
+  const std::int64_t other = frames->iteration[1];
+  for (const std::int64_t wrong : {frames->iteration[0], std::int64_t{-2}}) {
+    frames->iteration[1] = wrong;
+    EXPECT_FALSE(are_sound(*frames)) << wrong;
   }
-  trace->frames.iteration[1] = other;
-  trace->frames.columns = Trace::Frames::kCells;
-  EXPECT_NE(defect_of(*trace), "");
+  frames->iteration[1] = other;
+  frames->columns = Frames::kCells;
+  EXPECT_FALSE(are_sound(*frames));
 }
 
 // u = sin aj, v = cos bi, of which central differences have sin a and sin b for a and b.

@@ -9,6 +9,7 @@
 #include "benchmarks/plan/claim_cells.h"
 #include "benchmarks/plan/suite.h"
 #include "benchmarks/run/execute.h"
+#include "benchmarks/run/keepers/keeper.h"
 #include "benchmarks/run/trained.h"
 #include "core/files.h"
 #include "core/json.h"
@@ -40,7 +41,8 @@ void restore_from(const std::string& path) {
   trace.~Trace();
   new (&trace) Trace;
   optimizers::Meter meter(problem, request.budget,
-                          needs_of(entry, request.optimizer.options, problem), trace);
+                          needs_of(entry, request.optimizer.options, problem), trace,
+                          benchmarks::open_keepers(trace));
   Vector theta = problem.start();
   constexpr double kNever = 1e9;
   try {

@@ -134,9 +134,12 @@ TEST(Forward, AccuracyEndsARunWithinItsShareOfTheStandardDeviations) {
     const Outcome enough = run(problem, "levenberg-marquardt[accuracy=0.01]", budget);
     EXPECT_EQ(enough.status, Status::converged) << derivatives << ": " << enough.trace->message;
     EXPECT_LT(enough.trace->last.work, whole.trace->last.work) << derivatives;
-    const auto& deviations = whole.trace->uncertainty.deviation;
+    ASSERT_TRUE(whole.parts.uncertainty);
+    const std::vector<Real>& deviations = whole.parts.uncertainty->standard_deviation;
     for (Index i = 0; i < whole.theta.size(); ++i)
-      EXPECT_LT(std::abs(enough.theta[i] - whole.theta[i]), 2 * kAccuracy * deviations[i]) << i;
+      EXPECT_LT(std::abs(enough.theta[i] - whole.theta[i]),
+                2 * kAccuracy * deviations[std::size_t(i)])
+          << i;
   }
 }
 

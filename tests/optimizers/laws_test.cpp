@@ -205,10 +205,12 @@ Real path_difference(const std::string& spec, Real alpha) {
   const int points = std::max<int>(a.trace->points, b.trace->points);
   Real largest = 0;
   for (int i = 0; i < points; ++i) {  // a path that has ended stays where it is
-    const int ia = std::min<int>(i, a.trace->points - 1);
-    const int ib = std::min<int>(i, b.trace->points - 1);
-    for (int row = 0; row < 2; ++row) {
-      const Real gap = std::abs(a.trace->path_y[ia][row] - b.trace->path_y[ib][row]);
+    const std::vector<Real>& ya =
+        a.parts.trajectory->y[std::size_t(std::min<int>(i, a.trace->points - 1))];
+    const std::vector<Real>& yb =
+        b.parts.trajectory->y[std::size_t(std::min<int>(i, b.trace->points - 1))];
+    for (std::size_t row = 0; row < 2; ++row) {
+      const Real gap = std::abs(ya[row] - yb[row]);
       largest = std::isfinite(gap) ? std::max(largest, gap) : 1;
     }
   }

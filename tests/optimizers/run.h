@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "benchmarks/run/keepers/keeper.h"
 #include "core/spec.h"
 #include "optimizers/optimizer.h"
 #include "tests/problems/make.h"
@@ -36,6 +37,7 @@ struct Outcome {
   Vector theta;                                              // (n), final
   std::vector<Vector> path;                                  // θ after each step of ours
   std::unique_ptr<Trace> trace = std::make_unique<Trace>();  // large
+  Parts parts;                                               // of its record
   Status status = Status::running;
 };
 
@@ -50,7 +52,8 @@ inline Outcome run_from(const Vector& start, const Problem& problem, const std::
   const auto method = entry.make(options, optimizers());
   Outcome result;
   result.theta = start;
-  Meter meter(problem, budget, needs_of(entry, options, problem), *result.trace);
+  Meter meter(problem, budget, needs_of(entry, options, problem), *result.trace,
+              benchmarks::open_keepers(*result.trace));
   result.status = meter.begin(result.theta);
   Vector before = result.theta;
   try {
@@ -69,6 +72,7 @@ inline Outcome run_from(const Vector& start, const Problem& problem, const std::
   }
   result.theta = meter.finish(result.theta, result.status);
   result.status = result.trace->status;
+  benchmarks::write_parts(*result.trace, result.parts);
   return result;
 }
 

@@ -122,34 +122,48 @@ TEST(Burgers, ThatBlowsUpHasDivergedAndKeepsItsCurve) {
 
 // The pictures that are kept of a run.
 
+// A plane of fields, which stand row by row, as the columns of an array.
+std::vector<float> by_columns(const FieldFrames& fields, std::span<const float> plane) {
+  const Index rows = fields.shape[1], columns = fields.shape[2];
+  std::vector<float> cells;
+  for (Index j = 0; j < columns; ++j)
+    for (Index i = 0; i < rows; ++i) cells.push_back(plane[std::size_t(i * columns + j)]);
+  return cells;
+}
+
 TEST(Pictures, OfAVelocityAreItsCurl) {
   const Problem problem = make("navier-stokes[N=8]");
   const Outcome outcome = run(problem, "gd", {.iterations = 1, .target = 0});
-  const Trace::Frames& frames = outcome.trace->frames;
-  ASSERT_EQ(frames.rows, 8);
-  ASSERT_EQ(frames.columns, 8);
+  ASSERT_TRUE(outcome.parts.fields);
+  const FieldFrames& frames = *outcome.parts.fields;
+  ASSERT_EQ(frames.shape[1], 8);
+  ASSERT_EQ(frames.shape[2], 8);
   const Vector truth = curl(problem.truth()->col(0), 8, 8), start = curl(problem.start(), 8, 8);
-  ASSERT_EQ(frames.iteration[0], 0);
+  ASSERT_EQ(frames.iterations[0], 0);
   EXPECT_GT(truth.norm(), 0.1);
+  const auto kept_truth = by_columns(frames, frames.truth()), x = by_columns(frames, frames.x(0)),
+             target = by_columns(frames, frames.target());
   for (Index i = 0; i < 64; ++i) {
-    EXPECT_EQ(frames.truth[i], static_cast<float>(truth[i]));
-    EXPECT_EQ(frames.x[0][i], static_cast<float>(start[i]));
-    EXPECT_EQ(frames.target[i], static_cast<float>(problem.target()(i, 0)));
+    EXPECT_EQ(kept_truth[std::size_t(i)], static_cast<float>(truth[i]));
+    EXPECT_EQ(x[std::size_t(i)], static_cast<float>(start[i]));
+    EXPECT_EQ(target[std::size_t(i)], static_cast<float>(problem.target()(i, 0)));
   }
 }
 
 TEST(Pictures, OfYAreOfTheLastXAndThoseOfTheContextOfTheData) {
   const Problem problem = make("navier-stokes[N=8]");
   const Outcome outcome = run(problem, "gauss-newton", {.iterations = 2, .target = 0});
-  const Trace::Frames& frames = outcome.trace->frames;
-  ASSERT_TRUE(frames.has_y && frames.has_context);
+  ASSERT_TRUE(outcome.parts.fields);
+  const FieldFrames& frames = *outcome.parts.fields;
+  ASSERT_TRUE(frames.has_y() && frames.has_context());
   Point at;
   problem.forward(outcome.theta, at);
   const Matrix& markers = problem.batch().context;
   EXPECT_GT((markers.col(0).head(64) - problem.target().col(0)).norm(), 0.1);
+  const auto y = by_columns(frames, frames.y()), context = by_columns(frames, frames.context());
   for (Index i = 0; i < 64; ++i) {
-    EXPECT_EQ(frames.y[i], static_cast<float>(at.y(i, 0)));
-    EXPECT_EQ(frames.context[i], static_cast<float>(markers(i, 0)));
+    EXPECT_EQ(y[std::size_t(i)], static_cast<float>(at.y(i, 0)));
+    EXPECT_EQ(context[std::size_t(i)], static_cast<float>(markers(i, 0)));
   }
 }
 
@@ -159,27 +173,31 @@ TEST(Pictures, OfBurgersAreTheStatesFromXToY) {
   constexpr Real kTime = 0.3, kViscosity = 0.005;
   const Problem problem = make("burgers[N=16,steps=6,time=0.3]");
   const Outcome outcome = run(problem, "gd", {.iterations = 3, .target = 0});
-  const Trace::Frames& frames = outcome.trace->frames;
-  ASSERT_EQ(frames.rows, kSteps + 1);
-  ASSERT_EQ(frames.columns, kN);
-  ASSERT_EQ(frames.iteration[3], 3);
-  const auto expect_states = [&](const float* cells, const Vector& x) {
+  ASSERT_TRUE(outcome.parts.fields);
+  const FieldFrames& frames = *outcome.parts.fields;
+  ASSERT_EQ(frames.shape[1], kSteps + 1);
+  ASSERT_EQ(frames.shape[2], kN);
+  ASSERT_EQ(frames.iterations[3], 3);
+  const auto expect_states = [&](const std::vector<float>& cells, const Vector& x) {
     Vector state = x;
     for (Index t = 0; t <= kSteps; ++t) {
       if (t > 0)
         problems::BurgersFlow(kN, t, kViscosity, kTime * static_cast<Real>(t) / kSteps)
             .evolve(x, state);
       for (Index i = 0; i < kN; ++i)  // but for the rounding of Δt
-        EXPECT_NEAR(cells[(kSteps + 1) * i + t], state[i], 1e-6) << t;
+        EXPECT_NEAR(cells[std::size_t((kSteps + 1) * i + t)], state[i], 1e-6) << t;
     }
     EXPECT_GT((state - x).norm(), 0.005) << "it moves";
   };
-  expect_states(frames.truth, problem.truth()->col(0));
-  expect_states(frames.x[3], outcome.theta);
+  const auto truth = by_columns(frames, frames.truth()),
+             target = by_columns(frames, frames.target());
+  expect_states(truth, problem.truth()->col(0));
+  expect_states(by_columns(frames, frames.x(3)), outcome.theta);
   for (Index i = 0; i < kN; ++i) {
-    EXPECT_EQ(frames.truth[(kSteps + 1) * i + kSteps], static_cast<float>(problem.target()(i, 0)));
-    EXPECT_EQ(frames.target[(kSteps + 1) * i + kSteps], static_cast<float>(problem.target()(i, 0)));
-    EXPECT_EQ(frames.target[(kSteps + 1) * i], 0) << "of y* the last row alone";
+    const auto first = std::size_t((kSteps + 1) * i), last = first + kSteps;
+    EXPECT_EQ(truth[last], static_cast<float>(problem.target()(i, 0)));
+    EXPECT_EQ(target[last], static_cast<float>(problem.target()(i, 0)));
+    EXPECT_EQ(target[first], 0) << "of y* the last row alone";
   }
 }
 
@@ -201,7 +219,7 @@ TEST(Pictures, OfALongHistoryAreStatesAtEvenTimes) {
 TEST(Pictures, OfTheLargestBurgersHaveRoom) {
   const Field field = *make("burgers[N=4096,steps=10000,time=0.001]").field();
   EXPECT_EQ(field.rows, 4);
-  EXPECT_LE(field.rows * field.columns, Trace::Frames::kCells);
+  EXPECT_LE(field.rows * field.columns, Frames::kCells);
 }
 
 }  // namespace

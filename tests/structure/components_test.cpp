@@ -255,7 +255,7 @@ TEST(Symbols, WhatObjectsShareIsAboutTypesThatAreDefinedOnce) {
   const std::map<std::string, Set> defined = definitions();
   std::size_t count = 0;
   for (const auto& [type, files] : objects) {
-    if (files.size() < 2) continue;
+    if (files.size() < 2 || type == "isoline::Parts") continue;  // which cmake/parts.h.in defines
     ++count;
     const auto at = defined.find(type);
     ASSERT_NE(at, defined.end()) << type << " is in" << list_of(files) << " and in no header";
