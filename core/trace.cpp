@@ -39,9 +39,9 @@ bool are_points_sound(const Trace& trace) {
 }
 
 // Targets are met from the first on, one after the other.
-bool are_hits_sound(const Trace& trace) {
+bool are_hits_sound(const TraceHit (&hits)[kRungs]) {
   std::int64_t last = 0;
-  for (const TraceHit& hit : trace.hit) {
+  for (const TraceHit& hit : hits) {
     if (hit.iteration == -1) {
       last = std::numeric_limits<std::int64_t>::max();
       continue;
@@ -112,7 +112,8 @@ void set_text(char (&out)[Trace::kText], std::string_view text) {
 std::string defect_of(const Trace& trace) {
   if (!are_choices_sound(trace)) return "an invalid choice";
   if (!are_points_sound(trace)) return "invalid iterations, counts or times";
-  if (!are_hits_sound(trace)) return "targets reached in an invalid order";
+  if (!are_hits_sound(trace.hit) || !are_hits_sound(trace.x_hit))
+    return "targets reached in an invalid order";
   if (!is_within(trace.unknowns, Trace::kUnknowns)) return "a point of an invalid size";
   if (!are_sound(trace.failures)) return "failed evaluations of an invalid number";
   if (!are_texts_sound(trace)) return "an unterminated text";

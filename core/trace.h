@@ -51,7 +51,8 @@ struct TracePoint {
   TracePoint() { std::fill_n(series, kSeries, kAbsent); }
 };
 
-// When the j-th target was first reached: f ≤ f_L + τ_j s.
+// When the j-th target was first reached: f ≤ f_L + τ_j s, or an error in x of at most the goal at
+// τ_j.
 struct TraceHit {
   std::int64_t iteration = -1, work = 0;  // iteration −1: never
   OracleCounts counts{};
@@ -68,7 +69,7 @@ struct Trace {
   std::atomic<bool> is_finished{false};
   std::atomic<int> points{0};
   TracePoint point[kPoints];
-  TraceHit hit[kRungs];
+  TraceHit hit[kRungs], x_hit[kRungs];  // the latter of a direct problem with a known solution
   bool is_learned = false;
   char series_names[kText] = "";  // a line each
 

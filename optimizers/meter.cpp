@@ -48,6 +48,7 @@ Meter::Meter(const Problem& problem, const Budget& budget, OracleSet granted, Tr
       best_loss_(kInfinity),
       next_target_(kNone),
       target_loss_(kNone),
+      next_x_goal_(kNone),
       stall_loss_(std::numeric_limits<Real>::max()),
       target_x_error_(kNone),
       most_discrepancy_(budget.discrepancy > 0 && problem.noise_level()
@@ -85,7 +86,7 @@ void Meter::linearize(VectorRef theta, Linearization& at) {
   at.has_jacobian_ = at.has_hessian_ = at.has_sparse_ = false;
   problem_.forward(theta, *samples_, at.point_);
   in_a_row_.add_outcome(trace_.failures);
-  see(at.point_.loss, theta);
+  see(at.point_, theta);
   disturb(at.point_);
   if (problem_.is_learned() && !has_seen_batch_) note_batch(at.point_);
 }
@@ -116,7 +117,7 @@ Real Meter::loss(VectorRef theta) {
   charge_forward(theta);
   problem_.forward(theta, *samples_, point_);
   in_a_row_.add_outcome(trace_.failures);
-  see(point_.loss, theta);
+  see(point_, theta);
   disturb(point_);
   return point_.loss;
 }
@@ -221,14 +222,27 @@ void Meter::reach(Real loss) {
   while (targets_met_ < kRungs) {
     next_target_ = target_at(rung(static_cast<std::size_t>(targets_met_)));
     if (!(loss <= next_target_)) return;
-    TraceHit& hit = trace_.hit[targets_met_++];
-    hit.work = work_;
-    hit.counts = counts_;
-    hit.rounds = rounds();
-    hit.wall_seconds = watch_.seconds();
-    hit.iteration = iteration_;
+    note(trace_.hit[targets_met_++]);
   }
   next_target_ = kNone;
+}
+
+void Meter::reach_x(Real error) {
+  while (x_targets_met_ < kRungs) {
+    next_x_goal_ =
+        x_goal(rung(static_cast<std::size_t>(x_targets_met_)), trace_.x_scale, trace_.x_floor);
+    if (!(error <= next_x_goal_)) return;
+    note(trace_.x_hit[x_targets_met_++]);
+  }
+  next_x_goal_ = kNone;
+}
+
+void Meter::note(TraceHit& hit) const {
+  hit.work = work_;
+  hit.counts = counts_;
+  hit.rounds = rounds();
+  hit.wall_seconds = watch_.seconds();
+  hit.iteration = iteration_;
 }
 
 // The meter as the harness has it: a run begun, traced, judged and ended.
@@ -244,6 +258,7 @@ Status Meter::begin(VectorRef theta) {
   start_gradient_ = trace_.last.gradient_norm;
   set_scales();
   observe(judged_.loss, judged_theta_);
+  observe_x(trace_.last.x_error);
   keep_point();
   refine(theta);
   status_ = judge(theta);
@@ -256,6 +271,7 @@ Status Meter::begin(VectorRef theta) {
 void Meter::set_scales() {
   trace_.x_scale = problem_.x_scale(judging());
   trace_.x_floor = problem_.x_floor(judging());
+  if (!problem_.is_learned() && std::isfinite(trace_.x_scale)) next_x_goal_ = kInfinity;
   const bool stops_at_target = budget_.target > 0 && most_discrepancy_ == kNone;
   if (trace_.aim == Aim::x && stops_at_target && std::isfinite(trace_.x_scale))
     target_x_error_ = x_goal(budget_.target, trace_.x_scale, trace_.x_floor);
@@ -284,11 +300,12 @@ void Meter::prepare() {
 void Meter::persist(Archive& archive) {
   double wall = watch_.seconds(), processor = watch_.processor_seconds();
   archive(counts_, work_, spared_, disturbed_, iteration_, next_kept_, best_loss_, next_target_,
-          target_loss_, target_x_error_, targets_met_, stall_loss_, stall_iteration_, status_,
-          batch_loss_, batch_x_error_, judged_.loss, judged_theta_, paid_loss_, is_prepaid_,
-          previous_, wall, processor, refined_, known_theta_, known_J_, known_by_.noise,
-          known_by_.step, known_by_.is_central, enough_of_deviation_, start_gradient_, origin_,
-          in_a_row_.x, in_a_row_.repeats, in_a_row_.failed, in_a_row_.known);
+          target_loss_, target_x_error_, targets_met_, next_x_goal_, x_targets_met_, stall_loss_,
+          stall_iteration_, status_, batch_loss_, batch_x_error_, judged_.loss, judged_theta_,
+          paid_loss_, is_prepaid_, previous_, wall, processor, refined_, known_theta_, known_J_,
+          known_by_.noise, known_by_.step, known_by_.is_central, enough_of_deviation_,
+          start_gradient_, origin_, in_a_row_.x, in_a_row_.repeats, in_a_row_.failed,
+          in_a_row_.known);
   const bool wants_spectra = trace_.wants_spectra;  // the caller decides this, not the file
   const CallReport since = trace_.calls;
   archive.raw(&trace_, sizeof trace_);  // plain data; no reader waits for its atomics
@@ -298,11 +315,11 @@ void Meter::persist(Archive& archive) {
   trace_.calls.answered += since.answered;
   // The state from a file must be valid for this run: all sizes and counts are in their ranges.
   const Index n = problem_.unknowns();
-  const bool is_sound = targets_met_ >= 0 && targets_met_ <= kRungs && iteration_ >= 0 &&
-                        work_ >= 0 && status_ == Status::running && batch_loss_.is_sound() &&
-                        batch_x_error_.is_sound() && previous_.size() == n &&
-                        (judged_theta_.size() == n || judged_theta_.size() == 0) &&
-                        is_within(refined_, refinement_);
+  const bool is_sound =
+      targets_met_ >= 0 && targets_met_ <= kRungs && x_targets_met_ >= 0 &&
+      x_targets_met_ <= kRungs && iteration_ >= 0 && work_ >= 0 && status_ == Status::running &&
+      batch_loss_.is_sound() && batch_x_error_.is_sound() && previous_.size() == n &&
+      (judged_theta_.size() == n || judged_theta_.size() == 0) && is_within(refined_, refinement_);
   require(is_sound, "the state of the meter belongs to another run");
   const std::string defect = defect_of(trace_);
   require(defect.empty(), [&] { return "its trace holds " + defect; });
@@ -407,6 +424,7 @@ bool Meter::look_at(VectorRef theta) {
   }
   accepted_ = judged_theta_;
   observe(judged_.loss, judged_theta_);
+  observe_x(trace_.last.x_error);
   return true;
 }
 

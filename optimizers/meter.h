@@ -152,10 +152,14 @@ class Meter {
     return is_exhausted_ || work_ + solve_iterations_ * price > most_work_;
   }
   // A learning problem is judged by its validation samples, not by the batch of a step.
-  void see(Real loss, VectorRef theta) {
+  void see(const Point& at, VectorRef theta) {
     if (problem_.is_learned()) return;
-    paid_loss_ = loss;
-    observe(loss, theta);
+    paid_loss_ = at.loss;
+    observe(at.loss, theta);
+    if (next_x_goal_ >= 0) observe_x(problem_.x_error(at.x(), *samples_));
+  }
+  void observe_x(Real error) {
+    if (error <= next_x_goal_) reach_x(error);
   }
   void observe(Real loss, VectorRef theta) {
     if (loss < best_loss_) {
@@ -169,7 +173,9 @@ class Meter {
     std::copy_n(theta.data(), trace_.unknowns, trace_.best);
     trace_.has_best = true;
   }
-  void reach(Real loss);          // records the targets that `loss` meets
+  void reach(Real loss);     // records the targets that `loss` meets
+  void reach_x(Real error);  // and those that this error in x meets
+  void note(TraceHit& hit) const;
   void measure(VectorRef theta);  // fills trace_.last, off the clock
   void measure_series();          // of the problem, at the point that was judged last
   void keep_point();
@@ -213,7 +219,8 @@ class Meter {
   bool are_products_at_once_;     // of the problem: by forwards that share rounds
   Real best_loss_, next_target_;  // the loss that meets the next of the 51 targets
   Real target_loss_;
-  int targets_met_ = 0;
+  Real next_x_goal_;  // the error in x that meets the next of the 51 targets
+  int targets_met_ = 0, x_targets_met_ = 0;
   Real stall_loss_;
   std::int64_t stall_iteration_ = 0;
   Stopwatch watch_;

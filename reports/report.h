@@ -34,8 +34,9 @@ using namespace results;
 // stays in those that they name.
 inline void trim_for_report(Record& record, bool is_claimed) {
   const auto drop = [](auto&... all) { ((all = std::remove_reference_t<decltype(all)>()), ...); };
-  if (record.hits) {
-    Hits& hits = *record.hits;
+  for (std::optional<Hits>* each : {&record.hits, &record.x_hits}) {
+    if (!*each) continue;
+    Hits& hits = **each;
     const auto met = static_cast<std::size_t>(std::ranges::count_if(
         hits.iteration, [](std::int64_t iteration) { return iteration >= 0; }));
     const auto shorten = [met](auto&... all) { ((all.resize(met), all.shrink_to_fit()), ...); };

@@ -135,10 +135,10 @@ Curve curve_of(const Trace& trace) {
   return curve;
 }
 
-Hits hits_of(const Trace& trace) {
+Hits hits_of(const Trace& trace, const TraceHit (&reached)[kRungs]) {
   Hits hits;
   for (std::size_t j = 0; j < kRungs; ++j) {
-    const TraceHit& hit = trace.hit[j];
+    const TraceHit& hit = reached[j];
     const bool is_met = hit.iteration >= 0;
     hits.target.push_back(rung(j));
     hits.iteration.push_back(hit.iteration);
@@ -148,14 +148,14 @@ Hits hits_of(const Trace& trace) {
   }
   for (std::size_t kind = 0; kind < kOracles; ++kind) {
     std::vector<std::int64_t> column;
-    for (const TraceHit& hit : trace.hit)
+    for (const TraceHit& hit : reached)
       column.push_back(hit.iteration >= 0 ? hit.counts[kind] : -1);
     const bool is_asked = trace.last.counts[kind] > 0 || std::ranges::max(column) > 0;
     if (is_asked) hits.counts[std::string(kOracleNames[kind])] = std::move(column);
   }
   hits.rounds = rounds_of(trace, [&](std::size_t i) {
     std::vector<std::int64_t> column;
-    for (const TraceHit& hit : trace.hit) column.push_back(hit.iteration >= 0 ? hit.rounds[i] : -1);
+    for (const TraceHit& hit : reached) column.push_back(hit.iteration >= 0 ? hit.rounds[i] : -1);
     return column;
   });
   return hits;
@@ -457,7 +457,8 @@ Record record_of(const Request& request, const Trace& trace) {
   record.criterion = digest_of(criterion_of(record));
   record.summary = summary_of(trace);
   record.curve = curve_of(trace);
-  if (record.minimum) record.hits = hits_of(trace);
+  if (record.minimum) record.hits = hits_of(trace, trace.hit);
+  if (record.x_scale && !trace.is_learned) record.x_hits = hits_of(trace, trace.x_hit);
   record.series = series_of(trace);
   write_parts(trace, record);
   record.privileges = lines_of(trace.privileges);

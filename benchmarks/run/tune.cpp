@@ -123,12 +123,13 @@ Real median(std::vector<Real> values) {
   return values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
 }
 
-// Until solved in x at stored iterations, or in loss; infinite if neither.
+// Until solved in x, of learned runs at stored iterations, or in loss; infinite if neither.
 Real work_of(const Record& run) {
   const std::size_t target = rung_of(1e-6);
-  if (run.aim == Aim::loss) {
-    const bool is_hit = run.hits && run.hits->work.at(target) >= 0;
-    return is_hit ? static_cast<Real>(run.hits->work[target]) : INFINITY;
+  const std::optional<Hits>& hits = run.aim == Aim::loss ? run.hits : run.x_hits;
+  if (hits || run.aim == Aim::loss) {
+    const bool is_hit = hits && hits->work.at(target) >= 0;
+    return is_hit ? static_cast<Real>(hits->work[target]) : INFINITY;
   }
   if (!run.x_scale) return INFINITY;
   const Real goal = x_goal(rung(target), *run.x_scale, run.x_floor);

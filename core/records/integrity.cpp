@@ -53,9 +53,13 @@ class Invariants {
     if (!broke_off) check_ends();
     check_prices();
     check_rounds(curve_.rounds, curve_.work);
-    if (record.hits) check_rounds(record.hits->rounds, record.hits->work);
+    for (const std::optional<Hits>* hits : {&record.hits, &record.x_hits})
+      if (*hits) check_rounds((*hits)->rounds, (*hits)->work);
     check_losses();
     if (record.hits && record.minimum && record.scale) check_hits(*record.hits);
+    if (record.x_hits && record.x_scale)
+      check_columns_of(*record.x_hits, curve_.x_error, kRounding * *record.x_scale,
+                       [&](Real tau) { return x_goal(tau, *record.x_scale, record.x_floor); });
     if (!broke_off) check_verdicts();
     if (!broke_off) check_answer();
   }
@@ -135,7 +139,8 @@ class Invariants {
           return hold(false, "the work of its {} is not the nominal cost of its calls", whose);
     };
     check("curve", curve_.counts, curve_.work);
-    if (record_.hits) check("hits", record_.hits->counts, record_.hits->work);
+    for (const std::optional<Hits>* hits : {&record_.hits, &record_.x_hits})
+      if (*hits) check("hits", (*hits)->counts, (*hits)->work);
   }
 
   // W workers need at most as many rounds as a single one, and at least a W-th of them.
@@ -168,8 +173,26 @@ class Invariants {
   Real goal_at(Real tau) const { return *record_.minimum + tau * *record_.scale; }
   Real slack() const { return kRounding * size(); }
 
-  // A target is met by the iterate of an iteration, or by a trial on the way to the next one.
   void check_hits(const Hits& hits) {
+    check_columns_of(hits, curve_.loss, slack(), [&](Real tau) { return goal_at(tau); });
+    for (std::size_t j = 0; j < hits.target.size(); ++j) {
+      const Real goal = goal_at(hits.target[j]);
+      if (hits.iteration[j] < 0)
+        hold(!(summary_.best_loss < goal - slack()),
+             "it did not reach the target {}, but its best loss is {}", hits.target[j],
+             summary_.best_loss);
+      else
+        hold(summary_.best_loss <= goal + slack(),
+             "it reached the target {}, {}, but its best loss is {}", hits.target[j], goal,
+             summary_.best_loss);
+    }
+  }
+
+  // A target is met by the iterate of an iteration, or by a trial on the way to the next one; by a
+  // kept point at the latest.
+  template <class Goal>
+  void check_columns_of(const Hits& hits, const std::vector<Real>& values, Real slack,
+                        const Goal& goal_at) {
     const auto forwards = hits.counts.find(std::string(kOracleNames[0]));
     hold(forwards == hits.counts.end() || forwards->second == hits.forwards,
          "the forward solves of its hits are not those of its counts");
@@ -178,17 +201,8 @@ class Invariants {
            "its target {} is not the one of this place, {}", hits.target[j], rung(j));
       hold(!(hits.wall_seconds[j] < 0), "its hits have negative times");
       const Real goal = goal_at(hits.target[j]);
-      if (hits.iteration[j] < 0) {
-        hold(!(summary_.best_loss < goal - slack()),
-             "it did not reach the target {}, but its best loss is {}", hits.target[j],
-             summary_.best_loss);
-        continue;
-      }
-      hold(summary_.best_loss <= goal + slack(),
-           "it reached the target {}, {}, but its best loss is {}", hits.target[j], goal,
-           summary_.best_loss);
       for (std::size_t i = 0; i < curve_.iteration.size(); ++i)
-        if (is_beside(hits, j, i, goal))
+        if (is_beside(hits, j, i, values[i] < goal - slack))
           return hold(false,
                       "its target {} is not reached where its curve reaches it, at "
                       "iteration {}",
@@ -196,10 +210,12 @@ class Invariants {
     }
   }
 
-  // A kept point before it has not met it and took no more; one after it took no less.
-  bool is_beside(const Hits& hits, std::size_t j, std::size_t i, Real goal) const {
+  // A kept point before it has not met it and took no more; one after it took no less. None has met
+  // a target that was not reached.
+  bool is_beside(const Hits& hits, std::size_t j, std::size_t i, bool has_met) const {
     const std::int64_t hit = hits.iteration[j], at = curve_.iteration[i];
-    if (at < hit) return curve_.work[i] > hits.work[j] || curve_.loss[i] < goal - slack();
+    if (hit < 0) return has_met;
+    if (at < hit) return curve_.work[i] > hits.work[j] || has_met;
     return at > hit && curve_.work[i] < hits.work[j];
   }
 

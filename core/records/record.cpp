@@ -47,14 +47,16 @@ void require_equal_columns(const Record& record) {
     else if constexpr (requires { require_sound(*part); })
       require_sound(*part);
   });
-  if (!record.hits) return;
-  const Hits& hits = *record.hits;
-  const std::size_t targets = hits.target.size();
-  require(targets <= std::size_t{kRungs}, "it reached more targets than exist");
-  const auto of_hits = [targets](const auto&... columns) {
-    (require_length(targets, "hits", columns), ...);
-  };
-  of_hits(hits.iteration, hits.work, hits.forwards, hits.counts, hits.rounds, hits.wall_seconds);
+  for (const std::optional<Hits>* each : {&record.hits, &record.x_hits}) {
+    if (!*each) continue;
+    const Hits& hits = **each;
+    const std::size_t targets = hits.target.size();
+    require(targets <= std::size_t{kRungs}, "it reached more targets than exist");
+    const auto of_hits = [targets](const auto&... columns) {
+      (require_length(targets, "hits", columns), ...);
+    };
+    of_hits(hits.iteration, hits.work, hits.forwards, hits.counts, hits.rounds, hits.wall_seconds);
+  }
 }
 
 }  // namespace
@@ -267,6 +269,8 @@ void fields(Like<Record> auto& record, auto& field) {
   field("summary", record.summary);
   field("curve", record.curve);
   field.optional("hits", record.hits);
+  field.optional("x_hits", record.x_hits,
+                 R"({"description": "The same of the error in x, at every evaluated x"})");
   field.optional("series", record.series);
   for_each_part(record, [&](auto& part) {
     constexpr Part kPart = std::remove_cvref_t<decltype(*part)>::kPart;
@@ -348,8 +352,9 @@ Json without_timings(Json record) {
     record.at("summary").erase(name);
     record.at("curve").erase(name);
   }
-  if (record.contains("hits"))  // counts at hits are the work again by kind
-    for (const char* name : {"wall_seconds", "counts"}) record["hits"].erase(name);
+  for (const char* hits : {"hits", "x_hits"})  // whose counts are the work again by kind
+    if (record.contains(hits))
+      for (const char* name : {"wall_seconds", "counts"}) record[hits].erase(name);
   return record;
 }
 

@@ -38,7 +38,8 @@ struct Curve {
   std::map<std::int64_t, std::vector<Real>> batch_loss, batch_x_error;
 };
 
-// When each of 51 targets τ = 10^(−j/5) was first reached: f ≤ f_L + τ s. −1: never.
+// When each of 51 targets τ = 10^(−j/5) was first reached: f ≤ f_L + τ s, or the error in x
+// ≤ max(τ‖x*‖, 1.1 x_floor), at any evaluated point. −1: never.
 struct Hits {
   std::vector<Real> target;
   std::vector<std::int64_t> iteration, work, forwards;
@@ -89,7 +90,8 @@ struct Record : Parts {
   OracleCounts prices{};
   Summary summary;
   Curve curve;
-  std::optional<Hits> hits;                         // where f_L is declared
+  std::optional<Hits> hits;    // where f_L is declared
+  std::optional<Hits> x_hits;  // of a direct problem with a known solution; older: none
   std::map<std::string, std::vector<Real>> series;  // a problem's own quantities, as the curve
   std::vector<std::string> privileges;
   ForeignParts foreign;

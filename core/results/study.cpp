@@ -193,9 +193,8 @@ const std::vector<std::int64_t>* column_of(const Columns& columns, std::size_t k
   return at == columns.end() ? nullptr : &at->second;
 }
 
-std::vector<Reached> from_hits(const Record& record, const Prices& prices) {
-  const Hits& hits = *record.hits;
-  const std::vector<Real> costs = prices.hit_costs(record);
+std::vector<Reached> from_hits(const Record& record, const Hits& hits, const Prices& prices) {
+  const std::vector<Real> costs = prices.hit_costs(record, hits);
   std::vector<Reached> met;
   for (std::size_t j = 0; j < hits.iteration.size() && hits.iteration[j] >= 0; ++j)
     met.push_back({Real(hits.work[j]), costs[j], hits.wall_seconds[j],
@@ -377,8 +376,7 @@ std::vector<Real> Prices::curve_costs(const Record& record) const {
   return costs_of(record, record.curve.counts, record.curve.work);
 }
 
-std::vector<Real> Prices::hit_costs(const Record& record) const {
-  const Hits& hits = *record.hits;
+std::vector<Real> Prices::hit_costs(const Record& record, const Hits& hits) const {
   std::vector<Real> costs = costs_of(record, hits.counts, hits.work);
   for (std::size_t j = 0; j < costs.size(); ++j)
     if (hits.iteration[j] < 0) costs[j] = kNever;
@@ -387,34 +385,42 @@ std::vector<Real> Prices::hit_costs(const Record& record) const {
 
 namespace {
 
-// The columns that have it, of the hits or else of the curve, and the place in them.
-std::pair<bool, std::size_t> place_at(const Record& record, Real work) {
-  const auto is_hit = [&](std::int64_t each) { return Real(each) == work; };  // else one in x
-  const bool is_of_hits =
-      record.hits && !record.hits->counts.empty() && std::ranges::any_of(record.hits->work, is_hit);
-  const std::vector<std::int64_t>& works = is_of_hits ? record.hits->work : record.curve.work;
-  const auto at =
-      std::ranges::find_if(works, [&](std::int64_t each) { return Real(each) >= work; });
-  return {is_of_hits, static_cast<std::size_t>(at - works.begin())};
+// The columns that have it, of hits or else of the curve, and the place in them.
+struct WorkPlace {
+  const Columns& counts;
+  const Columns& rounds;
+  std::size_t at;
+};
+WorkPlace place_at(const Record& record, Real work) {
+  const auto place_in = [&](const auto& columns) {
+    const auto at =
+        std::ranges::find_if(columns.work, [&](std::int64_t each) { return Real(each) >= work; });
+    return WorkPlace{columns.counts, columns.rounds, std::size_t(at - columns.work.begin())};
+  };
+  const auto is_hit = [&](std::int64_t each) { return Real(each) == work; };
+  for (const std::optional<Hits>* hits : {&record.hits, &record.x_hits})
+    if (*hits && !(*hits)->counts.empty() && std::ranges::any_of((*hits)->work, is_hit))
+      return place_in(**hits);
+  return place_in(record.curve);
 }
 
 }  // namespace
 
 OracleCounts counts_at(const Record& record, Real work) {
   OracleCounts counts{};
-  const auto [is_of_hits, i] = place_at(record, work);
-  const Columns& columns = is_of_hits ? record.hits->counts : record.curve.counts;
+  const WorkPlace place = place_at(record, work);
   for (std::size_t kind = 0; kind < kOracles; ++kind)
-    if (const auto* column = column_of(columns, kind); column && i < column->size())
-      counts[kind] = (*column)[i];
+    if (const auto* column = column_of(place.counts, kind); column && place.at < column->size())
+      counts[kind] = (*column)[place.at];
   return counts;
 }
 
 Real rounds_at(const Record& record, Real work, std::int64_t workers) {
-  const auto [is_of_hits, i] = place_at(record, work);
-  const Columns& columns = is_of_hits ? record.hits->rounds : record.curve.rounds;
-  const auto column = columns.find(std::to_string(workers));
-  return column != columns.end() && i < column->second.size() ? Real(column->second[i]) : work;
+  const WorkPlace place = place_at(record, work);
+  const auto column = place.rounds.find(std::to_string(workers));
+  return column != place.rounds.end() && place.at < column->second.size()
+             ? Real(column->second[place.at])
+             : work;
 }
 
 BestKnown::BestKnown(const Study& study) {
@@ -443,12 +449,13 @@ std::vector<Reached> targets_met(const Record& record, const Prices& prices, Aim
   if (record.status == Status::inapplicable) return {};
   if (aim == Aim::x) {
     if (!record.x_scale) return {};
+    if (record.x_hits) return from_hits(record, *record.x_hits, prices);
     return from_curve(record, prices, record.curve.x_error, [&](std::size_t j) {
       return x_goal(rung(j), *record.x_scale, record.x_floor);
     });
   }
   if (!record.minimum && !is_of_own_problem(record)) return {};
-  if (record.hits) return from_hits(record, prices);
+  if (record.hits) return from_hits(record, *record.hits, prices);
   const Real minimum = best.minimum(record), scale = best.scale(record);
   return from_curve(record, prices, record.curve.loss,
                     [&](std::size_t j) { return minimum + rung(j) * scale; });

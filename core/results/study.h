@@ -177,7 +177,7 @@ class Prices {
   // At each point of the curve.
   std::vector<Real> curve_costs(const Record& record) const;
   // At each hit, infinite where never reached.
-  std::vector<Real> hit_costs(const Record& record) const;
+  std::vector<Real> hit_costs(const Record& record, const Hits& hits) const;
 
  private:
   // From counts by oracle in columns as long as `work`, which it is where nothing is measured.

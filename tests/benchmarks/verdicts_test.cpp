@@ -126,40 +126,62 @@ TEST(Verdicts, LibrariesClaimSuccessAndOurMethodsDoNot) {
   }
 }
 
-TEST(Hits, ComeInOrderWithTheirWorkAndAsTheBestLossAndTheCurveHaveThem) {
-  for (const Record& record : judged_matrix().records) {
-    if (!record.hits) continue;
-    const Hits& hits = *record.hits;
-    ASSERT_EQ(hits.target.size(), 51U) << title_of(record);
-    for (std::size_t j = 0; j < hits.target.size(); ++j) {
-      SCOPED_TRACE(title_of(record) + ", target " + std::to_string(j));
-      const bool is_hit = hits.iteration[j] >= 0;
-      EXPECT_NEAR(std::log10(hits.target[j]), -static_cast<Real>(j) / 5, 1e-12);  // rounding
-      EXPECT_EQ(is_hit, hits.work[j] >= 0);
-      EXPECT_EQ(is_hit, hits.forwards[j] >= 0);
-      EXPECT_EQ(is_hit, is_met(record, record.summary.best_loss, hits.target[j]));
-      for (std::size_t i = 0; i < record.curve.loss.size(); ++i) {
-        if (!is_met(record, record.curve.loss[i], hits.target[j])) continue;
-        EXPECT_TRUE(is_hit);
-        EXPECT_LE(hits.iteration[j], record.curve.iteration[i]);
-        EXPECT_LE(hits.work[j], record.curve.work[i]);
-        break;
-      }
-      if (!is_hit) continue;
-      std::int64_t work = 0;  // of every oracle
-      for (std::size_t kind = 0; kind < kOracles; ++kind) {
-        const auto column = hits.counts.find(std::string(kOracleNames[kind]));
-        if (column != hits.counts.end()) work += record.prices[kind] * column->second[j];
-      }
-      EXPECT_EQ(work, hits.work[j]);
-      if (j == 0) continue;
-      EXPECT_GE(hits.iteration[j - 1], 0);
-      EXPECT_GE(hits.iteration[j], hits.iteration[j - 1]);
-      EXPECT_GE(hits.work[j], hits.work[j - 1]);
-      EXPECT_GE(hits.forwards[j], hits.forwards[j - 1]);
-      EXPECT_GE(hits.wall_seconds[j], hits.wall_seconds[j - 1]);
+// The hits, of the loss or of the error in x, where `is_met(value, τ)` says what they are of.
+template <class Met>
+void expect_in_order(const Record& record, const Hits& hits, const std::vector<Real>& curve,
+                     const Met& is_met) {
+  ASSERT_EQ(hits.target.size(), 51U) << title_of(record);
+  for (std::size_t j = 0; j < hits.target.size(); ++j) {
+    SCOPED_TRACE(title_of(record) + ", target " + std::to_string(j));
+    const bool is_hit = hits.iteration[j] >= 0;
+    EXPECT_NEAR(std::log10(hits.target[j]), -static_cast<Real>(j) / 5, 1e-12);  // rounding
+    EXPECT_EQ(is_hit, hits.work[j] >= 0);
+    EXPECT_EQ(is_hit, hits.forwards[j] >= 0);
+    for (std::size_t i = 0; i < curve.size(); ++i) {
+      if (!is_met(curve[i], hits.target[j])) continue;
+      EXPECT_TRUE(is_hit);
+      EXPECT_LE(hits.iteration[j], record.curve.iteration[i]);
+      EXPECT_LE(hits.work[j], record.curve.work[i]);
+      break;
     }
+    if (!is_hit) continue;
+    std::int64_t work = 0;  // of every oracle
+    for (std::size_t kind = 0; kind < kOracles; ++kind) {
+      const auto column = hits.counts.find(std::string(kOracleNames[kind]));
+      if (column != hits.counts.end()) work += record.prices[kind] * column->second[j];
+    }
+    EXPECT_EQ(work, hits.work[j]);
+    if (j == 0) continue;
+    EXPECT_GE(hits.iteration[j - 1], 0);
+    EXPECT_GE(hits.iteration[j], hits.iteration[j - 1]);
+    EXPECT_GE(hits.work[j], hits.work[j - 1]);
+    EXPECT_GE(hits.forwards[j], hits.forwards[j - 1]);
+    EXPECT_GE(hits.wall_seconds[j], hits.wall_seconds[j - 1]);
   }
+}
+
+TEST(Hits, ComeInOrderWithTheirWorkAndAsTheBestLossAndTheCurveHaveThem) {
+  std::size_t in_x = 0;
+  for (const Record& record : judged_matrix().records) {
+    const bool is_run = record.status != Status::inapplicable;
+    EXPECT_EQ(record.x_hits.has_value(),
+              is_run && record.x_scale.has_value() && !record.request.problem.is_learned)
+        << title_of(record);
+    if (record.x_hits) {
+      ++in_x;
+      expect_in_order(record, *record.x_hits, record.curve.x_error, [&](Real error, Real tau) {
+        return error <= x_goal(tau, *record.x_scale, record.x_floor);
+      });
+    }
+    if (!record.hits) continue;
+    expect_in_order(record, *record.hits, record.curve.loss,
+                    [&](Real loss, Real tau) { return is_met(record, loss, tau); });
+    for (std::size_t j = 0; j < record.hits->target.size(); ++j)
+      EXPECT_EQ(record.hits->iteration[j] >= 0,
+                is_met(record, record.summary.best_loss, record.hits->target[j]))
+          << title_of(record);
+  }
+  EXPECT_GT(in_x, 0U);
 }
 
 // --- runs that diverge

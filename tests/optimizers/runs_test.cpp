@@ -8,6 +8,7 @@
 #include "core/frames.h"
 #include "problems/burgers_flow.h"
 #include "tests/optimizers/run.h"
+#include "tests/optimizers/trial_problems.h"
 
 namespace isoline::optimizers {
 namespace {
@@ -118,6 +119,30 @@ TEST(Burgers, ThatBlowsUpHasDivergedAndKeepsItsCurve) {
   const Outcome outcome = run(problem, "gd[rate=1e4]", {.iterations = 100, .target = 0});
   EXPECT_EQ(outcome.status, Status::diverged);
   EXPECT_FALSE(outcome.path.empty());
+}
+
+// Whatever the method then does with it.
+TEST(Hits, InXAreOfTheFirstEvaluatedXThatMeetsEachTarget) {
+  const Vector truth = Eigen::Vector2d(3, 4);
+  const auto at = [&](Real error) { return Vector(truth + Eigen::Vector2d(error * 5, 0)); };
+  const Problem problem(
+      {.physics = std::make_unique<Linear>(easy_matrix()),
+       .start = at(1),
+       .target = easy_matrix() * truth,
+       .minimum = 0,
+       .x_error = [=](BatchRef x, const Batch&) { return (x.col(0) - truth).norm(); }});
+  const auto trace = std::make_unique<Trace>();
+  Meter meter(problem, {.iterations = 9, .target = 0}, {Oracle::forward}, *trace);
+  meter.begin(at(1));
+  const std::array errors = {0.5, 9e-4, 0.2, 9e-8};
+  for (const Real error : errors) meter.loss(at(error));
+  meter.iterate(at(0.2));
+  for (std::size_t j = 0; j < kRungs; ++j) {
+    const auto first = std::ranges::find_if(errors, [&](Real each) { return each <= rung(j); });
+    const bool is_met = j == 0 || first != errors.end();
+    EXPECT_EQ(trace->x_hit[j].iteration, is_met ? 0 : -1) << j;
+    EXPECT_EQ(trace->x_hit[j].work, j == 0 ? 0 : is_met ? first - errors.begin() + 1 : 0) << j;
+  }
 }
 
 // The pictures that are kept of a run.

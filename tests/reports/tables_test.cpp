@@ -279,7 +279,7 @@ TEST(Costs, AreRawCountsAtMeasuredPrices) {
   const Sheet sheet = priced("square", 2.5);
   const Prices prices(&sheet);
   EXPECT_EQ(prices.cost(counted()), 51 * 3.5);
-  EXPECT_EQ(prices.hit_costs(counted())[30], 30 * 3.5);
+  EXPECT_EQ(prices.hit_costs(counted(), *counted().hits)[30], 30 * 3.5);
   EXPECT_EQ(prices.curve_costs(counted())[10], 10 * 3.5);
   EXPECT_EQ(counts_at(counted(), 60)[1], 30);
 }
@@ -313,7 +313,7 @@ TEST(Costs, InForwardSolvesBelowAMicrosecondAreDeclaredThroughout) {
 }
 
 TEST(Costs, WithoutMeasuredPricesAreTheDeclaredWork) {
-  EXPECT_EQ(Prices(nullptr).hit_costs(counted())[30], 60);
+  EXPECT_EQ(Prices(nullptr).hit_costs(counted(), *counted().hits)[30], 60);
   EXPECT_EQ(Prices(nullptr).cost(counted()), Real(counted().summary.work));
   const Compared c({counted()});
   EXPECT_EQ(c.cell(0, 0).taken[Measure::cost][kTightest].median, 60);
