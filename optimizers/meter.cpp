@@ -377,10 +377,14 @@ void Meter::note_batch(const Point& at) {
 
 Vector Meter::finish(VectorRef theta, Status verdict) {
   watch_.pause();
-  if (trace_.last.iteration != iteration_ || judged_theta_ != theta || !judged_.batch)
+  if (trace_.last.iteration != iteration_ || judged_theta_ != theta) {
     look_at(theta);
-  else if (!problem_.is_learned())
-    measure_series();  // those of the calls since then
+  } else {
+    const TracePoint last = trace_.last;
+    if (!judged_.batch) measure(theta);  // in a run that was continued here; it is paid for
+    trace_.last = last;
+    if (!problem_.is_learned()) measure_series();  // those of the calls since then
+  }
   knows_exact_ = false;
   leave_failed_point(verdict);
   if (in_a_row_.is_of_one_x() && verdict == Status::budget) {

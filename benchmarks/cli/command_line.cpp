@@ -322,6 +322,8 @@ std::string CommandLine::complaint(const CLI::ParseError& error) const {
     text = argument_complaint(verb, unexpected.front());
   else if (const std::size_t at = text.find(" excludes "); at != text.npos)
     text.replace(at, 10, " cannot be combined with ");
+  else if (text.ends_with("flag override"))
+    text = fmt::format("--{} takes no value", text.substr(0, text.find(' ')));
   else if (is_a<CLI::ArgumentMismatch>(error))
     text = value_complaint(verb, text.substr(0, text.find(':')));
   const std::string name = parsed.empty() ? "" : " " + verb.get_name();
@@ -465,7 +467,7 @@ Argument VerbArguments::texts(const char* name, std::vector<std::string>& values
 }
 
 Argument VerbArguments::flag(const char* name, bool& value, const char* about) {
-  return argument(*verb_.add_flag(name, value, about));
+  return argument(*verb_.add_flag(name, value, about)->disable_flag_override());
 }
 
 Argument VerbArguments::whole(const char* name, int& value, const char* about, WholeRange range) {

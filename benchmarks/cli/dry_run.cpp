@@ -55,6 +55,15 @@ void print_counts(const Preview& shown, int jobs) {
             reports::counted(shown.likened, "setting")));
 }
 
+// Outlines of records; names those that cannot be read.
+std::vector<RecordOutline> outlines_of(const std::vector<fs::path>& folders,
+                                       const Listener& listener = {}) {
+  std::vector<results::Unreadable> unreadable;
+  std::vector<RecordOutline> outlines = record_outlines(folders, unreadable, listener);
+  say_left_out(unreadable);
+  return outlines;
+}
+
 // The preview of a run, from the records in its folder and in other result folders.
 Preview preview_of(const PlannedRun& all, const RunArguments& given,
                    const std::vector<fs::path>& folders, Session& session) {
@@ -67,7 +76,7 @@ Preview preview_of(const PlannedRun& all, const RunArguments& given,
     });
     timed.insert(timed.end(), there.begin(), there.end());
   }
-  return preview(session.catalog(), all.requests, folders, EarlierTimes(record_outlines(timed)),
+  return preview(session.catalog(), all.requests, folders, EarlierTimes(outlines_of(timed)),
                  {.force = given.force, .reuse = given.reuse, .retry = statuses_of(given.retry)});
 }
 
@@ -203,8 +212,8 @@ void add_planned(const fs::path& folder, Cells& cells) {
   try {
     for (const PlannedCell& one : plan_from_text(read_text(file), file.string()).cells)
       cells.try_emplace(one.cell);
-  } catch (const UsageError&) {
-    return;  // damaged: its run sets it aside, and its records are counted
+  } catch (const UsageError& error) {  // its run sets it aside, and its records are counted
+    say_left_out({{file.string(), reason_without(file.string(), error)}});
   }
 }
 
@@ -225,15 +234,7 @@ bool add_predicted(const std::vector<PredictedCell>& predicted, Cells& cells) {
 }
 
 void add_records(const std::vector<fs::path>& folders, Cells& cells, const Listener& listener) {
-  std::vector<RecordOutline> outlines = record_outlines(folders, listener);
-  std::size_t files = 0;
-  std::vector<std::string> names;
-  for (const fs::path& folder : folders) {
-    names.push_back(folder.string());
-    for (const std::string& name : names_in(folder / "runs")) files += name.ends_with(".json");
-  }
-  if (outlines.size() < files) study_of(names);  // which names those that cannot be read
-  for (RecordOutline& seen : outlines) {
+  for (RecordOutline& seen : outlines_of(folders, listener)) {
     if (seen.status == Status::interrupted) continue;
     Known& cell = cells[seen.cell];
     if (!cell.latest || cell.latest->started < seen.started) cell.latest = std::move(seen);

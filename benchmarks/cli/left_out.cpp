@@ -16,7 +16,8 @@ std::size_t say_left_out(const std::vector<results::Unreadable>& unreadable) {
   constexpr std::size_t kMost = 20;
   const std::size_t shown = std::min(unreadable.size(), kMost);
   for (const results::Unreadable& one : std::span(unreadable).first(shown))
-    say(stderr, fmt::format("left out: {}: {}\n", one.file, reports::terminal_text(one.reason)));
+    say(stderr, fmt::format("left out: {}: {}\n", reports::terminal_text(one.file),
+                            reports::terminal_text(one.reason)));
   if (shown < unreadable.size())
     say(stderr,
         fmt::format("left out: {} more files that cannot be read\n", unreadable.size() - shown));

@@ -17,6 +17,7 @@
 #include "benchmarks/run/isolate.h"
 #include "benchmarks/run/process_group.h"
 #include "core/errors.h"
+#include "core/records/json_view.h"
 #include "core/records/provenance.h"
 #include "core/shell.h"
 #include "core/status.h"
@@ -97,13 +98,8 @@ int code_of(const std::string& program, int count, char** arguments, benchmarks:
                      fmt::format("cannot write standard output: {}", strerror(errno)).c_str());
   } catch (const UsageError& error) {
     return left_with(kUsage, program, error.what());
-  } catch (const std::bad_alloc&) {
-    return left_with(kWorse, program, "out of memory");
-  } catch (const std::filesystem::filesystem_error& error) {
-    return left_with(kWorse, program,
-                     fmt::format("{}: {}", error.path1().string(), error.code().message()).c_str());
   } catch (const std::exception& error) {
-    return left_with(kWorse, program, error.what());
+    return left_with(kWorse, program, reason_of(error).c_str());
   }
 }
 

@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "benchmarks/cli/left_out.h"
 #include "benchmarks/plan/claim_cells.h"
 #include "benchmarks/run/progress.h"
 #include "benchmarks/run/runner.h"
@@ -176,6 +177,7 @@ reports::Study study_of_report(const std::vector<std::string>& folders, Session&
   reports::Study study = reports::read_study(
       folders, progress_on_terminal("reading records"),
       [&](Record& record) { reports::trim_for_report(record, claimed.contains(record.cell)); });
+  if (study.runs.empty()) say_left_out(study.unreadable);
   require(!study.runs.empty(), [&] {
     const std::string damaged =
         study.unreadable.empty() ? ""

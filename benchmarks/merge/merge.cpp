@@ -258,7 +258,7 @@ class Merge {
       return json_text(record) + "\n";
     } catch (const std::exception& error) {
       dispute({"", fmt::format("{}: its copies in {} differ and are not records: {}", name,
-                               places(copies), error.what())});
+                               places(copies), reason_of(error))});
       return std::nullopt;
     }
   }
@@ -272,7 +272,8 @@ class Merge {
       if (is_there(file)) try {
           all.push_back(read(read_text(file, kMostBytes, Links::refused), file.string()));
         } catch (const std::exception& error) {
-          outcome_.unreadable.push_back(fmt::format("{}: {}", file.string(), error.what()));
+          outcome_.unreadable.push_back(
+              fmt::format("{}: {}", file.string(), reason_without(file.string(), error)));
         }
     }
     return all;

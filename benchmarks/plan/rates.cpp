@@ -13,6 +13,7 @@
 #include "core/errors.h"
 #include "core/json.h"
 #include "core/options.h"
+#include "core/records/json_view.h"
 #include "core/seeds.h"
 #include "core/spec.h"
 
@@ -69,7 +70,7 @@ Rates Rates::from_json(const Json& json, const std::string& origin) {
            row.contains("source") && row["source"].contains("grid")});
     }
   } catch (const Json::exception& error) {
-    throw UsageError(fmt::format("{} is not a table of rates: {}", origin, error.what()));
+    throw UsageError(fmt::format("{} is not a table of rates: {}", origin, reason_of(error)));
   }
   return rates;
 }

@@ -25,29 +25,25 @@ namespace fs = std::filesystem;
 
 namespace {
 
-std::optional<RecordOutline> outline_of(const fs::path& file) {
+RecordOutline outline_of(const fs::path& file) {
   static thread_local JsonReader reader;
-  try {
-    const std::string text = read_text(file, kMostRecordBytes);
-    const JsonView json = reader.parse(text, file.string());
-    const JsonView request = json.at("request");
-    RecordOutline seen{.cell = json.at("cell"),
-                       .problem = request.at("problem").at("spec"),
-                       .optimizer = request.at("optimizer").at("spec")};
-    seen.budget = budget_from(request.at("budget"));
-    seen.threads = request.at("threads");
-    const std::optional<Status> status = status_of(json.at("status").get<std::string>());
-    require(status.has_value(), "its status is unknown");
-    seen.status = *status;
-    const bool computes_alone = seen.threads == 1 && !json.contains("foreign");
-    seen.seconds =
-        real_of(json.at("summary").at(computes_alone ? "processor_seconds" : "wall_seconds"));
-    const JsonView provenance = json.at("provenance");
-    if (provenance.contains("run")) seen.started = provenance.at("run").at("started");
-    return seen;
-  } catch (const UsageError&) {
-    return std::nullopt;
-  }
+  const std::string text = read_text(file, kMostRecordBytes);
+  const JsonView json = reader.parse(text, file.string());
+  const JsonView request = json.at("request");
+  RecordOutline seen{.cell = json.at("cell"),
+                     .problem = request.at("problem").at("spec"),
+                     .optimizer = request.at("optimizer").at("spec")};
+  seen.budget = budget_from(request.at("budget"));
+  seen.threads = request.at("threads");
+  const std::optional<Status> status = status_of(json.at("status").get<std::string>());
+  require(status.has_value(), "its status is unknown");
+  seen.status = *status;
+  const bool computes_alone = seen.threads == 1 && !json.contains("foreign");
+  seen.seconds =
+      real_of(json.at("summary").at(computes_alone ? "processor_seconds" : "wall_seconds"));
+  const JsonView provenance = json.at("provenance");
+  if (provenance.contains("run")) seen.started = provenance.at("run").at("started");
+  return seen;
 }
 
 std::string question_of(const std::string& problem, const std::string& optimizer,
@@ -138,20 +134,29 @@ std::vector<char> cached_in(const std::vector<fs::path>& folders,
 }  // namespace
 
 std::vector<RecordOutline> record_outlines(const std::vector<fs::path>& folders,
+                                           std::vector<results::Unreadable>& unreadable,
                                            const Listener& listener) {
   std::vector<std::pair<std::size_t, std::string>> files;  // a path for each would be a kilobyte
   for (std::size_t i = 0; i < folders.size(); ++i)
     for (std::string& name : names_in(folders[i] / "runs"))
       if (name.ends_with(".json")) files.emplace_back(i, std::move(name));
-  std::vector<std::optional<RecordOutline>> seen(files.size());
+  std::vector<RecordOutline> seen(files.size());
+  std::vector<std::string> reasons(files.size());
+  const auto path_of = [&](std::size_t i) {
+    return folders[files[i].first] / "runs" / files[i].second;
+  };
   const auto read = [&](std::size_t i) {
-    seen[i] = outline_of(folders[files[i].first] / "runs" / files[i].second);
+    try {
+      seen[i] = outline_of(path_of(i));
+    } catch (const UsageError& error) {
+      reasons[i] = reason_without(path_of(i).string(), error);
+    }
   };
   share(files.size(), read, listener);
-  std::vector<RecordOutline> all;
-  for (std::optional<RecordOutline>& one : seen)
-    if (one) all.push_back(std::move(*one));
-  return all;
+  for (std::size_t i = 0; i < files.size(); ++i)
+    if (!reasons[i].empty()) unreadable.push_back({path_of(i).string(), std::move(reasons[i])});
+  std::erase_if(seen, [](const RecordOutline& one) { return one.cell.empty(); });
+  return seen;
 }
 
 EarlierTimes::EarlierTimes(const std::vector<RecordOutline>& earlier) {

@@ -11,6 +11,7 @@
 
 #include "benchmarks/plan/catalog.h"
 #include "core/records/request.h"
+#include "core/results/study.h"
 #include "core/status.h"
 #include "core/threads.h"
 
@@ -29,8 +30,10 @@ struct RecordOutline {
   std::string started;  // "2026-01-31T12:00:00Z"
 };
 
-// One per record of these result folders. Unreadable files and missing folders are ignored.
+// One per record of these result folders, which may be missing. Names the files that it cannot
+// read.
 std::vector<RecordOutline> record_outlines(const std::vector<std::filesystem::path>& folders,
+                                           std::vector<results::Unreadable>& unreadable,
                                            const Listener& listener = {});
 
 // The times of cells in earlier runs of any build.

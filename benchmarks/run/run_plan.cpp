@@ -20,6 +20,7 @@
 #include "core/foreign/workers.h"
 #include "core/json.h"
 #include "core/output.h"
+#include "core/records/json_view.h"
 #include "core/seeds.h"
 #include "optimizers/optimizer.h"
 #include "problems/conformance.h"
@@ -48,12 +49,14 @@ std::string broken_property_of(const Catalog& catalog, const Request& request, T
 }
 
 // The build that has passed its checks in an earlier run of this folder; empty if none has.
-std::string certified_in(const std::filesystem::path& folder, const Component& problem) {
+std::string certified_in(Store& store, const Component& problem) {
   const Sheet sheet{.kind = "problem", .name = problem.name, .spec = problem.spec};
-  const std::filesystem::path file = folder / "components" / sheet.file_name();
+  const std::filesystem::path file = store.folder() / "components" / sheet.file_name();
   if (is_there(file)) try {
       return sheet_from_text(read_text(file), file.string()).certified;
-    } catch (const UsageError&) {  // the writer of sheets sets it aside
+    } catch (const AccessError&) {  // it may be sound
+    } catch (const UsageError& error) {
+      store.set_aside(file, reason_of(error));
     }
   return "";
 }
@@ -151,7 +154,7 @@ Certificates require_certified(const Catalog& catalog, std::vector<Request>& req
     if (!request.problem.foreign || !will_run(request, store, options)) continue;
     to_run.push_back(&request);
     const bool is_new = !passed.contains(spec);
-    if (is_new) passed[spec] = certified_in(store.folder(), request.problem);
+    if (is_new) passed[spec] = certified_in(store, request.problem);
     if (passed[spec] != build_of(request.problem) && seen.insert(spec).second)
       firsts.push_back(&request);
   }
@@ -235,7 +238,7 @@ void write_used_rates(const Rates& rates, const std::vector<Request>& requests, 
       throw;
     } catch (const std::exception& error) {
       rows.clear();
-      store.set_aside(file, error.what());
+      store.set_aside(file, reason_of(error));
     }
   for (const Request& request : requests) {
     if (request.rates.empty()) continue;

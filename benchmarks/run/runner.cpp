@@ -202,9 +202,10 @@ class Runner {
   }
 
   Outcome run() {
+    std::vector<results::Unreadable> left_out;  // the store names those of its cells
     seconds_per_tick();  // measured once here, or each cell would take a millisecond for it
     if (options_.progress != Progress::Style::silent && !pending_.queued().empty())
-      earlier_ = EarlierTimes(record_outlines({store_.folder()}));
+      earlier_ = EarlierTimes(record_outlines({store_.folder()}, left_out));
     for (const Request* request : pending_.queued()) progress_.expect(earlier_.of(*request));
     malloc_trim(0);  // return the memory that planning used: a fork copies the tables of all pages
     // From now on memory that is freed stays: each cell would be given new pages otherwise.

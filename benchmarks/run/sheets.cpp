@@ -24,6 +24,7 @@
 #include "core/foreign/evaluations.h"
 #include "core/json.h"
 #include "core/options.h"
+#include "core/records/json_view.h"
 #include "core/records/provenance.h"
 #include "core/records/request.h"
 #include "optimizers/optimizer.h"
@@ -375,7 +376,7 @@ class SheetWriter {
             stored.prices->processor == this_build()->processor)
           return stored;
       } catch (const std::exception& error) {
-        store_.set_aside(file, error.what());
+        store_.set_aside(file, reason_of(error));
       }
     return std::nullopt;
   }

@@ -22,6 +22,7 @@
 #include "core/files.h"
 #include "core/json.h"
 #include "core/output.h"
+#include "core/records/json_view.h"
 #include "core/records/request.h"
 #include "core/text.h"
 
@@ -218,7 +219,7 @@ void Store::plan(const std::string& suite, const std::vector<PlannedCell>& cells
       plan = {};
       set_aside(path, fmt::format("{} (of the cells planned by earlier runs, only those with a "
                                   "record are known)",
-                                  error.what()));
+                                  reason_of(error)));
     }
   add_suite(plan.suites, suite);
   std::set<std::string> known;
@@ -236,7 +237,7 @@ std::optional<Record> Store::find(const Request& request) {
   } catch (const AccessError&) {  // it may be sound
     throw;
   } catch (const std::exception& error) {
-    set_aside(path, error.what());
+    set_aside(path, reason_of(error));
     return std::nullopt;
   }
 }
@@ -265,8 +266,9 @@ std::optional<Record> RecordsOfAnyBuild::find(const Request& request) const {
       if (is_failure(record.status) || record.is_nondeterministic) continue;
       if (!newest || newest->provenance.run.started < record.provenance.run.started)
         newest = std::move(record);
-    } catch (const std::exception&) {
-      continue;  // damaged
+    } catch (const std::exception& error) {
+      say(stderr,
+          fmt::format("left out: {}: {}\n", path.string(), reason_without(path.string(), error)));
     }
   }
   return newest;

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "benchmarks/cli/left_out.h"
 #include "benchmarks/cli/terminal.h"
 #include "benchmarks/cli/verb.h"
 #include "benchmarks/plan/suite.h"
@@ -51,6 +52,7 @@ int run(const CompareArguments& given, Session&) {
       require_valid(json, "baseline", given.before);
   options.listener = progress_on_terminal("reading records");
   const reports::GateResult result = reports::compare_results(given.before, given.after, options);
+  say_left_out(result.unreadable);
   say(stdout, given.as_json       ? reports::gate_json(result)
               : given.as_markdown ? reports::gate_markdown(result)
                                   : reports::gate_terminal(result, given.lists_all));

@@ -13,6 +13,7 @@ import argparse
 import csv
 import json
 import math
+import os
 import pathlib
 import re
 import shutil
@@ -149,6 +150,50 @@ def write_points(file, plot):
                 rows.writerow([line["name"], *("" if math.isnan(value) else repr(value) for value in cells)])
 
 
+def read_report(path):
+    """The JSON of a report, or an exit that names the file and what it lacks."""
+    try:
+        if not os.path.isfile(path):
+            sys.exit(f"{path}: no such file")
+        with open(path, encoding="utf-8") as file:
+            report = json.load(file)
+    except (OSError, ValueError, RecursionError):
+        sys.exit(f"{path} is not JSON in UTF-8; `isoline report` writes report.json")
+    plots = report.get("plots") if isinstance(report, dict) else None
+    if not isinstance(plots, list):
+        sys.exit(f"{path} is not the JSON of a report: it has no list of plots")
+    for number, plot in enumerate(plots, 1):
+        try:
+            require_plot(plot)
+        except (LookupError, TypeError, ValueError, AttributeError, OverflowError) as error:
+            why = f"{error.args[0]} is missing" if isinstance(error, KeyError) else "a value has another type or size than expected"
+            sys.exit(f"{path}: plot {number} cannot be drawn: {why}")
+    return report
+
+
+def require_plot(plot):
+    """What drawn() uses of a plot, with sizes that can be drawn."""
+    if not re.fullmatch(r"[\w.+-]{1,200}", plot["name"]) or plot["name"].startswith("."):
+        raise ValueError  # it names a file
+    texts = [plot[each] for each in ("title", "x_label", "y_label", "join", "kind")]
+    lines = [*plot["series"], *plot.get("published", [])]
+    if not all(isinstance(each, str) and len(each) <= 1000 for each in [*texts, *(line["name"] for line in lines)]):
+        raise ValueError
+    window = [float(plot["window"][place]) for place in range(4)]
+    is_log = plot["log_x"], plot["log_x"], plot["log_y"], plot["log_y"]
+    for value, follows in zip(window, is_log):
+        if not math.isfinite(value) or abs(value) > 1e300 or follows and 0 < value < 1e-300:
+            raise ValueError
+    if not (window[0] < window[1] and window[2] < window[3]) or plot["log_x"] and window[1] <= 0 or plot["log_y"] and window[3] <= 0:
+        raise ValueError
+    if "goal" in plot and not math.isfinite(float(plot["goal"])):
+        raise ValueError
+    for line in [*lines, *plot.get("ground", [])]:
+        x, y, low, high = (numbers(line, each) for each in ("x", "y", "low", "high"))
+        if len(y) not in (len(x), 0 if line not in plot["series"] else len(x)) or len(low) != len(high):
+            raise ValueError
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n", maxsplit=1)[0])
     parser.add_argument("report", help="report.json of a report")
@@ -160,7 +205,7 @@ def main():
     parser.add_argument("--list", action="store_true", help="list names and titles, and write nothing")
     parser.add_argument("--quiet", action="store_true", help="print nothing")
     given = parser.parse_args()
-    report = json.loads(pathlib.Path(given.report).read_text(encoding="utf-8"))
+    report = read_report(given.report)
     plots = [plot for plot in report["plots"] if given.only in plot["name"]]
     if not report["plots"] and not given.quiet:
         sys.exit("these results have no figures")

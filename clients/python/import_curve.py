@@ -95,8 +95,10 @@ def described(path):
             raise Refused(f"{path}: {why}")
     try:
         told = json.loads(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError) as error:
-        raise Refused(f"{path}: {error}") from None
+    except OSError as error:
+        raise Refused(f"{path}: {error.strerror}") from None
+    except (ValueError, RecursionError):
+        raise Refused(f"{path} is not JSON in UTF-8") from None
     require(isinstance(told, dict) and told.get("schema") == "isoline.import/1",
             "schema must be isoline.import/1")
     texts = ("schema", "problem", "optimizer", "source", "date", "program", "processor", "status",
@@ -145,10 +147,10 @@ def curve_of(path, told):
 
     curve, places, width, previous = {}, {}, None, {}
     with open(path, encoding="utf-8-sig", newline="") as file:
-        separator = separator_of(file.readline())
-        file.seek(0)
-        rows = csv.reader(file, skipinitialspace=True, delimiter=separator)
         try:
+            separator = separator_of(file.readline())
+            file.seek(0)
+            rows = csv.reader(file, skipinitialspace=True, delimiter=separator)
             for row in rows:
                 row, line = [field.strip() for field in row], rows.line_num
                 if not row:
@@ -197,8 +199,10 @@ def curve_of(path, told):
                             refuse(line, f"iteration {value} occurs twice")
                         previous[quantity] = value
                     curve[quantity].append(value)
-        except (csv.Error, UnicodeDecodeError) as error:
-            refuse(rows.line_num, str(error))
+        except UnicodeDecodeError:
+            raise Refused(f"{path}: it is not text in UTF-8") from None
+        except csv.Error:
+            refuse(rows.line_num, "a field is longer than 128 KiB, or a quotation mark is missing")
     if width is None:
         raise Refused(f"{path}: the file is empty")
     points = len(curve["loss"])
@@ -258,8 +262,9 @@ def template_for(told, folder):
         try:
             record = json.loads(file.read_text(encoding="utf-8"))
             request = record["request"]
-        except (OSError, ValueError, KeyError, TypeError):
-            continue  # `isoline validate` names files that are not records
+        except (OSError, ValueError, KeyError, TypeError, RecursionError):
+            print(f"left out: {file} is not a record, see `isoline validate`", file=sys.stderr)
+            continue
         if "imported" in record or record["status"] == "inapplicable":
             continue
         if request["optimizer"]["name"] == component(told["optimizer"])["name"]:

@@ -1055,7 +1055,13 @@ def package(name, debian):
 
 def _read_number(value):
     """JSON has no infinity and no NaN: records have them as texts."""
-    return float(value) if value in ("inf", "-inf", "nan") else value
+    if value in ("inf", "-inf", "nan"):
+        return float(value)
+    if value is not None and not isinstance(value, (int, float)):
+        raise ValueError("a number is expected")
+    if value is not None:
+        float(value)  # or it is too large
+    return value
 
 
 def _columns_of(columns):
@@ -1081,6 +1087,8 @@ def load(*folders, only=None):
                 continue
             parts = []
             try:
+                if not file.is_file():  # a pipe would be waited for
+                    raise ValueError("it is not a file")
                 with open(file.path, encoding="utf-8") as text:
                     record = json.load(text)
                 key = {name: record[name] for name in KEYS}
@@ -1094,8 +1102,9 @@ def load(*folders, only=None):
                         length = len(columns["work"])
                         if any(len(column) > length for column in columns.values()):
                             raise ValueError("its columns differ in length")
+                        columns = {each: [_read_number(value) for value in column] for each, column in columns.items()}
                         parts.append((frames, {**{name: [value] * length for name, value in key.items()}, **columns}))
-            except (ValueError, LookupError, TypeError, AttributeError, RecursionError):
+            except (ValueError, LookupError, TypeError, AttributeError, RecursionError, OverflowError, OSError):
                 if only is None:
                     warnings.warn(f"{file.path} is left out: it is not a record, see `isoline validate`", stacklevel=2)
                 continue
@@ -1117,7 +1126,7 @@ def _run(record):
         **{f"verified_{tau}": verified.get(tau) for tau in ("1e-1", "1e-3", "1e-6")},
         **{name: _read_number(record.get(name)) for name in ("minimum", "scale", "x_scale")},
         **{name: _read_number(value) for name, value in record.get("summary", {}).items()},
-        **{f"{oracle}_calls": count for oracle, count in record.get("counts", {}).items()}}
+        **{f"{oracle}_calls": _read_number(count) for oracle, count in record.get("counts", {}).items()}}
 
 
 def _stacked(pandas, parts):
@@ -1131,6 +1140,6 @@ def _stacked(pandas, parts):
         length = len(columns["work"])
         for name, column in stacked.items():
             values = columns.get(name, ())  # shorter where it has not been kept
-            column.extend(_read_number(value) if name in figures else value for value in values)
+            column.extend(values)
             column.extend([math.nan if name in figures else 0] * (length - len(values)))
     return pandas.DataFrame(stacked).astype({name: float for name in figures & names.keys()})

@@ -44,15 +44,18 @@ def vector(text):
     if not text.endswith(".npy"):
         values = json.loads(text)
         return [float(value) for value in (values if isinstance(values, list) else [values])]
-    with open(text, "rb") as file:
-        magic = file.read(8)
-        if magic[:6] != b"\x93NUMPY":
-            raise ValueError(f"{text} is not a .npy file")
-        length = int.from_bytes(file.read(2 if magic[6] == 1 else 4), "little")
-        head = ast.literal_eval(file.read(length).decode("latin-1"))
-        if head["descr"] != "<f8":
-            raise ValueError(f"{text}: dtype must be <f8, got {head['descr']}")
-        return array.array("d", file.read()).tolist()
+    try:
+        with open(text, "rb") as file:
+            magic = file.read(8)
+            length = int.from_bytes(file.read(2 if magic[6:7] == b"\1" else 4), "little")
+            head = ast.literal_eval(file.read(length).decode("latin-1"))
+            if magic[:6] == b"\x93NUMPY" and head["descr"] == "<f8":
+                return array.array("d", file.read()).tolist()
+    except OSError as error:
+        raise argparse.ArgumentTypeError(f"{text}: {error.strerror}") from None
+    except (ValueError, SyntaxError, TypeError, LookupError, MemoryError, RecursionError):
+        pass  # as below
+    raise argparse.ArgumentTypeError(f"{text} must be a .npy file of numbers with the dtype <f8")
 
 
 def split_by_sizes(values, sizes):

@@ -209,7 +209,7 @@ Json json_of(const Type& value) {
   return json;
 }
 
-// UsageError, which begins with `refusal` or names the origin of what is no JSON.
+// UsageError, which names the origin.
 template <class Type>
 Type from_text(const std::string& text, const std::string& origin, const std::string& refusal) {
   static thread_local JsonReader reader;
@@ -219,7 +219,7 @@ Type from_text(const std::string& text, const std::string& origin, const std::st
     Form<Type>::read(json, value);
     return value;
   } catch (const UsageError& error) {
-    throw UsageError(refusal + ": " + error.what());
+    throw UsageError(origin + ": " + refusal + ": " + error.what());
   }
 }
 

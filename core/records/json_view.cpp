@@ -9,8 +9,10 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <filesystem>
 #include <limits>
 #include <map>
+#include <new>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
@@ -22,6 +24,7 @@
 
 #include "core/errors.h"
 #include "core/json.h"
+#include "core/text.h"
 
 namespace isoline {
 namespace {
@@ -34,7 +37,9 @@ element element_at(JsonView::Place place) { return std::bit_cast<element>(place)
 JsonView view_of(const element& value) { return JsonView(std::bit_cast<JsonView::Place>(value)); }
 
 [[noreturn]] void fail(const char* expected, const element& value) {
-  throw UsageError(fmt::format("expected {}, got {}", expected, simdjson::minify(value)));
+  constexpr std::size_t kMost = 60;
+  throw UsageError(
+      fmt::format("expected {}, got {}", expected, cut(simdjson::minify(value), kMost)));
 }
 
 template <class Value>
@@ -121,12 +126,34 @@ bool holds_beyond(const Json& value) {
   return is_beyond(value);
 }
 
-// valijson's description of an unknown member, in shorter words.
+// valijson's description in our words; empty for what follows from a violation further inside.
 std::string in_words(const std::string& description) {
-  const std::size_t colon = description.rfind(": '");
-  if (colon == std::string::npos || !description.starts_with("Object contains a property that"))
-    return description;
-  return "unknown member" + description.substr(colon + 1);
+  const auto quoted_at_end = [&] {
+    const std::size_t end = description.rfind('\''), begin = description.rfind('\'', end - 1);
+    return description.substr(begin, end - begin + 1);
+  };
+  const auto last_word = [&] {
+    const std::string word = description.substr(description.rfind(' ') + 1);
+    const std::size_t point = word.find_last_not_of("0.");  // "0.000000"
+    return word.find('.') == word.npos ? word : word.substr(0, std::max<std::size_t>(point + 1, 1));
+  };
+  const auto is = [&](std::string_view begin) { return description.starts_with(begin); };
+  if (is("Object contains a property that")) return "unknown member " + quoted_at_end();
+  if (is("Missing required property")) return "the member " + quoted_at_end() + " is missing";
+  if (is("Value type")) return "a value of another type is expected";
+  if (is("Failed to match expected value")) return "another text is expected";
+  if (is("Failed to match against any enum")) return "it is not among the known values";
+  if (is("Failed to match regex")) return "it does not have the expected form";
+  if (is("Failed to validate against any schemas")) return "a value of another form is expected";
+  if (is("Failed to validate against exactly one")) return "a value of another form is expected";
+  if (is("Expected number greater than or equal")) return "it must be at least " + last_word();
+  if (is("Expected number less than or equal")) return "it must be at most " + last_word();
+  if (is("Expected number greater")) return "it must be greater than " + last_word();
+  if (is("Expected number less")) return "it must be less than " + last_word();
+  if (is("Array should") || is("Object should") || is("String should"))
+    return "it is too long or too short";
+  if (is("Elements at indexes")) return "two of its elements are equal";
+  return "";
 }
 
 // Reads a text, also with integers beyond 64 bits: programs that write doubles without an exponent
@@ -222,6 +249,28 @@ std::vector<std::pair<std::string, JsonView>> JsonView::items() const {
 
 std::string JsonView::text() const { return simdjson::minify(element_at(place_)); }
 
+std::string reason_of(const std::exception& error) {
+  if (const auto* json = dynamic_cast<const Json::exception*>(&error)) {
+    const std::string text = json->what();
+    const std::size_t begin = text.find("key '"), end = text.rfind('\'');
+    return begin != text.npos && end > begin + 4
+               ? fmt::format("it has no member {}", text.substr(begin + 4, end - begin - 3))
+               : "a member is missing or of another type than expected";
+  }
+  if (const auto* file = dynamic_cast<const std::filesystem::filesystem_error*>(&error))
+    return fmt::format("{}: {}", file->path1().string(), file->code().message());
+  if (dynamic_cast<const std::bad_alloc*>(&error) != nullptr) return "out of memory";
+  const bool is_ours = dynamic_cast<const UsageError*>(&error) != nullptr ||
+                       dynamic_cast<const std::runtime_error*>(&error) != nullptr;
+  return is_ours ? error.what() : "an error within Isoline, which should be reported";
+}
+
+std::string reason_without(const std::string& file, const std::exception& error) {
+  const std::string reason = reason_of(error);
+  if (reason.starts_with(file + ": ")) return reason.substr(file.size() + 2);
+  return reason.starts_with(file + " ") ? "it" + reason.substr(file.size()) : reason;
+}
+
 std::string json_of_text(const std::string& text) { return json_text(Json(text)); }
 
 Json JsonView::json() const { return copy_of(element_at(place_)); }
@@ -304,8 +353,10 @@ std::vector<std::string> Schema::violations(const Json& document) const {
   valijson::ValidationResults results;
   valijson::Validator().validate(parsed_->schema, Adapter(document), &results);
   for (valijson::ValidationResults::Error error; results.popError(error);)
-    violations.push_back(
-        fmt::format("{}: {}", fmt::join(error.context, ""), in_words(error.description)));
+    if (const std::string words = in_words(error.description); !words.empty())
+      violations.push_back(fmt::format("{}: {}", fmt::join(error.context, ""), words));
+  if (violations.empty() && results.numErrors() > 0)
+    violations.emplace_back("<root>: it does not conform");
   return violations;
 }
 

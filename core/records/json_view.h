@@ -71,6 +71,11 @@ class JsonView {
   friend std::vector<Real> reals_of(const JsonView& list);
 };
 
+// The reason of an exception; in our words where it is one of a library.
+std::string reason_of(const std::exception& error);
+// The same without the name of the file, where it begins with it.
+std::string reason_without(const std::string& file, const std::exception& error);
+
 std::string json_of_text(const std::string& text);  // a text as JSON, quoted
 
 Real real_of(const JsonView& value);  // also "inf", "-inf" and "nan"

@@ -11,6 +11,7 @@
 #include "core/errors.h"
 #include "core/files.h"
 #include "core/records/fields.h"
+#include "core/records/json_view.h"
 #include "core/results/statistics.h"
 #include "core/seeds.h"
 
@@ -82,7 +83,7 @@ void read_runs(Study& study, const std::vector<std::string>& folders, const List
       runs[i] = read_record(files[i]);
       if (trim) trim(runs[i]);
     } catch (const std::exception& error) {
-      reasons[i] = error.what();
+      reasons[i] = reason_without(files[i], error);
     }
   };
   share(files.size(), read, listener);
@@ -114,7 +115,7 @@ void read_file(Study& study, const fs::path& file, Use use) {
   if (is_there(file)) try {
       use(read_text(file), file.string());
     } catch (const std::exception& error) {
-      study.unreadable.push_back({file, error.what()});
+      study.unreadable.push_back({file, reason_without(file.string(), error)});
     }
 }
 

@@ -12,6 +12,7 @@
 #include "core/errors.h"
 #include "core/files.h"
 #include "core/json.h"
+#include "core/records/json_view.h"
 #include "core/seeds.h"
 #include "core/status.h"
 #include "reports/compare/gate.h"
@@ -201,9 +202,10 @@ FolderCells read_cells(const std::string& folder, const Listener& listener) {
   std::error_code unknown;
   require(std::filesystem::is_directory(folder, unknown),
           [&] { return folder + ": no such result folder"; });
-  std::vector<Unreadable> unlisted;
-  const std::vector<std::string> files = record_files({folder}, unlisted);
+  FolderCells found;
+  const std::vector<std::string> files = record_files({folder}, found.unreadable);
   std::vector<RunMark> marks(files.size());  // without a cell where a file could not be read
+  std::vector<std::string> reasons(files.size());
   std::vector<ComparedCell> cells(files.size());
   const auto read = [&](std::size_t i) {
     try {
@@ -212,18 +214,18 @@ FolderCells read_cells(const std::string& folder, const Listener& listener) {
       cells[i].file = files[i];
       if (cells[i].doubt.empty()) cells[i].doubt = damaged_numbers(record, files[i]);
       marks[i] = mark_of(record);
-    } catch (const std::exception&) {
+    } catch (const std::exception& error) {
       marks[i].cell.clear();
+      reasons[i] = reason_without(files[i], error);
     }
   };
   share(files.size(), read, listener);
   const Newest newest = newest_of(marks, [&](std::size_t i, std::size_t j) {
     return are_at_odds(read_unchecked_record(files[i]), read_unchecked_record(files[j]));
   });
-  const auto lost = std::ranges::count(marks, "", &RunMark::cell);
-  FolderCells found{.cells = {},
-                    .unreadable = unlisted.size() + static_cast<std::size_t>(lost),
-                    .superseded = newest.superseded};
+  for (std::size_t i = 0; i < files.size(); ++i)
+    if (marks[i].cell.empty()) found.unreadable.push_back({files[i], std::move(reasons[i])});
+  found.superseded = newest.superseded;
   for (const std::size_t k : newest.kept) {
     if (newest.disputed.contains(marks[k].cell)) cells[k].doubt = kDisputed;
     found.cells.push_back(std::move(cells[k]));

@@ -8,6 +8,7 @@
 
 #include "core/errors.h"
 #include "core/json.h"
+#include "core/records/json_view.h"
 #include "core/spec.h"
 #include "reports/compare/gate.h"
 #include "reports/sections/words.h"
@@ -48,7 +49,7 @@ AllowedList allowed_from_json(const Json& json) {
     }
     return list;
   } catch (const Json::exception& error) {
-    throw UsageError(fmt::format("not a valid {}: {}", kAllowedSchema, error.what()));
+    throw UsageError(fmt::format("not a valid {}: {}", kAllowedSchema, reason_of(error)));
   }
 }
 

@@ -492,9 +492,11 @@ std::optional<std::vector<ComparedCell>> read_baseline(const std::filesystem::pa
   std::error_code unknown;
   if (std::filesystem::is_directory(path, unknown)) return std::nullopt;
   const Json json = read_json(path);
-  require(json.is_object() && json.value("schema", "") == kBaselineSchema,
-          "compare needs two result folders, or a baseline and a result folder: "
-          "isoline compare BASE NEW");
+  require(json.is_object() && json.value("schema", "") == kBaselineSchema, [&] {
+    return path.string() +
+           " is not a baseline; compare needs two result folders, or a baseline and a "
+           "result folder: isoline compare BASE NEW";
+  });
   return baseline_from_json(json, path.string());
 }
 
@@ -522,9 +524,11 @@ GateResult compare_results(const std::filesystem::path& before, const std::files
   conclude(result, options);
   if (baseline) result.remarks.push_back("Baselines do not store times, so times are not compared");
   for (const auto& [found, path] : {std::pair(&old, before), {&now, after}}) {
-    if (found->unreadable > 0)
-      result.remarks.push_back(fmt::format("{} of {} could not be read",
-                                           counted(found->unreadable, "file"), path.string()));
+    if (!found->unreadable.empty())
+      result.remarks.push_back(fmt::format(
+          "{} of {} could not be read", counted(found->unreadable.size(), "file"), path.string()));
+    result.unreadable.insert(result.unreadable.end(), found->unreadable.begin(),
+                             found->unreadable.end());
     if (found->superseded > 0)
       result.remarks.push_back(fmt::format("{} of {} omitted: newer builds computed the same cells",
                                            counted(found->superseded, "older record"),

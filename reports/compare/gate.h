@@ -91,7 +91,8 @@ std::vector<ComparedCell> compared_cells(const Study& study);
 // A result folder, read record by record for its memory.
 struct FolderCells {
   std::vector<ComparedCell> cells;  // by problem, optimizer, seed
-  std::size_t unreadable = 0, superseded = 0;
+  std::vector<Unreadable> unreadable = {};
+  std::size_t superseded = 0;
 };
 FolderCells read_cells(const std::string& folder,  // UsageError if it does not exist
                        const Listener& listener = {});
@@ -221,8 +222,9 @@ struct GateResult {
   std::vector<ReasonedCell> allowed;  // only in BASE, or judged otherwise
   std::vector<ReasonedCell> incomparable, elsewhere;  // the second: of equal loss, at another x
   std::vector<std::string> remarks;
-  std::set<std::string> uncompared;  // members that a tolerance leaves out
-  std::string verdict;               // one sentence, which names the cause
+  std::vector<Unreadable> unreadable;  // of both folders
+  std::set<std::string> uncompared;    // members that a tolerance leaves out
+  std::string verdict;                 // one sentence, which names the cause
   ExitCode exit_code = kGood;
 };
 

@@ -312,6 +312,15 @@ INSTANTIATE_TEST_SUITE_P(Methods, Stopped,
                                          "adahessian", "hessian-free", "kfac", "hig",
                                          "levenberg-marquardt"));
 
+// eki evaluates its members, and its iterate is another point: the budget ends after any of them.
+TEST(StoppedRuns, ThatEndWithinTheNextStepPayForNoPointTwice) {
+  for (int work = 8; work < 32; ++work) {
+    const Request request =
+        cell_of("rosenbrock", "eki", {.iterations = 30, .work = work, .target = 0});
+    EXPECT_EQ(trace_of(executed_in_pieces(catalog(), request)), trace_of(request, {})) << work;
+  }
+}
+
 TEST(Checkpoint, OfAnotherCellOrDamagedOrUnreadableIsLeftAlone) {
   const TemporaryFolder folder;
   const fs::path file = folder.path() / "state";

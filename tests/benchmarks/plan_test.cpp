@@ -39,6 +39,41 @@ Suite suite_of(const std::string& problems, const std::string& optimizers,
   return {.name = "own", .title = "", .blocks = {block}};
 }
 
+// Each kind of violation, in words of ours and at its place.
+TEST(Schemas, SayInOwnWordsWhatADocumentViolates) {
+  const Json form =
+      Json::parse(R"({"type": "object", "required": ["name"], "additionalProperties": false,
+    "properties": {"name": {"type": "string", "maxLength": 3, "pattern": "^a*$"},
+                   "kind": {"enum": ["x", "y"]}, "schema": {"const": "s/1"},
+                   "size": {"type": "integer", "minimum": 2, "maximum": 5},
+                   "both": {"anyOf": [{"type": "number"}, {"type": "boolean"}]},
+                   "list": {"type": "array", "minItems": 2, "items": {"type": "number"}}}})");
+  const std::pair<const char*, const char*> cases[] = {
+      {"{}", "'name' is missing"},
+      {R"({"name": 1})", "of another type"},
+      {R"({"name": "b"})", "[name]: it does not"},
+      {R"({"name": "aaaa"})", "4 bytes; at most 3"},
+      {R"({"name": "a", "other": 1})", "unknown member 'other'"},
+      {R"({"name": "a", "kind": "z"})", "among the known"},
+      {R"({"name": "a", "schema": "s/2"})", "another text is"},
+      {R"({"name": "a", "size": 1})", "at least 2"},
+      {R"({"name": "a", "size": 6})", "at most 5"},
+      {R"({"name": "a", "both": "c"})", "of another form"},
+      {R"({"name": "a", "list": [1]})", "too long or"},
+      {R"({"name": "a", "list": [1, 2, "c"]})", "[list][2]: a value"},
+      {"[]", "of another type"}};
+  for (const auto& [text, part] : cases) {
+    const std::vector<std::string> found = schema_violations(Json::parse(text), form);
+    ASSERT_FALSE(found.empty()) << text;
+    EXPECT_TRUE(std::ranges::any_of(found, [&](const std::string& one) {
+      return one.find(part) != one.npos;
+    })) << found[0];
+    for (const std::string& one : found)
+      for (const char* theirs : {"constraint", "Failed", "Expected", "property", "permitted"})
+        EXPECT_EQ(one.find(theirs), one.npos) << one;
+  }
+}
+
 TEST(Suites, OfTheTreeAreWellFormedAndPlanEachCellOnceByWorkAndIterations) {
   EXPECT_GE(builtin_suites().size(), 3U);
   for (const auto& [name, text] : builtin_suites()) {

@@ -92,6 +92,7 @@ const std::vector<std::pair<std::string, std::string>> kMistakes = {
     {"run quick twice", "run: unexpected argument 'twice'"},
     {"run --problem", "--problem needs a value"},
     {"run --seeds 3 --seeds 4", "--seeds occurs more than once"},
+    {"run --quiet=5", "--quiet takes no value"},
     {"describe adan", "did you mean 'adam'"},
     {"run --problem 'python3 mine.py' --optimizer gd", "process[command="},
     {"describe zzzz", "`isoline describe` "},

@@ -450,6 +450,33 @@ class Alone(unittest.TestCase):
             self.assertNotEqual(found.returncode, 0)
             self.assertIn("Isoline starts this script", found.stderr)
 
+    def test_a_damaged_report_or_array_is_named(self):
+        line = {"name": "gd", "x": [1, 2], "y": [3, 4]}
+        plot = {"name": "curve", "title": "", "x_label": "", "y_label": "", "join": "lines", "kind": "lines",
+                "log_x": False, "log_y": True, "window": [0, 1, 1e-3, 1], "series": [line]}
+        damages = [{"name": "../../curve"}, {"name": None}, {"window": [0, 1]}, {"window": [0, 1, 1, 1e-3]},
+                   {"window": [0, 1, "inf", 1]}, {"series": [{**line, "y": [3]}]}, {"series": [{"x": 1}]},
+                   {"title": "x" * 70_000}, {"goal": "nan"}]
+        texts = ["", "[", "[]", "{}", "[" * 60_000, b"\xb8"] + [json.dumps({"plots": [{**plot, **each}]}) for each in damages]
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "report.json")
+            for text in [*texts, json.dumps({"plots": [plot]})]:
+                with open(path, "wb") as file:
+                    file.write(text if isinstance(text, bytes) else text.encode())
+                found = subprocess.run([sys.executable, CLIENT + "/draw_figures.py", path, "--list"],
+                                       capture_output=True, text=True, timeout=60, check=False)
+                self.assertEqual(found.returncode, text in texts, found.stderr)
+                self.assertEqual(found.stderr.startswith(path), text in texts, found.stderr)
+                self.assertLessEqual(found.stderr.count("\n"), 1)
+            array = os.path.join(folder, "x.npy")
+            for data in (b"", b"\x93NUMPY\1\0\4\0{'a'", b"\x93NUMPY\1\0\2\0\0\0"):
+                with open(array, "wb") as file:
+                    file.write(data)
+                found = subprocess.run([sys.executable, CLIENT + "/umbridge.py", "model", "--start", array, "--target", "[1]"],
+                                       capture_output=True, text=True, timeout=60, check=False)
+                self.assertIn(array + " must be", found.stderr)
+                self.assertNotIn("Traceback", found.stderr)
+
 
 if __name__ == "__main__":
     unittest.main()

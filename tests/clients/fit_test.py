@@ -350,12 +350,15 @@ class Tables(unittest.TestCase):
     def test_names_records_that_it_cannot_load(self):
         folder = os.path.dirname(self.path)
         os.mkdir(folder + "/runs")
-        for name, text in (("a.json", '{"cell": '), ("b.json", "[]")):
+        damaged = {"cell": "c", "build": "b", "request": {"problem": {"spec": "p"}, "optimizer": {"spec": "o"}, "seed": 0},
+                   "status": "target", "summary": {"loss": []}}
+        for name, text in (("a.json", '{"cell": '), ("b.json", "[]"), ("c.json", json.dumps(damaged))):
             with open(f"{folder}/runs/{name}", "w") as file:
                 file.write(text)
+        os.mkfifo(folder + "/runs/d.json")
         with self.assertWarnsRegex(UserWarning, "a.json.*") as seen:
             self.assertEqual(len(isoline.load(folder).runs), 0)
-        self.assertEqual(len(seen.warnings), 2)
+        self.assertEqual(len(seen.warnings), 4)
 
     def test_prints_what_its_page_shows(self):
         with open(os.path.join(CLIENTS, "../../docs/bring-a-simulator.md"), encoding="utf-8") as file:

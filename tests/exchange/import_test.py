@@ -31,6 +31,7 @@ DAMAGES = [
     ("f,nfev\n\"1\"x,4\n", "line 2: "),
     ("f,nfev\n1,\0004\n", "line 2: a zero byte"),
     ("f,nfev\n" + "x" * 1_000_000 + ",4\n", "line 2: "),
+    (b"f,nfev\xa0\n1,4\n", "is not text in UTF-8"),
 ]
 
 

@@ -80,6 +80,8 @@ class Repository(unittest.TestCase):
                         f"; find . -name a.tgz -exec mv {{}} archive/"
                         f"{'mallory' if 'theirs' in make else 'ours'}.tar.gz ';'")
             self.run_steps(unpack=1)
+        self.run_in("rm -rf archive/* ours/link ours/fifo && tar -czf 'archive/o*.tar.gz' ours")
+        self.run_steps(unpack=1)  # the name is no pattern
 
     def test_new_results_that_cannot_be_repeated_fail(self):
         self.run_in("isoline run --problem square --optimizer newton --quiet --no-report --out theirs")

@@ -165,7 +165,9 @@ TEST(Gate, AFolderReadRecordByRecordGivesTheCellsOfItsStudy) {
   const std::vector<ComparedCell> whole = compared_cells(study);
   const FolderCells found = read_cells(folder.path());
   EXPECT_EQ(found.superseded, study.superseded);
-  EXPECT_EQ(found.unreadable, 1U);
+  ASSERT_EQ(found.unreadable.size(), 1U);
+  EXPECT_TRUE(found.unreadable[0].file.ends_with("runs/torn.json"));
+  EXPECT_EQ(compare_results(folder.path(), folder.path(), {}).unreadable.size(), 2U);
   ASSERT_EQ(found.cells.size(), whole.size());
   std::size_t doubtful = 0;
   for (std::size_t i = 0; i < whole.size(); ++i) {
