@@ -15,6 +15,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[1]
 PUBLISHED = ROOT / "benchmarks/published/peers.csv"
 CONDUCT = ROOT / "clients/peers/conduct/conduct.json"
 COLUMNS = ("problem", "optimizer", "seed", "status", "work_to_1e-6", "cell", "build")
+ENDS = ("converged", "unconfirmed", "stalled")  # by the method's own test
 OURS = {"with derivatives": "levenberg-marquardt", "without derivatives": "dfo-gn"}
 # Names of the rows of conduct; others are "SciPy METHOD".
 ROWS = {"trf": "SciPy least_squares trf", "dogbox": "SciPy least_squares dogbox", "l-bfgs-b": "SciPy L-BFGS-B",
@@ -55,15 +56,16 @@ def take(folders):
         out.writerows(sorted(rows, key=lambda row: (row["problem"], row["optimizer"])))
 
 
-def verdict(peer, works, settings):
-    """One sentence: where our default needs less work, and where the peer does."""
-    better, worse, ratios = [], [], []
+def verdict(peer, works, ended, settings):
+    """Where our default needs less work, where the peer does, and where a test of the peer decided that."""
+    better, worse, ratios, early = [], [], [], 0
     for kind, ours in OURS.items():
         for setting in settings[kind]:
             mine, theirs = works.get((setting, ours)), works.get((setting, peer))
             if None in (mine, theirs):
                 continue
             (better if mine < theirs else worse if theirs < mine else []).append(kind)
+            early += mine < theirs and (setting, peer) in ended
             if max(mine, theirs) < float("inf"):
                 ratios.append(theirs / mine)
     if not better and not worse:
@@ -75,7 +77,8 @@ def verdict(peer, works, settings):
     choice = "Our default is the better choice" if len(better) > len(worse) else \
         "The peer is the better choice" if len(worse) > len(better) else "Neither is the better choice"
     middle = f"; where both arrive, the peer takes {statistics.median(ratios):.3g} times the work" if ratios else ""
-    return f"{choice} here: {'; '.join(parts)}{middle}."
+    end = f" In {early} of these settings a test of the peer, at its tolerances, ended the run before 1e-6." if early else ""
+    return f"{choice} here: {'; '.join(parts)}{middle}.{end}"
 
 
 def page(path):
@@ -84,6 +87,7 @@ def page(path):
     number = lambda text: float("inf") if text in ("", "inf", "nan") else float(text)
     works = {(row["problem"], row["optimizer"]): number(row["work_to_1e-6"]) for row in rows
              if row["status"] != "inapplicable"}
+    ended = {(row["problem"], row["optimizer"]) for row in rows if row["status"] in ENDS}
     settings = {kind: [] for kind in OURS}
     for row in rows:
         kind = "without derivatives" if "derivatives=none" in row["problem"] else "with derivatives"
@@ -92,7 +96,8 @@ def page(path):
     conduct = json.loads(CONDUCT.read_text())["methods"]
     peers = sorted({row["optimizer"] for row in rows} - set(OURS.values()))
     text = lambda setting, name: "–" if (setting, name) not in works else \
-        "✗" if works[setting, name] == float("inf") else f"{works[setting, name]:.0f}"
+        f"{works[setting, name]:.0f}" if works[setting, name] < float("inf") else \
+        "ended" if (setting, name) in ended else "✗"
     short = lambda setting: re.sub(r",?derivatives=none|\[derivatives=none\]", "", setting)
     lines = []
     for kind, ours in OURS.items():
@@ -106,7 +111,7 @@ def page(path):
     for peer in peers:
         crosses = [column for column, cell in conduct.get(peer, {}).items() if cell["mark"] == "✗"]
         row = ", ".join(crosses) or ("none" if peer in conduct else "not measured")
-        lines.append(f"| {peer} | {row} | {verdict(peer, works, settings)} |")
+        lines.append(f"| {peer} | {row} | {verdict(peer, works, ended, settings)} |")
     begin, end = "<!-- peers -->", "<!-- end of peers -->"
     whole = pathlib.Path(path).read_text()
     pathlib.Path(path).write_text(f"{whole.split(begin)[0]}{begin}\n" + "\n".join(lines[1:]) + f"\n{end}{whole.split(end)[1]}")

@@ -157,7 +157,8 @@ template <class Summary>
 Status verdict(const Evaluation& evaluation, const Summary& summary) {
   if (evaluation.error) std::rethrow_exception(evaluation.error);
   Meter& f = evaluation.f;
-  f.claim(summary.message);
+  const bool was_stopped = f.is_spent() || f.status() != Status::running;  // by us
+  f.claim(was_stopped ? "stopped" : summary.message);
   if (f.status() != Status::running) return f.status();
   if (f.is_spent()) return Status::budget;
   return summary.termination_type == ceres::CONVERGENCE ? Status::converged : Status::stalled;
@@ -307,7 +308,9 @@ constexpr const char* kRejectsNote = "Steps that raise the loss are still reject
 constexpr const char* kBoundsNote =
     "On a problem with bounds, Ceres projects each step. Its model counts what the bounds cut off, "
     "so the radius shrinks, and the method can end short of a solution on a bound. It computes J at "
-    "each trial point then, so bounds that never bind cost up to 3.4 times the Jacobians.";
+    "each trial point then, so bounds that never bind cost up to 3.4 times the Jacobians. ";
+constexpr const char* kFailureNote =
+    "Where an evaluation fails, Ceres gets no number, and tries a shorter step.";
 
 struct TrustRegion {
   ceres::TrustRegionStrategyType strategy;
@@ -379,7 +382,7 @@ OptimizerEntry entry_of(const TrustRegion& m) {
           .kind = Kind::least_squares,
           .formula = m.formula,
           .source = m.source,
-          .note = m.note + std::string(*m.note ? " " : "") + kBoundsNote,
+          .note = m.note + std::string(*m.note ? " " : "") + kBoundsNote + kFailureNote,
           .needs = {Oracle::forward, Oracle::jacobian},
           .is_input_scale_invariant = m.is_input_scale_invariant,
           .needs_same_samples = true,
@@ -452,6 +455,7 @@ OptimizerEntry entry_of(const LineSearch& method) {
           .kind = method.kind,
           .formula = method.formula,
           .source = method.source,
+          .note = kFailureNote,
           .needs = {Oracle::forward, Oracle::pullback},
           .needs_same_samples = true,
           .most_unknowns = method.most_unknowns,

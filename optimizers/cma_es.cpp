@@ -156,7 +156,8 @@ void register_cma_es(OptimizerRegistry& registry) {
                             .kind = Kind::derivative_free,
                             .formula = "θᵢ ~ m + σ N(0, C),  m, σ and C by the ranks of L(θᵢ)",
                             .source = "Hansen (2016), arXiv 1604.00772",
-                            .note = "An iteration is a generation; θ is its best point.",
+                            .note = "An iteration is a generation; θ is its best point. "
+                                    "A point without a value has the last rank.",
                             .needs = {Oracle::forward},
                             .needs_same_samples = true,
                             .most_unknowns = 256,

@@ -254,6 +254,10 @@ void add(OptimizerRegistry& registry, OptimizerEntry entry) {
   registry.add(stepper_entry<Method>(std::move(entry)));
 }
 
+constexpr const char* kMeanNote =
+    "θ is the mean of the ensemble. A member without a value is left out of a step, and drawn again "
+    "from the others.";
+
 }  // namespace
 
 void register_kalman_inversion(OptimizerRegistry& registry) {
@@ -261,19 +265,21 @@ void register_kalman_inversion(OptimizerRegistry& registry) {
                            .title = "Ensemble Kalman inversion",
                            .formula = "θⱼ ← θⱼ + C^θy (C^yy + α)⁻¹ (y* + ξⱼ − yⱼ)",
                            .source = "Iglesias, Law, Stuart (2013); Iglesias, Yang (2021)",
-                           .note = "θ is the mean of the ensemble.",
+                           .note = kMeanNote,
                            .is_input_scale_invariant = true});
   add<Transformed>(registry, {.name = "etki",
                               .title = "Ensemble transform Kalman inversion",
                               .formula = "m ← m + C^θy (C^yy + α)⁻¹ (y* − ȳ),  "
                                          "Θ ← Θ (I + GᵀG/α)^−½",
                               .source = "Huang, Huang, Reich, Stuart (2022)",
-                              .note = "θ is the mean of the ensemble.",
+                              .note = kMeanNote,
                               .is_input_scale_invariant = true});
   add<Unscented>(registry, {.name = "uki",
                             .title = "Unscented Kalman inversion",
                             .formula = "m ← m + C^θy (C^yy + Σ_ν)⁻¹ (y* − y(m)),  C by 2n+1 points",
-                            .source = "Huang, Schneider, Stuart (2022)"});
+                            .source = "Huang, Schneider, Stuart (2022)",
+                            .note = "A step leaves out both points of a pair ±j of which one has "
+                                    "no value."});
 }
 
 }  // namespace isoline::optimizers

@@ -90,7 +90,7 @@ class Dogleg final : public Optimizer {
             ? dogleg_optimize2(theta.data(), n, m, static_cast<unsigned>(search.pattern->values()),
                                &sparse_call, &search, &o, nullptr)
             : dogleg_optimize_dense2(theta.data(), n, m, &dense_call, &search, &o, nullptr);
-    return calls.end(theta, end < 0 ? "failed" : "stopped",
+    return calls.end(theta, end < 0 ? "failed" : "returned",
                      end < 0 ? Status::stalled : Status::converged);
   }
 

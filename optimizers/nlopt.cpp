@@ -73,6 +73,9 @@ struct Search {
   std::exception_ptr error;
 
   bool is_over() const { return f.is_spent() || f.status() != Status::running; }
+  bool was_stopped() const {  // by us, whatever NLopt calls it
+    return is_over() || since_best > kPatience * (theta.size() + 1);
+  }
   Real evaluate(const double* at_theta, double* out) {
     theta = Map<const Vector>(at_theta, theta.size());  // aligned, whatever NLopt's array is
     // BOBYQA and COBYLA leave the bounds by rounding.
@@ -145,7 +148,7 @@ class Nlopt final : public Optimizer {
     Search search{
         f, handle.get(), options_.loss_scale * unit * unit, {}, theta, Vector(theta.size()), theta};
     const nlopt_result result = minimize(search, theta);
-    f.claim(nlopt_result_to_string(result));
+    f.claim(search.was_stopped() ? "stopped" : nlopt_result_to_string(result));
     theta = search.best;
     if (f.status() != Status::running) return f.status();
     if (f.is_spent()) return Status::budget;
@@ -170,6 +173,8 @@ struct Method {
   }
 };
 
+constexpr const char* kFailedLossNote =
+    "Where an evaluation fails, NLopt is given a loss of 1e20 and a gradient of 0.";
 constexpr const char* kFirstStepNote =
     "The first trial step is the full gradient; the method stops if that is far too long.";
 
@@ -250,7 +255,7 @@ OptimizerEntry entry_of(const Method& m, Family family, OracleSet needs) {
           .kind = m.kind,
           .formula = m.formula,
           .source = m.source,
-          .note = m.note,
+          .note = m.note + std::string(*m.note ? " " : "") + kFailedLossNote,
           .needs = needs,
           .is_input_scale_invariant = m.is_input_scale_invariant,
           .needs_same_samples = true,

@@ -202,8 +202,9 @@ void print_conduct(const Sheet& sheet) {
   const char* heading = "Conduct";
   for (const ConductCell& cell : found->conduct) {
     if (cell.holds.value_or(true)) continue;
-    say(stdout, fmt::format("{:11} ✗ {}: {}. {}\n", heading, cell.column, cell.figures,
-                            reports::conduct_text(cell.column, "reason")));
+    say(stdout, fmt::format("{:11} ✗ {}: {}. {} {}\n", heading, cell.column, cell.figures,
+                            reports::conduct_text(cell.column, "reason"),
+                            reports::conduct_text(cell.column, "advice")));
     heading = "";
   }
 }

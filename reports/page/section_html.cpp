@@ -320,7 +320,9 @@ std::string properties_html(const Comparison& c, std::size_t s) {
         html +=
             fmt::format("<li><b class={}>{}</b> {}: {}{}</li>", *cell.holds ? "yes" : "no",
                         *cell.holds ? "✓" : "✗", html_text(cell.column), html_text(cell.figures),
-                        *cell.holds ? "" : html_text(". " + conduct_text(cell.column, "advice")));
+                        *cell.holds ? ""
+                                    : html_text(". " + conduct_text(cell.column, "reason") + " " +
+                                                conduct_text(cell.column, "advice")));
   }
   return html.empty() ? "" : "<ul class=properties>" + html + "</ul>";
 }

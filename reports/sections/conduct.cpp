@@ -53,7 +53,9 @@ Table marks_table(const Audits& all) {
       row.emplace_back(fmt::format("{} {}", mark_of(cell), cell.figures));
       row.back().note =
           fmt::format("{}{}", joined(cell.records),
-                      cell.holds.value_or(true) ? "" : "; " + conduct_text(cell.column, "advice"));
+                      cell.holds.value_or(true) ? ""
+                                                : "; " + conduct_text(cell.column, "reason") + " " +
+                                                      conduct_text(cell.column, "advice"));
     }
     table.row_topics.push_back({.method = audited.name});
   }

@@ -59,6 +59,21 @@ struct Expected {
   Real solved, digits, calls;  // of the bare library; 0: counted in another way
 };
 
+// Each library calls the end of a budget by another name: a failed evaluation, a forced stop.
+TEST(Peers, ARunThatWeStopIsStopped) {
+  for (const char* method : {"ceres-lm", "ceres-bfgs", "ceres-ncg", "ceres-tiny", "gsl-multifit",
+                             "minpack-lmder", "minpack-lmdif", "libdogleg", "nlopt-lbfgs",
+                             "nlopt-tnewton", "nlopt-mma", "nlopt-cobyla"}) {
+    const Outcome ours =
+        run(make("rosenbrock"), method, {.iterations = 100, .work = 10, .target = 0});
+    EXPECT_EQ(ours.status, Status::budget) << method;
+    EXPECT_STREQ(ours.trace->claimed, "stopped") << method;
+    const Outcome own =
+        run(make("conduct[input=line]"), method, {.iterations = 10'000, .target = 0});
+    EXPECT_STRNE(own.trace->claimed, "stopped") << method;
+  }
+}
+
 TEST(Peers, HaveTheDigitsOfTheBareLibrariesOnNist) {
   for (const Expected& each :
        {Expected{"minpack-lmder", 54, 9.31, 3719}, Expected{"ceres-lm", 53, 9.41, 0},
