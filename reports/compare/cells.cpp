@@ -101,6 +101,10 @@ void add_figures(ComparedCell& cell, const Record& record) {
   const auto misses = [](const auto& verdicts) {
     return std::ranges::count_if(verdicts, [](const auto& one) { return one.second == false; });
   };
+  const auto states = [](const auto& verdicts) {
+    return std::ranges::count_if(verdicts, [](const auto& one) { return one.second.has_value(); });
+  };
+  cell.verdicts = static_cast<std::size_t>(states(record.verified) + states(record.found));
   if (!record.verified.empty())
     cell.figures[kUnverified] = Real(misses(record.verified) + misses(record.found));
   for (std::size_t j = 0; record.hits && j < std::min(kTargets, record.hits->target.size()); ++j)
@@ -124,6 +128,7 @@ void add_digests(ComparedCell& cell, const Record& record) {
   if (record.answer) json["answer"] = to_json(record).at("answer");
   if (record.failures) json["failures"] = to_json(record).at("failures");
   if (record.fields) json["snapshots"] = record.fields->digest;
+  if (record.hits) json["hit_counts"] = record.hits->counts;
   for (const auto& [name, value] : json.items())
     cell.members.emplace_back(*shared_value(name, name), fnv1a(json_text(value)));
 }

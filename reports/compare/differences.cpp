@@ -159,11 +159,16 @@ Differences differences_of_kind(const ComparedCell& a, const ComparedCell& b) {
        {std::pair(kXError, "error in x"), {work_at(Aim::loss, 0), "work to reach the targets"}})
     if (a.has(figure) && !b.has(figure) && a.status == b.status)
       found.push_back(difference_in(a, Change::worse, what, "known", "gone"));
+  if (b.verdicts < a.verdicts && !a.file.empty() && a.status == b.status)
+    found.push_back(difference_in(a, Change::worse, "verdicts on the last point",
+                                  std::to_string(a.verdicts), std::to_string(b.verdicts)));
   if (a.privileges == b.privileges) return found;
   const auto text = [](const ComparedCell& cell) {
     return cell.privileges.empty() ? "none" : joined(cell.privileges);
   };
-  const Change change = a.privileges.size() < b.privileges.size() ? Change::worse : Change::better;
+  // A method sees no less without a change of its source.
+  const bool is_worse = a.privileges.size() < b.privileges.size() || a.build == b.build;
+  const Change change = is_worse ? Change::worse : Change::better;
   found.push_back(difference_in(a, change, "extra information", text(a), text(b)));
   return found;
 }

@@ -202,6 +202,8 @@ std::string why_incomparable(const ComparedCell& a, const ComparedCell& b,
   for (const ComparedCell* side : {&a, &b})
     if (!side->doubt.empty())
       return fmt::format("{} contradicts itself: {}", side == &a ? "BASE" : "NEW", side->doubt);
+  if (a.build == b.build && !a.parts->empty() && *a.parts != *b.parts)
+    return "the digests of the parts of this build differ";
   if (a.is_cut || b.is_cut)
     return fmt::format("a time limit or a signal ended the run in {} ({})",
                        b.is_cut ? "NEW" : "BASE", name_of(b.is_cut ? b.status : a.status));
@@ -223,6 +225,19 @@ Difference silent_difference(const ComparedCell& a, const ComparedCell& b) {
   difference.note = is_path ? "the path differs; all compared values are equal"
                             : "the path and all compared values are equal";
   return difference;
+}
+
+// Reports group runs by specifications, which one build writes in one way; another build may have
+// other defaults. What was typed may differ.
+void add_names(Differences& found, const ComparedCell& a, const ComparedCell& b) {
+  for (const auto& [was, is] :
+       {std::pair(a.problem.get(), b.problem.get()), {a.optimizer.get(), b.optimizer.get()}}) {
+    if (was->spec != is->spec)
+      found.push_back(difference_in(a, a.build == b.build ? Change::worse : Change::changed,
+                                    "specification", was->spec, is->spec));
+    else if (was->asked != is->asked)
+      found.push_back(difference_in(a, Change::changed, "asked as", was->asked, is->asked));
+  }
 }
 
 bool has_other_members(const ComparedCell& a, const ComparedCell& b) {
@@ -303,6 +318,9 @@ class Gate {
   void judge(const ComparedCell& a, const ComparedCell& b) {
     Differences found = figure_differences(a, b, options_.tolerance);
     if (a.status != b.status) found.insert(found.begin(), status_difference(a, b));
+    // One build takes one path, so that a better one with the same end is a fault.
+    if (found.size() == 1 && found[0].what == figure_name(kPath) && a.build == b.build)
+      found[0].change = Change::worse;
     const Real apart =
         a.x.empty() || b.x.empty()
             ? 0
@@ -317,6 +335,7 @@ class Gate {
     }
     const bool is_coarse = !found.empty() && is_chaotic(a, options_.tolerance);
     if (is_coarse) found = coarse_differences(a, b);
+    if (a.key == b.key) add_names(found, a, b);
     result_.equal += found.empty() && !is_coarse;
     result_.chaotic += is_coarse;
     keep(std::move(found), a, b);
@@ -508,6 +527,16 @@ void CauseGroup::add(const ComparedCell& cell) {
   optimizers.insert(cell.optimizer->name);
 }
 
+namespace {
+
+std::set<std::string> specs_of(const std::vector<ComparedCell>& cells) {
+  std::set<std::string> specs;
+  for (const ComparedCell& cell : cells) specs.insert({cell.problem->spec, cell.optimizer->spec});
+  return specs;
+}
+
+}  // namespace
+
 GateResult compare_results(const std::filesystem::path& before, const std::filesystem::path& after,
                            const GateOptions& options) {
   auto baseline = read_baseline(before);
@@ -517,7 +546,7 @@ GateResult compare_results(const std::filesystem::path& before, const std::files
   const FolderCells now = read_cells(after, options.listener);
   GateResult result = Gate(options).run(old.cells, now.cells);
   if (!baseline && !options.is_common_only)
-    if (const std::string lack = folder_lack(before, after); !lack.empty())
+    if (const std::string lack = folder_lack(before, after, specs_of(now.cells)); !lack.empty())
       result.lack += (result.lack.empty() ? "" : "; ") + lack;
   if (options.tolerance)
     for (const char* never : {"memory", "times"}) result.uncompared.insert(never);

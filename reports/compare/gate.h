@@ -79,6 +79,7 @@ struct ComparedCell {
   std::size_t senseless_times = 0;  // of them, left out: infinite, or not a number
   std::string processor;
   bool is_cut = false;                 // a clock or a kill ended it
+  std::size_t verdicts = 0;            // on its last point, that its record states
   std::string doubt;                   // why its record cannot be trusted; empty: it can
   std::string file;                    // of its record; empty: of a baseline
   std::optional<Perturbed> perturbed;  // where a baseline has measured it
@@ -175,7 +176,9 @@ Differences member_differences(const ComparedCell& before, const ComparedCell& a
                                const std::optional<Real>& tolerance,
                                std::set<std::string>& uncompared);
 // "the plan of NEW lacks 3 of 12 cells; rates.json of NEW is missing"; empty where nothing lacks.
-std::string folder_lack(const std::filesystem::path& before, const std::filesystem::path& after);
+// The component files of BASE count that are of these specs.
+std::string folder_lack(const std::filesystem::path& before, const std::filesystem::path& after,
+                        const std::set<std::string>& specs);
 
 // Differences before any value differs: "adam: default of epsilon 1e-8 → 0.01", the harness.
 std::set<std::string> changed_options(const ComparedCell& before, const ComparedCell& after);

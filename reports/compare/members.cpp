@@ -131,6 +131,7 @@ Json members_of(const std::string& file) {
   Json json = result_of(to_json(record));
   json["rates"] = record.request.rates;
   if (record.fields) json["snapshots"] = record.fields->digest;
+  if (record.hits) json["hit_counts"] = record.hits->counts;
   return json;
 }
 
@@ -195,7 +196,8 @@ Differences member_differences(const ComparedCell& a, const ComparedCell& b,
 }
 
 // The plan and the table of rates of a folder that NEW lacks or has otherwise.
-std::string folder_lack(const std::filesystem::path& before, const std::filesystem::path& after) {
+std::string folder_lack(const std::filesystem::path& before, const std::filesystem::path& after,
+                        const std::set<std::string>& specs) {
   std::vector<std::string> lacks;
   const auto planned = [](const std::filesystem::path& folder) {
     std::set<std::string> cells;
@@ -224,14 +226,24 @@ std::string folder_lack(const std::filesystem::path& before, const std::filesyst
   else if (!std::ranges::includes(rows_now, rows))
     lacks.emplace_back("rates.json of NEW differs");
   std::size_t declared = 0;  // files of problems that say otherwise by what they are judged
-  if (is_there(before / "components") && is_there(after / "components"))
+  std::size_t missing = 0;   // of what NEW has runs of
+  const auto member = [](const Json& of, const char* which) {
+    return of.is_object() ? of.value(which, Json()) : Json();
+  };
+  const auto spec_of = [&](const Json& of) {
+    const Json spec = member(of, "spec");
+    return spec.is_string() ? spec.get<std::string>() : "";
+  };
+  std::set<std::string> described;
+  if (is_there(after / "components"))
+    for (const std::string& name : names_in(after / "components"))
+      described.insert(spec_of(read_json(after / "components" / name)));
+  if (is_there(before / "components"))
     for (const std::string& name : names_in(before / "components")) {
+      const Json a = read_json(before / "components" / name);
+      missing += specs.contains(spec_of(a)) && !described.contains(spec_of(a));
       if (!is_there(after / "components" / name)) continue;
-      const Json a = read_json(before / "components" / name),
-                 b = read_json(after / "components" / name);
-      const auto member = [](const Json& of, const char* which) {
-        return of.is_object() ? of.value(which, Json()) : Json();
-      };
+      const Json b = read_json(after / "components" / name);
       declared += std::ranges::any_of(
           std::array{"family", "linear", "group", "unknowns", "residuals"},
           [&](const char* which) { return member(a, which) != member(b, which); });
@@ -239,6 +251,7 @@ std::string folder_lack(const std::filesystem::path& before, const std::filesyst
   if (declared > 0)
     lacks.push_back(fmt::format("{} of NEW differ in family, kind or size",
                                 counted(declared, "component file")));
+  if (missing > 0) lacks.push_back(fmt::format("NEW lacks {}", counted(missing, "component file")));
   return joined(lacks, "; ");
 }
 

@@ -219,8 +219,11 @@ std::vector<Fault> figure_faults() {
          r.x_scale.reset();
        })),
        kApart, kApart},
+      {"curve lowered at one kept point", in_one([](Record& r) { r.curve.loss[7] *= 0.7; }), kBad,
+       kBad},
       {"extra information: none → exact Hessian",
        in_one([](Record& r) { r.privileges = {"exact Hessian"}; }), kBad, kBad},
+      {"extra information gone", in_all([](Record& r) { r.privileges.clear(); }), kBad, kBad},
   };
 }
 
@@ -353,6 +356,16 @@ std::vector<Fault> member_faults() {
       {"units changed", in_all([](Record& r) { r.answer->units[0] = "lbf/in"; }), kBad, kBad},
       {"failures removed", in_all([](Record& r) { r.failures.reset(); }), kBad, kBad},
       {"a failed x changed", in_one([](Record& r) { r.failures->x[0][1] = 5; }), kBad, kBad},
+      {"verdicts gone", in_one([](Record& r) { r.verified.clear(); }), kBad, kBad},
+      {"a verdict unknown", in_one([](Record& r) { r.found.begin()->second.reset(); }), kBad, kBad},
+      {"calls at a target that was not reached",
+       in_one([](Record& r) { r.hits->counts["jacobian"].back() = 7; }), kBad, kBad},
+      {"specification renamed", in_one([](Record& r) { r.request.problem.spec = "squares"; }), kBad,
+       kBad},
+      {"digest of a part of the build", in_one([](Record& r) { r.build_parts["problem"] = "r"; }),
+       kApart, kApart},
+      {"digests of the parts gone", in_one([](Record& r) { r.build_parts.clear(); }), kApart,
+       kApart},
       {"rates renamed", in_all([](Record& r) { r.request.rates = "other.json"; }), kBad, kBad},
       {"standard deviations × 0.1", uncertain([](Uncertainty& u) {
          u.standard_deviation = {0.01, 0.02};
@@ -420,6 +433,8 @@ std::vector<Fault> changes_without_harm() {
          for (Real& seconds : r.hits->wall_seconds) seconds *= 3;
          r.summary.wall_seconds *= 3;
        }),
+       kFine, kFine},
+      {"asked in other words", in_one([](Record& r) { r.request.problem.asked = "square[]"; }),
        kFine, kFine},
       {"other start time and command", in_all([](Record& r) {
          r.provenance.run.started = "2027-01-01T00:00:00Z";
@@ -518,6 +533,16 @@ TEST_F(Faults, InTheFamilyAndTheKindOfAProblemAreCaught) {
     EXPECT_EQ(compare_results(base.path(), copy.path(), {}).exit_code, kWorse) << member;
     EXPECT_EQ(compare_results(base.path(), base.path(), {}).exit_code, kGood) << member;
   }
+}
+
+TEST_F(Faults, AMissingComponentFileIsCaughtWhereItsRunsAreThere) {
+  const ResultFolder base, copy;
+  for (const ResultFolder* folder : {&base, &copy}) write(*folder, sound_records());
+  for (const char* spec : {"square", "not-run"})
+    base.add_file(std::string("components/problem-") + spec + ".json", Json{{"spec", spec}}.dump());
+  EXPECT_EQ(compare_results(base.path(), copy.path(), {}).exit_code, kWorse);
+  copy.add_file("components/problem-of-another-name.json", Json{{"spec", "square"}}.dump());
+  EXPECT_EQ(compare_results(base.path(), copy.path(), {}).exit_code, kGood);
 }
 
 TEST_F(Faults, InThePlanAndTheRatesOfAFolderAreCaught) {
