@@ -19,6 +19,7 @@
 #include "core/foreign/foreign.h"
 #include "core/shell.h"
 #include "core/text.h"
+#include "reports/sections/contrasts.h"
 #include "reports/sections/words.h"
 
 namespace isoline::benchmarks {
@@ -194,7 +195,9 @@ reports::Document document_of_report(const reports::Study& study, Session& sessi
   std::vector<reports::Judgement> claims =
       reports::judge(json_of(builtin_claims_of(session.catalog())), study.runs);
   std::erase_if(claims, [](const reports::Judgement& judgement) { return !judgement.is_covered; });
-  return reports::document_of(reports::compare_optimizers(study, yardstick), std::move(claims));
+  reports::Yardstick own = yardstick;
+  own.has_contrasts = reports::has_contrasts(study);
+  return reports::document_of(reports::compare_optimizers(study, own), std::move(claims));
 }
 
 void write_and_print(const reports::Study& study, const std::filesystem::path& out,

@@ -30,7 +30,9 @@ Contrast contrast_of(const std::vector<Real>& differences) {
   std::vector<Real> all = differences;
   all.insert(all.end(), {-1, 1});
   const Real n = static_cast<Real>(all.size());
-  Contrast out{.mean = std::accumulate(all.begin(), all.end(), 0.0) / n, .interval = {}};
+  Contrast out{.mean = std::accumulate(all.begin(), all.end(), 0.0) / n,
+               .deviation = deviation_of(differences),
+               .interval = {}};
   constexpr Real kTwoSided = 0.975;
   const Real half = student_quantile(kTwoSided, all.size() - 1) * deviation_of(all) / std::sqrt(n);
   out.interval = {out.mean - half, out.mean + half};

@@ -24,6 +24,7 @@ enum class Outcome { better, worse, equal, undecided };
 
 struct Contrast {
   Real mean = 0;                         // over families and pseudo-families
+  Real deviation = 0;                    // of the families alone
   Interval interval;                     // 95 %
   Outcome outcome = Outcome::undecided;  // better: the interval lies beyond the margin
   bool is_tested = false;                // as a hypothesis: none before it in the order failed

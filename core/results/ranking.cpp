@@ -8,6 +8,8 @@
 #include <numeric>
 #include <set>
 
+#include "core/spec.h"
+
 namespace isoline::results {
 namespace {
 
@@ -275,12 +277,25 @@ Comparison compare_optimizers(const Study& study, const Yardstick& yardstick) {
   return c;
 }
 
+bool is_contrasted(const ProblemAxis& problem, bool is_noisy) {
+  if (problem.aim != Aim::x || problem.is_learned || problem.is_linear() ||
+      problem.is_ill_posed() || (problem.noise > 0) != is_noisy)
+    return false;
+  const auto options = parse_spec(problem.spec).options;
+  const std::pair<std::string, std::string> by_fit("goal", "fit");
+  return (std::ranges::find(options, by_fit) != options.end()) == is_noisy;
+}
+
 bool is_ordered(const Comparison& c, std::size_t p) {
+  if (c.yardstick.has_contrasts) return is_contrasted(c.problems[p], false);
   if (c.problems[p].is_learned) return is_all_learned(c);
   return !is_sanity(c, p) && !is_ill_posed(c, p) && !c.problems[p].lacks_least_loss();
 }
 
 bool is_sanity(const Comparison& c, std::size_t p) {
+  if (c.yardstick.has_contrasts)
+    return c.problems[p].noise == 0 && !is_ordered(c, p) && !c.problems[p].lacks_least_loss() &&
+           !c.problems[p].is_learned;
   const auto is_in = [](const char* group) {
     return [group](const ProblemAxis& problem) { return problem.group() == group; };
   };
@@ -289,7 +304,10 @@ bool is_sanity(const Comparison& c, std::size_t p) {
 }
 
 bool is_ill_posed(const Comparison& c, std::size_t p) {
-  return !c.problems[p].is_learned && c.problems[p].is_ill_posed();
+  const ProblemAxis& problem = c.problems[p];
+  if (c.yardstick.has_contrasts)
+    return !problem.is_learned && problem.noise > 0 && !is_contrasted(problem, true);
+  return !problem.is_learned && problem.is_ill_posed();
 }
 
 bool is_all_learned(const Comparison& c) {
@@ -436,9 +454,12 @@ EqualWork equal_work(const Comparison& c, std::size_t problem) {
       });
     };
     all.methods.emplace_back();
-    if (cell.is_measured())
-      all.methods.back() = {at(&Curve::x_error), at(&Curve::loss),
-                            c.where(cell.runs, has_diverged).size()};
+    if (!cell.is_measured()) continue;
+    AtEqualWork& own = all.methods.back().emplace(AtEqualWork{
+        at(&Curve::x_error), at(&Curve::loss), c.where(cell.runs, has_diverged).size(), {}});
+    for (const std::size_t row : cell.runs)
+      own.errors[c.runs[row].seed] =
+          value_at(*c.runs[row].record, c.runs[row].record->curve.x_error, all.work);
   }
   return all;
 }

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -41,11 +43,16 @@ struct Comparison : Table {
 
 Comparison compare_optimizers(const Study& study, const Yardstick& yardstick = {});
 
-// Whether a problem counts for the ranking. A tolerance of the loss means little for a network, so
-// learned problems are reported separately, by the error in x, unless a study has no others; so are
-// ill-posed ones, by the error in x over work, and those whose least loss is unknown, by their
-// losses. Classical and toy problems do not count beside
-// physics.
+// Whether contrasts named in a suite are tested on it: nonlinear and judged by x, with exact data;
+// or with noise, where a run is judged by its distance from the least-squares solution.
+bool is_contrasted(const ProblemAxis& problem, bool is_noisy);
+
+// Whether a problem counts for the ranking: of a suite with contrasts, the settings that these are
+// on. Its other settings are controls, which are listed in place of a sanity check, or ill-posed.
+// Elsewhere a tolerance of the loss means little for a network, so learned problems are reported
+// separately, by the error in x, unless a study has no others; so are ill-posed ones, by the error
+// in x over work, and those whose least loss is unknown, by their losses. Classical and toy
+// problems do not count beside physics.
 bool is_ordered(const Comparison& comparison, std::size_t problem);
 bool is_sanity(const Comparison& comparison, std::size_t problem);
 bool is_ill_posed(const Comparison& comparison, std::size_t problem);  // and not learned
@@ -92,8 +99,9 @@ Spread own_time(const Comparison& comparison, std::size_t optimizer);
 // A learned problem at equal work: what networks have come to when all have spent as much.
 
 struct AtEqualWork {
-  Spread x_error, loss;      // on the validation, over seeds
-  std::size_t diverged = 0;  // runs that count with their last finite value
+  Spread x_error, loss;                  // on the validation, over seeds
+  std::size_t diverged = 0;              // runs that count with their last finite value
+  std::map<std::uint64_t, Real> errors;  // in x, by seed
 };
 struct EqualWork {
   Real work = 0;  // declared: the least that any method was allowed

@@ -147,6 +147,7 @@ inline constexpr std::size_t kTargets = kRungs;
 struct Yardstick {
   Measure by = Measure::work;
   std::array<Tolerance, kTolerances.size()> tolerances = kTolerances;  // the headline's last
+  bool has_contrasts = false;  // the suite names some: the settings that they are on are ranked
 
   const Tolerance& tightest() const { return tolerances[kTightest]; }
 };

@@ -140,7 +140,8 @@ std::string reading(const Comparison& c, std::size_t s) {
     text +=
         fmt::format(", {} with the least {} of all ranked methods", standing.wins, counted_name(c));
   if (standing.typical < kNever)
-    text += fmt::format(", with a median slowdown of {:.3g}", standing.typical);
+    text += fmt::format(", with a median slowdown of {:.3g} over all of these (unsolved: infinite)",
+                        standing.typical);
   return text +
          fmt::format(
              "; {} of {} runs reach this tolerance{}.", standing.reached, standing.runs,

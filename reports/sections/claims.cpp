@@ -346,6 +346,10 @@ Section papers_section(const std::vector<Judgement>& judgements) {
     if (!judgement.reached.empty() && judgement.verdict != Verdict::too_short)
       verdict += "; " + judgement.reached;
     if (!judgement.deviation.empty()) verdict += ". " + judgement.deviation;
+    if (!judgement.break_even.empty()) {
+      if (!verdict.ends_with('.')) verdict += '.';
+      verdict += " " + judgement.break_even;
+    }
     table->row_topics.push_back({.claim = judgement.id});
     table->rows.push_back(
         {judgement.sentence, judgement.place,

@@ -9,7 +9,6 @@
 
 #include "core/json.h"
 #include "core/results/contrasts.h"
-#include "core/spec.h"
 #include "reports/sections/sections.h"
 #include "reports/sections/words.h"
 
@@ -40,20 +39,10 @@ std::optional<std::size_t> row_of(const Comparison& c, const std::string& method
   return std::nullopt;
 }
 
-// The nonlinear problems that are judged by x: with exact data, or those whose data have noise and
-// that are judged by the distance from the fit.
 std::vector<std::size_t> settings_of(const Comparison& c, bool is_noisy) {
   std::vector<std::size_t> all;
-  for (std::size_t p = 0; p < c.problems.size(); ++p) {
-    const ProblemAxis& problem = c.problems[p];
-    if (problem.aim != Aim::x || problem.is_learned || problem.is_linear() ||
-        problem.is_ill_posed() || (problem.noise > 0) != is_noisy)
-      continue;
-    const auto options = parse_spec(problem.spec).options;
-    const bool is_by_fit = std::ranges::find(options, std::pair<std::string, std::string>(
-                                                          "goal", "fit")) != options.end();
-    if (is_by_fit == is_noisy) all.push_back(p);
-  }
+  for (std::size_t p = 0; p < c.problems.size(); ++p)
+    if (is_contrasted(c.problems[p], is_noisy)) all.push_back(p);
   return all;
 }
 
@@ -102,9 +91,28 @@ std::string factor_text(Real difference) {
 // The contrasts on some settings: their rows, or how many runs are missing.
 struct Sequence {
   std::size_t missing = 0, families = 0;
+  std::vector<std::string> absent;  // methods that were not run at all
+  bool is_at_defaults = true;       // of every method on every setting
   std::vector<results::Contrast> contrasts;
   std::vector<std::string> outcomes;
+
+  bool is_whole() const { return missing == 0 && absent.empty(); }
 };
+
+// "0.705 (28)": the median ratio of work where both solve, and on how many settings.
+std::string both_text(const Comparison& c, const std::vector<std::size_t>& settings,
+                      std::size_t first, std::size_t second) {
+  Costs costs;
+  std::vector<std::string> families;
+  for (const std::size_t p : settings) {
+    costs.emplace_back();
+    for (const std::size_t s : {first, second})
+      costs.back().emplace_back(c.cell(p, s).median(Measure::work, c.yardstick.tightest().rung));
+    families.push_back(c.problems[p].family());
+  }
+  const WorkRatio ratio = work_ratio(costs, families, 0, 1);
+  return ratio.both == 0 ? "– (0)" : fmt::format("{:.2g} ({})", ratio.median, ratio.both);
+}
 
 Sequence add_sequence(Table& table, const Comparison& c, const std::vector<Pair>& pairs,
                       const std::vector<std::size_t>& settings, const std::string& on) {
@@ -116,7 +124,8 @@ Sequence add_sequence(Table& table, const Comparison& c, const std::vector<Pair>
     for (std::size_t side : {0, 1}) {
       const auto row = row_of(c, pair[side]);
       if (!row) {
-        ++out.missing;
+        if (std::ranges::find(out.absent, pair[side]) == out.absent.end())
+          out.absent.push_back(pair[side]);
         continue;
       }
       const auto at = std::ranges::find(methods, *row);
@@ -126,10 +135,12 @@ Sequence add_sequence(Table& table, const Comparison& c, const std::vector<Pair>
     places.push_back(place);
   }
   for (const std::size_t p : settings)
-    for (const std::size_t s : methods)
+    for (const std::size_t s : methods) {
+      out.is_at_defaults = out.is_at_defaults && origin_of(c, p, s) == Origin::defaults;
       out.missing += c.cell(p, s).planned == 0 ? 1 : c.cell(p, s).missing();
-  if (out.missing > 0) {
-    table.rows.push_back({words("contrasts.incomplete-row") + on, "", "", "", "", ""});
+    }
+  if (!out.is_whole()) {
+    table.rows.push_back({words("contrasts.incomplete-row") + on, "", "", "", "", "", "", ""});
     return out;
   }
   const auto scores = family_scores(c, settings, methods);
@@ -154,8 +165,10 @@ Sequence add_sequence(Table& table, const Comparison& c, const std::vector<Pair>
           {{"difference", contrast.mean},
            {"low", contrast.interval.low},
            {"high", contrast.interval.high}}},
+         {fmt::format("{:.2f}", contrast.deviation), {{"deviation", contrast.deviation}}},
          fmt::format("{} ({} to {})", factor_text(contrast.mean),
                      factor_text(contrast.interval.high), factor_text(contrast.interval.low)),
+         both_text(c, settings, methods[places[i][0]], methods[places[i][1]]),
          failures_text(c, settings, methods[places[i][0]]),
          failures_text(c, settings, methods[places[i][1]]),
          contrast.is_tested ? out.outcomes.back() : words("contrasts.untested")});
@@ -163,26 +176,50 @@ Sequence add_sequence(Table& table, const Comparison& c, const std::vector<Pair>
   return out;
 }
 
+// The decisions, and what so many families can find: at a usual deviation, and at the largest here.
+std::vector<std::string> sentences_of(const Sequence& sequence) {
+  if (!sequence.absent.empty())
+    return {words("contrasts.absent", joined(sequence.absent), sequence.absent.size())};
+  if (sequence.missing > 0) return {words("contrasts.incomplete", sequence.missing)};
+  std::vector<std::string> decisions;
+  std::vector<Real> deviations;
+  for (std::size_t i = 0; i < sequence.contrasts.size(); ++i) {
+    deviations.push_back(sequence.contrasts[i].deviation);
+    if (sequence.contrasts[i].is_tested) decisions.push_back(sequence.outcomes[i]);
+  }
+  const auto [least, most] = std::ranges::minmax(deviations);
+  const auto found = [&](Real deviation) {
+    const Real factor = detectable_factor(sequence.families, deviation);
+    return factor < kNever ? words("contrasts.factor", factor) : words("contrasts.no-factor");
+  };
+  const std::string decided =
+      words("contrasts.decided", sequence.families,
+            sequence.is_at_defaults ? words("contrasts.defaults") : "", joined(decisions, "; "));
+  if (!(detectable_factor(sequence.families) < kNever))
+    return {decided, words("contrasts.no-power", sequence.families)};
+  return {decided, words("contrasts.power", sequence.families, found(results::kUsualDeviation),
+                         least, most, found(most))};
+}
+
 }  // namespace
+
+bool has_contrasts(const Study& study) { return !named_contrasts(study).empty(); }
+
+std::vector<std::string> contrast_sentences(const Comparison& c) {
+  const std::vector<Pair> pairs = named_contrasts(*c.study);
+  const std::vector<std::size_t> exact = settings_of(c, false);
+  if (pairs.empty() || exact.empty()) return {};
+  Table rows;
+  return sentences_of(add_sequence(rows, c, pairs, exact, ""));
+}
 
 Table contrast_table(const Comparison& c) {
   Table table = worded_table("contrasts", tau_name(c));
   const std::vector<Pair> pairs = named_contrasts(*c.study);
   const std::vector<std::size_t> exact = settings_of(c, false), noisy = settings_of(c, true);
   if (pairs.empty() || exact.empty()) return table;
-  const Sequence first = add_sequence(table, c, pairs, exact, "");
+  table.reading = joined(sentences_of(add_sequence(table, c, pairs, exact, "")), " ");
   if (!noisy.empty()) add_sequence(table, c, pairs, noisy, words("contrasts.with-noise"));
-  if (first.missing > 0) {
-    table.reading = words("contrasts.incomplete", first.missing);
-    return table;
-  }
-  std::vector<std::string> sentences;
-  for (std::size_t i = 0; i < first.contrasts.size(); ++i)
-    if (first.contrasts[i].is_tested) sentences.push_back(first.outcomes[i]);
-  const Real factor = detectable_factor(first.families);
-  table.reading =
-      words("contrasts.reading", joined(sentences, "; "), first.families,
-            factor < kNever ? words("contrasts.power", factor) : words("contrasts.no-power"));
   return table;
 }
 

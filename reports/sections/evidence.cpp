@@ -431,6 +431,13 @@ void borrow_spread(Judgement& out, const Measured& from) {
   }
 }
 
+// The run of that digest, which published ones and those with a limit of time are not kept by.
+const Record& record_of(const Measured& from, const std::string& cell) {
+  const std::vector<std::string> keys = cells_of(from.set);
+  return *from.runs.at(*std::ranges::find(
+      keys, cell, [&](const std::string& key) { return from.runs.at(key)->cell; }));
+}
+
 // A comparison by the clock: the first method has the loss of the second's end after so many
 // more of its iterations, so the second is the quicker one where its step costs less than that.
 // This does not depend on the speed of an implementation.
@@ -441,10 +448,8 @@ std::string break_even_text(const Judgement& judged, const Measured& from) {
   std::vector<Real> ratios;
   bool is_reached = true;
   for (std::size_t seed = 0; seed < terms.at(0).runs.size(); ++seed) {
-    const auto found = from.runs.find(terms[0].runs[seed].cell),
-               other = from.runs.find(terms.at(1).runs.at(seed).cell);
-    if (found == from.runs.end() || other == from.runs.end()) return "";  // published ones
-    const Record &first = *found->second, &second = *other->second;
+    const Record &first = record_of(from, terms[0].runs[seed].cell),
+                 &second = record_of(from, terms.at(1).runs.at(seed).cell);
     const auto steps = static_cast<Real>(second.summary.iterations);
     const Real end = figure_of(second, {.column = quantity.at("column")});
     Real needed = static_cast<Real>(first.summary.iterations);

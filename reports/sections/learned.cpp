@@ -21,9 +21,22 @@ Table learned_table(const Comparison& c, std::size_t p, const std::vector<std::s
   const std::size_t least =
       *std::ranges::min_element(order, {}, [&](std::size_t s) { return c.cell(p, s).loss.median; });
   const Cell &lowest = c.cell(p, least), &nearest = c.cell(p, order[0]);
-  table.reading = words(least == order[0] ? "learned-table.both" : "learned-table.differ",
-                        setting_text(c, p, least), lowest.loss.median, lowest.x_error.median,
-                        setting_text(c, p, order[0]), nearest.x_error.median, nearest.loss.median);
+  const Spread& best = nearest.x_error;
+  const Spread* const next = order.size() < 2 ? nullptr : &c.cell(p, order[1]).x_error;
+  if (next != nullptr && best.n < kFewestForInterval && best.high >= next->low) {
+    std::vector<std::string> ranges;
+    for (const std::size_t s : {order[0], order[1]}) {
+      const Spread& error = c.cell(p, s).x_error;
+      ranges.push_back(words("learned.range", setting_text(c, p, s), reached_figure(error.low),
+                             reached_figure(error.high)));
+    }
+    table.reading = words("learned-table.overlap", best.n, joined(ranges, "; "));
+  } else {
+    table.reading =
+        words(least == order[0] ? "learned-table.both" : "learned-table.differ",
+              setting_text(c, p, least), lowest.loss.median, lowest.x_error.median,
+              setting_text(c, p, order[0]), nearest.x_error.median, nearest.loss.median);
+  }
   for (const std::size_t s : order) {
     const Cell& cell = c.cell(p, s);
     const Rows steppers =

@@ -1,7 +1,9 @@
 // Orders the sections of a report, and writes its first sentences and the summaries of its charts.
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <map>
+#include <numeric>
 #include <optional>
 #include <set>
 #include <sstream>
@@ -73,17 +75,17 @@ std::string goal_text(const Comparison& c, std::size_t problem, std::size_t meth
 std::string unsolved_reading(const Comparison& c, std::size_t problem,
                              const std::vector<std::size_t>& order) {
   const bool is_in_x = c.problems[problem].aim == Aim::x;
-  const auto end_of = [&](std::size_t s) {
+  const auto spread_at_end = [&](std::size_t s) {
     const Cell& cell = c.cell(problem, s);
-    if (!is_in_x) return cell.loss.median;
-    return c
-        .aggregate(cell.runs,
-                   [](const Run& run) {
-                     return run.record->summary.x_error / run.record->x_scale.value_or(1);
-                   })
-        .median;
+    if (!is_in_x) return cell.loss;
+    return c.aggregate(cell.runs, [](const Run& run) {
+      return run.record->summary.x_error / run.record->x_scale.value_or(1);
+    });
   };
-  const std::size_t best = *std::ranges::min_element(order, {}, end_of);
+  const auto end_of = [&](std::size_t s) { return spread_at_end(s).median; };
+  std::vector<std::size_t> nearest = order;
+  std::ranges::stable_sort(nearest, {}, end_of);
+  const std::size_t best = nearest[0];
   const Real least = end_of(best);
   if (c.problems[problem].lacks_least_loss() && least < kNever)  // in order of their losses
     return words("curve.unknown", name_in_sentence(c.optimizers[best]), least,
@@ -91,6 +93,17 @@ std::string unsolved_reading(const Comparison& c, std::size_t problem,
                      ? ""
                      : words("curve.next-loss", name_in_sentence(c.optimizers[order[1]]),
                              reached_figure(end_of(order[1]))));
+  if (const Spread first = spread_at_end(best); nearest.size() > 1 && least < kNever &&
+                                                first.n > 1 && first.n < kFewestForInterval &&
+                                                first.high >= spread_at_end(nearest[1]).low) {
+    std::vector<std::string> ranges;
+    for (const std::size_t s : {best, nearest[1]})
+      ranges.push_back(words("learned.range", name_in_sentence(c.optimizers[s]),
+                             reached_figure(spread_at_end(s).low),
+                             reached_figure(spread_at_end(s).high)));
+    return words(is_in_x ? "curve.errors-overlap" : "curve.losses-overlap",
+                 goal_text(c, problem, 1), first.n, joined(ranges, "; "));
+  }
   return words(!(least < kNever) ? "curve.none-finite"
                : is_in_x         ? "curve.least-error"
                                  : "curve.least-loss",
@@ -113,6 +126,42 @@ std::string runner_up(const Comparison& c, std::size_t problem, std::size_t one,
                pairs.size() < 2 ? ""
                                 : " " + words("curve.seeds", name_in_sentence(c.optimizers[one]),
                                               less, pairs.size()));
+}
+
+// How many times as large the error of the second method is, by the mean of the logarithm over the
+// seeds that both have, with its 95 % t interval, or with the range of fewer than six.
+struct TimesLarger {
+  Real times = kNever;
+  std::optional<Interval> interval;
+  std::size_t larger = 0, seeds = 0;
+
+  bool is_range() const { return seeds < kFewestForInterval; }
+};
+TimesLarger times_larger(const AtEqualWork& first, const AtEqualWork& second) {
+  TimesLarger out{.times = second.x_error.median / first.x_error.median, .interval = {}};
+  std::vector<Real> logarithms;
+  for (const auto& [seed, error] : first.errors)
+    if (const auto other = second.errors.find(seed); other != second.errors.end()) {
+      logarithms.push_back(std::log(other->second / error));
+      out.larger += other->second > error;
+    }
+  out.seeds = logarithms.size();
+  if (out.seeds < 2 ||
+      !std::ranges::all_of(logarithms, [](Real value) { return std::isfinite(value); }))
+    return out;
+  const Real n = static_cast<Real>(out.seeds);
+  const Real mean = std::accumulate(logarithms.begin(), logarithms.end(), 0.0) / n;
+  auto [low, high] = std::ranges::minmax(logarithms);
+  if (!out.is_range()) {
+    constexpr Real kTwoSided = 0.975;
+    const Real half =
+        student_quantile(kTwoSided, out.seeds - 1) * deviation_of(logarithms) / std::sqrt(n);
+    low = mean - half;
+    high = mean + half;
+  }
+  out.times = std::exp(mean);
+  out.interval = {std::exp(low), std::exp(high)};
+  return out;
 }
 
 }  // namespace
@@ -253,13 +302,24 @@ std::vector<std::string> learned_sentences(const Comparison& c) {
     ++nearest[name(0)];
     const Real least = equal.methods[order[0]]->x_error.median;
     const std::size_t diverged = equal.methods[order[0]]->diverged;
-    const std::string next = order.size() < 2
-                                 ? ""
-                                 : words("learned.next", name(1),
-                                         multiple(equal.methods[order[1]]->x_error.median / least));
+    std::string next;
+    const TimesLarger times =
+        order.size() < 2 ? TimesLarger{}
+                         : times_larger(*equal.methods[order[0]], *equal.methods[order[1]]);
+    if (order.size() > 1) {
+      const std::string seeds =
+          !times.interval
+              ? ""
+              : " " + words("learned.seeds", times.interval->low, times.interval->high,
+                            words(times.is_range() ? "learned.seed-range" : "learned.interval"),
+                            times.larger, times.seeds);
+      next = words("learned.next", name(1), multiple(times.times), seeds);
+    }
     if (all.size() >= kFew) continue;
     const auto spread = [&](std::size_t place) { return equal.methods[order[place]]->x_error; };
-    if (order.size() > 1 && spread(0).n < kFewestForInterval && spread(0).high >= spread(1).low) {
+    const bool is_within_range =
+        spread(0).n < kFewestForInterval && spread(0).high >= spread(order.size() > 1).low;
+    if (order.size() > 1 && (is_within_range || (times.interval && times.interval->low <= 1))) {
       std::vector<std::string> ranges;
       for (const std::size_t place : {0, 1})
         ranges.push_back(words("learned.range", name(place), figure(spread(place).low),

@@ -238,6 +238,9 @@ std::string not_run(const Comparison& c) {
 
 std::string counted_families(std::size_t families) { return words("ranking.families", families); }
 
+Table sanity_table(const Comparison& c);
+Table noise_level_table(const Comparison& c);
+
 }  // namespace
 
 std::vector<MethodPair> all_pairs(const Comparison& c) {
@@ -292,6 +295,10 @@ std::vector<std::string> verdict(const Comparison& c) {
   if (c.yardstick.by == Measure::time && c.is_any_timed_together)
     all.push_back(words("ranking.shared-time"));
   all.push_back(words("limits.problems"));
+  if (c.yardstick.has_contrasts) {
+    for (const Table& table : {sanity_table(c), noise_level_table(c)})
+      if (!table.rows.empty()) all.push_back(table.reading);
+  }
   all.push_back(unranked_sentence(c));
   all.push_back(std::move(left_out));
   for (std::string& sentence : learned_sentences(c)) all.push_back(std::move(sentence));
@@ -300,6 +307,12 @@ std::vector<std::string> verdict(const Comparison& c) {
 }
 
 std::vector<std::string> first_sentences(const Comparison& c) {
+  if (c.yardstick.has_contrasts) {
+    std::vector<std::string> all = contrast_sentences(c);
+    if (has_order(c) && c.decision) all.push_back(group_text(c, *c.decision));
+    if (!all.empty()) all.back() += " " + words("ranking.chosen");
+    if (!all.empty()) return all;
+  }
   if (is_all_learned(c) || !has_order(c) || !c.decision) {
     std::vector<std::string> all = verdict(c);
     all.resize(std::min<std::size_t>(1, all.size()));
@@ -333,6 +346,11 @@ std::string left_out_text(const Comparison& c) {
     has_regressions = has_regressions || c.problems[p].name == "nist";
     if (is_ill_posed(c, p)) ill_posed.push_back(problem_name(c.problems[p]));
     if (c.problems[p].lacks_least_loss()) unknown.push_back(problem_name(c.problems[p]));
+  }
+  if (c.yardstick.has_contrasts) {  // which state their groups apart
+    const auto noisy = std::ranges::count_if(
+        c.problems, [](const ProblemAxis& problem) { return is_contrasted(problem, true); });
+    return noisy == 0 ? "" : words("ranking.noisy", noisy);
   }
   std::string tables;
   if (!c.sanity.settings.empty())
@@ -411,9 +429,13 @@ Table ranking_table(const Comparison& c) {
   return table;
 }
 
-// Classical and toy problems beside a ranking of physics: most solved first.
+// Classical and toy problems beside a ranking of physics, or the controls beside contrasts: most
+// solved first.
 Table sanity_table(const Comparison& c) {
-  Table table = worded_table("sanity", c.order.settings.size(), counted_name(c), tau_name(c));
+  const char* const key = c.yardstick.has_contrasts ? "controls" : "sanity";
+  Table table = worded_table(key, c.order.settings.size(), counted_name(c), tau_name(c));
+  table.id = "sanity";
+  if (c.sanity.settings.empty()) return table;
   Leading first;
   const Measure by = c.yardstick.by;
   const std::size_t rung = c.yardstick.tightest().rung;
@@ -433,7 +455,8 @@ Table sanity_table(const Comparison& c) {
     first.offer(Real(standing.solved), optimizer_text(c, s));
   }
   table.is_folded = true;
-  table.reading = words("sanity.reading", first.value, c.sanity.settings.size(), first.text());
+  table.reading = words(std::string(key) + ".reading", first.value, c.sanity.settings.size(),
+                        first.text(), first.names.size());
   return table;
 }
 
@@ -494,7 +517,8 @@ Table settings_table(const Comparison& c, const char* key, const std::vector<std
   for (std::size_t i = 0; i < settings.size(); ++i)
     readings.push_back(fmt::format("{} {:.3g}", problem_name(c.problems[settings[i]]), least[i]));
   table.is_folded = true;
-  table.reading = words(std::string(key) + ".reading", joined(readings));
+  if (const std::string reading = std::string(key) + ".reading"; all_sentences().contains(reading))
+    table.reading = words(reading, joined(readings));
   return table;
 }
 
@@ -518,6 +542,43 @@ Table ill_posed_table(const Comparison& c) {
                           }
                           shown.text = joined(texts, "; ");
                         });
+}
+
+// The error in x where the noise level ended a run, over that of the best truncated SVD, on the
+// ill-posed settings of a suite with contrasts. Few runs have ranges over settings, and no first.
+Table noise_level_table(const Comparison& c) {
+  std::vector<std::size_t> settings;
+  for (std::size_t p = 0; p < c.problems.size() && c.yardstick.has_contrasts; ++p)
+    if (is_ill_posed(c, p)) settings.push_back(p);
+  std::map<std::size_t, std::vector<Real>> ratios;  // by method
+  const auto title = [&](std::size_t p) { return problem_name(c.problems[p]); };
+  Table table = settings_table(
+      c, "noise-level", settings, title, [&](TableCell& shown, std::size_t p, std::size_t s) {
+        const Cell& cell = c.cell(p, s);
+        const auto over_floor = [](const Run& run) {
+          const Record& record = *run.record;
+          return is_failure(record.status) ? kNever : record.summary.x_error / record.x_floor;
+        };
+        const Real ratio = c.aggregate(cell.runs, over_floor, cell.missing()).median;
+        const auto ended = c.where(cell.runs, [](const Run& run) {
+                              return run.record->status == Status::discrepancy;
+                            }).size();
+        shown.text = fmt::format("{} ({}/{})", ratio == kNever ? "✗" : fmt::format("{:.3g}", ratio),
+                                 ended, cell.runs.size());
+        shown.numbers = {{"ratio", ratio}};
+        ratios[s].push_back(ratio);
+      });
+  std::vector<std::string> ranges;
+  for (const auto& [s, all] : ratios) {
+    const auto [low, high] = std::ranges::minmax(all);
+    ranges.push_back(words("noise-level.range", name_in_sentence(c.optimizers[s]),
+                           reached_figure(std::round(100 * low) / 100),
+                           reached_figure(std::round(100 * high) / 100)));
+  }
+  for (auto& row : table.rows)
+    for (TableCell& cell : row) cell.is_best = false;
+  table.reading = words("noise-level.ranges", settings.size(), joined(ranges, "; "));
+  return table;
 }
 
 // Final losses where the least loss is unknown, and their distances from the best of any run.
@@ -552,7 +613,8 @@ Section standings_section(const Comparison& c) {
   if (!contrasts.rows.empty()) section.tables.push_back(std::move(contrasts));
   if (!c.order.settings.empty()) section.tables.push_back(ranking_table(c));
   if (!c.sanity.settings.empty()) section.tables.push_back(sanity_table(c));
-  for (Table table : {c.decision ? linear_table(c) : Table{}, losses_table(c), ill_posed_table(c)})
+  for (Table table : {c.decision ? linear_table(c) : Table{}, losses_table(c),
+                      c.yardstick.has_contrasts ? noise_level_table(c) : ill_posed_table(c)})
     if (!table.rows.empty()) section.tables.push_back(std::move(table));
   return section;
 }

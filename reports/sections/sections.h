@@ -62,7 +62,7 @@ std::string headline(const Comparison& comparison);
 std::string missing_text(const Comparison& comparison);
 std::vector<std::string> remarks(const Comparison& comparison);
 std::vector<std::string> verdict(const Comparison& comparison);          // what the decision says
-std::vector<std::string> first_sentences(const Comparison& comparison);  // at most three, short
+std::vector<std::string> first_sentences(const Comparison& comparison);  // few and short
 std::vector<Reading> ranking_facts(const Comparison& comparison);  // the group, how robust, not run
 // Which settings the ranking leaves out, and why; empty where it leaves out none.
 std::string left_out_text(const Comparison& comparison);

@@ -396,6 +396,36 @@ TEST(Claims, AreReadAtEqualTimeWhereTheyAskForIt) {
   EXPECT_EQ(judgement_of(at_equal_time, runs).verdict, both.verdict);
 }
 
+// Adam has the error of SIP's end after 66 of its steps, while SIP makes 100; or never.
+TEST(Claims, ByTheClockStateTheirBreakEvenAlsoByPublishedRecords) {
+  std::vector<Record> runs = adam_and_sip(), published;
+  const auto shape = [](Record& run) {
+    const bool is_sip = run.request.optimizer.name == "sip";
+    run.curve.iteration = run.curve.work = {0, 33, 66, 100};
+    run.curve.x_error = is_sip ? std::vector<Real>{90, 30, 9, 3} : std::vector<Real>{90, 9, 3, 1};
+    run.curve.processor_seconds = {0, 33, 66, 100};
+    run.summary.iterations = run.summary.work = 100;
+  };
+  for (Record& run : runs) shape(run);
+  const Asked by_time{
+      .published = {{"at_most", 1}}, .tolerance = kNone, .more = {{"clock", "seconds"}}};
+  EXPECT_EQ(judgement_of({}, runs).break_even, "");
+  const std::string at_66 = words("claim.break-even", "sip", "adam", 0.66);
+  EXPECT_EQ(judgement_of(by_time, runs).break_even, at_66);
+  const std::vector<Judgement> judgements = {judgement_of(by_time, runs)};
+  EXPECT_TRUE(has(papers_section(judgements).tables.at(0).rows.at(0).back().text, at_66));
+  Json claim = claim_of(by_time);
+  for (const char* optimizer : {"adam", "sip"}) {
+    published.push_back(published_run(optimizer, 0, 1, 100, claim));
+    shape(published.back());
+  }
+  EXPECT_EQ(judge(Json::array({claim}), {}, published).at(0).break_even, at_66);
+  for (Record& run : runs)
+    if (run.cell.starts_with("sip")) run.curve.x_error.back() = 0.5;
+  EXPECT_EQ(judgement_of(by_time, runs).break_even,
+            words("claim.break-even-at-least", "sip", "adam", 1.0));
+}
+
 TEST(Claims, ThatWereReadInTwoWaysAreTheWeakerOrPartly) {
   using V = Verdict;
   EXPECT_EQ(joint_verdict(V::agrees, V::reproduced), V::agrees);

@@ -7,6 +7,7 @@
 
 #include "core/oracle.h"
 #include "core/results/ranking.h"
+#include "reports/sections/contrasts.h"
 #include "reports/sections/sections.h"
 #include "reports/sections/words.h"
 #include "tests/reports/fixture.h"
@@ -155,6 +156,83 @@ TEST(RankedSettings, OwnTimeIsWhatMeasuredCallsDoNotExplain) {
   const Spread own = own_time(Compared(std::move(study)), 0);
   EXPECT_EQ(own.n, 1U);
   EXPECT_NEAR(own.median, 0.75, 1e-12);
+}
+
+// --- a suite that names contrasts
+
+Record judged_by_x(const std::string& problem, const std::string& optimizer, bool is_solved) {
+  Record record = record_of({.problem = problem,
+                             .optimizer = optimizer,
+                             .hits = is_solved ? 51U : 10U,
+                             .status = Status::budget});
+  record.aim = Aim::x;
+  record.x_scale = 1;
+  record.curve.x_error = record.curve.loss;
+  record.summary.x_error = record.summary.loss;
+  return record;
+}
+
+// The methods of the suite's contrasts on so many nonlinear families, where adam solves none,
+// beside a linear control and an ill-posed problem with noise.
+Study contest_of(std::size_t families) {
+  Study study;
+  study.plan.suites = {"contest@3"};
+  std::vector<std::string> problems = {"control", "blurred"};
+  for (std::size_t i = 0; i < families; ++i) problems.push_back("f" + std::to_string(i));
+  for (const std::string& problem : problems) {
+    study.sheets.push_back(problem_sheet(problem, "physics"));
+    study.sheets.back().linear = problem == "control";
+    for (const char* method : {"adam", "nlopt-lbfgs", "levenberg-marquardt", "hig", "ssbroyden"}) {
+      study.runs.push_back(judged_by_x(problem, method, std::string(method) != "adam"));
+      if (problem != "blurred") continue;
+      study.runs.back().request.problem.options.set("noise", 0.01);
+      study.runs.back().x_floor = 0.5;
+    }
+  }
+  return study;
+}
+
+constexpr Yardstick kWithContrasts{.has_contrasts = true};
+
+TEST(Contrasts, LeadTheFirstScreenAndEachGroupStandsApart) {
+  const Compared c(contest_of(8), kWithContrasts);
+  EXPECT_TRUE(has_contrasts(*c.study));
+  EXPECT_EQ(c.order.settings.size(), 8U);
+  EXPECT_EQ(c.sanity.settings.size(), 1U);
+  const std::string better = words("contrasts.worse", "adam", "nlopt-lbfgs");
+  EXPECT_TRUE(has(first_sentences(c).at(0), better)) << first_sentences(c)[0];
+  const Section section = standings_section(c);
+  const Table& table = table_of(section, "contrasts");
+  EXPECT_EQ(at(table, "adam against nlopt-lbfgs", "both solve"), "– (0)");
+  EXPECT_EQ(at(table, "levenberg-marquardt against nlopt-lbfgs", "both solve"), "1 (8)");
+  EXPECT_EQ(at(table, "hig against levenberg-marquardt", "decision"), words("contrasts.untested"));
+  EXPECT_EQ(at(table_of(section, "sanity"), "hig", "solved"), "1/1");
+  EXPECT_TRUE(has(joined(verdict(c)), words("noise-level.range", "adam", "0.03", "0.03")));
+}
+
+TEST(Contrasts, OfOneOrTwoFamiliesDecideNothingAndOfNoneSayNothing) {
+  for (const std::size_t families : {1U, 2U, 5U}) {
+    const Compared c(contest_of(families), kWithContrasts);
+    const std::string undecided = words("contrasts.undecided", "adam", "nlopt-lbfgs");
+    EXPECT_EQ(first_sentences(c).at(0),
+              words("contrasts.decided", families, words("contrasts.defaults"), undecided));
+    EXPECT_TRUE(has(first_sentences(c).at(1), words("contrasts.no-power", families)));
+  }
+  EXPECT_TRUE(contrast_sentences(Compared(contest_of(0), kWithContrasts)).empty());
+}
+
+TEST(Contrasts, OfMissingRunsOrMethodsAreNotTested) {
+  Study study = contest_of(8);
+  study.plan.cells = plan_of(study.runs).cells;
+  Study without = study;
+  study.runs.pop_back();
+  const Compared lacking(std::move(study), kWithContrasts);
+  EXPECT_EQ(contrast_sentences(lacking), std::vector{words("contrasts.incomplete", 1)});
+  const auto is_hig = [](const Record& run) { return run.request.optimizer.name == "hig"; };
+  std::erase_if(without.runs, is_hig);
+  without.plan.cells = plan_of(without.runs).cells;
+  const Compared c(std::move(without), kWithContrasts);
+  EXPECT_EQ(contrast_sentences(c), std::vector{words("contrasts.absent", "hig", 1)});
 }
 
 }  // namespace
