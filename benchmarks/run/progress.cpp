@@ -16,13 +16,13 @@
 
 namespace isoline::benchmarks {
 
-void TimeLeft::Cells::add(std::optional<double> predicted_seconds) {
-  (predicted_seconds ? predicted : others) += 1;
-  seconds += predicted_seconds.value_or(0);
+void TimeLeft::expect(std::optional<double> predicted_seconds) {
+  is_known_ = is_known_ && predicted_seconds;
+  expected_ += predicted_seconds.value_or(0);
 }
 
 void TimeLeft::finish(std::optional<double> predicted_seconds, double now) {
-  done_.add(predicted_seconds);
+  done_ += predicted_seconds.value_or(0);
   last_ = now;
   ends_.emplace_back(now, now + at(now).value_or(0));
 }
@@ -40,11 +40,8 @@ bool TimeLeft::is_steady() const {
 
 // Between two ends it counts down.
 std::optional<double> TimeLeft::at(double now) const {
-  const double mean = expected_.predicted > 0 ? expected_.seconds / expected_.predicted : 1;
-  const double expected = expected_.seconds + mean * expected_.others;
-  const double done = done_.seconds + mean * done_.others;
-  if (done <= 0 || expected <= 0) return std::nullopt;
-  const double left = std::max(0.0, expected - done) * last_ / done;
+  if (!is_known_ || done_ <= 0 || expected_ <= 0) return std::nullopt;
+  const double left = std::max(0.0, expected_ - done_) * last_ / done_;
   return std::max(0.0, left - (now - last_));
 }
 

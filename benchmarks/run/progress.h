@@ -12,27 +12,23 @@ namespace isoline::benchmarks {
 // Columns of the terminal at an open file; 80 where there is no terminal.
 std::size_t terminal_width(int descriptor);
 
-// Cells are weighed by their predicted times; cells without a prediction get the mean. Finished
-// cells correct the predictions of the rest.
+// Cells are weighed by their predicted times, and finished cells correct the predictions of the
+// rest. Where one has no prediction nothing is said: the slowest cells of a suite take as long as
+// all others together.
 class TimeLeft {
  public:
-  void expect(std::optional<double> predicted_seconds) { expected_.add(predicted_seconds); }
+  void expect(std::optional<double> predicted_seconds);
   // `now`: seconds since the run began.
   void finish(std::optional<double> predicted_seconds, double now);
-  // None before the first cell has ended, and where none was expected; 0 where it takes longer than
-  // predicted.
+  // None before the first cell has ended; 0 where it takes longer than predicted.
   std::optional<double> at(double now) const;
   // Whether a tenth of the work is done, and the predicted end has moved by at most a fifth since
   // half of the time until now.
   bool is_steady() const;
 
  private:
-  struct Cells {
-    double seconds = 0, predicted = 0, others = 0;  // seconds of those predicted; counts
-
-    void add(std::optional<double> predicted_seconds);
-  };
-  Cells expected_, done_;
+  double expected_ = 0, done_ = 0;               // predicted seconds
+  bool is_known_ = true;                         // all are predicted
   double last_ = 0;                              // when the last of them ended
   std::vector<std::pair<double, double>> ends_;  // when each ended, and the end predicted then
 };

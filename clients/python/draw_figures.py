@@ -25,7 +25,6 @@ import isoline
 
 # Okabe and Ito (2008), as on the page.
 COLOURS = ["#0072B2", "#D55E00", "#009E73", "#B85A90", "#B57700", "#2F8FC9", "#5B4BB5", "#555555"]
-DASHES = ["-", (0, (4, 2)), (0, (1, 2)), (0, (5, 2, 1, 2))]
 GOAL, TAU = "#A8201A", "#5D666F"
 STYLE = {
     "font.size": 8, "axes.labelsize": 8, "axes.titlesize": 8, "xtick.labelsize": 7, "ytick.labelsize": 7,
@@ -84,10 +83,12 @@ def add_line(axes, plot, line, place):
     if low and low != high and len(low) == len(line["x"]):
         axes.fill_between(numbers(line, "x"), low, high, color=colour, alpha=0.15, linewidth=0,
                           step="post" if is_stair else None)
+    marker, dash = line.get("marker", "o" if plot["join"] == "none" else ""), line.get("dash", "none")
     if plot["join"] == "none" or sum(map(math.isfinite, y)) == 1:
-        return axes.plot(x, y, "o", markersize=2, color=colour, zorder=3)[0]
-    return axes.plot(x, y, drawstyle="steps-post" if is_stair else "default", color=colour,
-                     linestyle=DASHES[place % len(DASHES)], zorder=3)[0]
+        return axes.plot(x, y, marker or "o", markersize=2, color=colour, zorder=3)[0]
+    style = "-" if dash == "none" else (0, [float(length) / 2 for length in dash.split()])
+    return axes.plot(x, y, drawstyle="steps-post" if is_stair else "default", color=colour, linestyle=style,
+                     marker=marker, markersize=3, markevery=(0.618 * place % 0.25, 0.25), zorder=3)[0]
 
 
 def add_published(axes, mark):
@@ -125,6 +126,9 @@ def drawn(pyplot, plot, width, methods, text):
     handles = [add_line(axes, plot, line, place) for place, line in enumerate(lines)]
     for mark in plot.get("published", []):
         add_published(axes, mark)
+    for end in plot.get("ends", []):  # the start is open, the goal is full
+        axes.plot(numbers(end, "x"), numbers(end, "y"), "o", markersize=4, color="black", zorder=4,
+                  fillstyle="none" if end["name"] == "start" else "full")
     axes.set_xlim(*limits(left, right, plot["log_x"]))
     axes.set_ylim(*limits(bottom, top, plot["log_y"]))
     if plot.get("to_scale"):
@@ -194,6 +198,15 @@ def require_plot(plot):
             raise ValueError
 
 
+def caption(plot, report, methods):
+    """What a paper has to say below the figure: what is drawn, of how many runs, and by which program."""
+    lines = shown_lines(plot, methods)
+    sentences = [f"{plot['title']}.", plot.get("reading", ""), plot.get("caption", ""),
+                 "Lines are medians over seeds." if plot["kind"] == "lines" and lines and "problem" in plot else "",
+                 f"Data: {report.get('headline', '')}; seeds {', '.join(map(str, report.get('seeds', [])))}; {report.get('version', '')}."]
+    return " ".join(sentence for sentence in sentences if sentence)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n", maxsplit=1)[0])
     parser.add_argument("report", help="report.json of a report")
@@ -232,6 +245,8 @@ def main():
         matplotlib.use("agg")
         from matplotlib import pyplot
         pyplot.rcParams.update(STYLE)
+    with open(out / "captions.txt", "w", encoding="utf-8") as file:
+        file.writelines(f"{plot['name']}: {caption(plot, report, methods)}\n\n" for plot in plots)
     for plot in plots:
         if "csv" in formats:
             write_points(out / f"{plot['name']}.csv", plot)

@@ -464,6 +464,33 @@ EqualWork equal_work(const Comparison& c, std::size_t problem) {
   return all;
 }
 
+TimesLarger times_larger(const AtEqualWork& first, const AtEqualWork& second) {
+  TimesLarger out{.times = second.x_error.median / first.x_error.median, .interval = {}};
+  std::vector<Real> logarithms;
+  for (const auto& [seed, error] : first.errors)
+    if (const auto other = second.errors.find(seed); other != second.errors.end()) {
+      logarithms.push_back(std::log(other->second / error));
+      out.larger += other->second > error;
+    }
+  out.seeds = logarithms.size();
+  if (out.seeds < 2 ||
+      !std::ranges::all_of(logarithms, [](Real value) { return std::isfinite(value); }))
+    return out;
+  const Real n = static_cast<Real>(out.seeds);
+  const Real mean = std::accumulate(logarithms.begin(), logarithms.end(), 0.0) / n;
+  auto [low, high] = std::ranges::minmax(logarithms);
+  if (!out.is_range()) {
+    constexpr Real kTwoSided = 0.975;
+    const Real half =
+        student_quantile(kTwoSided, out.seeds - 1) * deviation_of(logarithms) / std::sqrt(n);
+    low = mean - half;
+    high = mean + half;
+  }
+  out.times = std::exp(mean);
+  out.interval = {std::exp(low), std::exp(high)};
+  return out;
+}
+
 std::vector<std::size_t> ranking(const Comparison& c, std::size_t problem) {
   if (c.problems[problem].is_learned) return equal_work(c, problem).nearest_first();
   std::vector<std::size_t> order;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/results/decisions.h"
+#include "core/results/statistics.h"
 #include "core/results/table.h"
 
 namespace isoline::results {
@@ -113,6 +114,17 @@ struct EqualWork {
 // For each run, the last kept point within this work. A run that ended sooner has its last point, a
 // diverged one its last finite point; for a failed run it is infinite.
 EqualWork equal_work(const Comparison& comparison, std::size_t problem);
+
+// How many times as large the error of the second method is, by the mean of the logarithm over the
+// seeds that both have, with its 95 % t interval, or with the range of fewer than six.
+struct TimesLarger {
+  Real times = kNever;
+  std::optional<Interval> interval;
+  std::size_t larger = 0, seeds = 0;
+
+  bool is_range() const { return seeds < kFewestForInterval; }
+};
+TimesLarger times_larger(const AtEqualWork& first, const AtEqualWork& second);
 
 // The optimizers that ran on a problem, best first: by what the yardstick counts, from the tightest
 // tolerance to the loosest, then by final loss; of a learned one by the error in x at equal work.

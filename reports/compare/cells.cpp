@@ -129,6 +129,7 @@ void add_digests(ComparedCell& cell, const Record& record) {
   if (record.failures) json["failures"] = to_json(record).at("failures");
   if (record.fields) json["snapshots"] = record.fields->digest;
   if (record.hits) json["hit_counts"] = record.hits->counts;
+  if (record.x_hits) json["x_hit_counts"] = record.x_hits->counts;
   for (const auto& [name, value] : json.items())
     cell.members.emplace_back(*shared_value(name, name), fnv1a(json_text(value)));
 }

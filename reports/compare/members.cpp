@@ -132,6 +132,7 @@ Json members_of(const std::string& file) {
   json["rates"] = record.request.rates;
   if (record.fields) json["snapshots"] = record.fields->digest;
   if (record.hits) json["hit_counts"] = record.hits->counts;
+  if (record.x_hits) json["x_hit_counts"] = record.x_hits->counts;
   return json;
 }
 

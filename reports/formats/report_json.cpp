@@ -210,6 +210,11 @@ Json table_json(const Table& table) {
 Json line_json(const PlotSeries& line, const Comparison& c) {
   Json json{{"name", line.name}, {"x", json_numbers(line.x)}, {"y", json_numbers(line.y)}};
   if (line.optimizer) json["optimizer"] = c.optimizers[*line.optimizer].label;
+  if (!line.method.empty()) {
+    const Look look = look_of(line.method);
+    json["dash"] = look.dash;
+    json["marker"] = std::string(1, look.marker);
+  }
   if (!line.low.empty()) json["low"] = json_numbers(line.low);
   if (!line.high.empty()) json["high"] = json_numbers(line.high);
   return json;
@@ -246,6 +251,7 @@ Json plot_json(const NamedDrawing& one, const Document& document) {
   if (drawing.tolerance) json["goal"] = *drawing.tolerance * c.yardstick.tolerances[kTightest].tau;
   if (!plot.published.empty()) json["published"] = lines(plot.published);
   if (!drawing.ground.empty()) json["ground"] = lines(drawing.ground);
+  if (!drawing.ends.empty()) json["ends"] = lines(drawing.ends);
   return json;
 }
 
@@ -390,6 +396,8 @@ std::string json_report(const Document& document) {
   };
   Json json{
       {"schema", "isoline.report/1"},
+      {"headline", document.headline},
+      {"version", version_text(c)},
       {"suites", c.study->plan.suites},
       {"planned", c.planned},
       {"answered", c.answered},

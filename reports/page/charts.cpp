@@ -5,6 +5,7 @@
 #include <cmath>
 #include <tuple>
 
+#include "core/records/sheet.h"
 #include "reports/formats/formats.h"
 #include "reports/page/page.h"
 #include "reports/sections/words.h"
@@ -59,6 +60,12 @@ bool are_same(const CurveDrawing& one, const CurveDrawing& other) {
                             numbers);
 }
 
+std::string levels_text(const Landscape& landscape) {
+  if (landscape.spacing == "powers of two") return "at 2ⁱ for i = −5 … 7";
+  if (landscape.spacing == "fifth root") return "in even steps of its fifth root";
+  return "in even steps of its logarithm";
+}
+
 bool is_first(const std::vector<CurveDrawing>& all, std::size_t place) {
   return std::none_of(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(place),
                       [&](const CurveDrawing& before) { return are_same(before, all[place]); });
@@ -99,8 +106,25 @@ std::string curves_json(const Comparison& c, std::size_t p) {
     if (!all[i].is_own) others += curve_svg(c, all, i, c.problems[p].least_goal);
     add(std::to_string(i), all[i].drawing);
   }
-  for (const Drawing& plane : plane_drawings(c, p)) add(plane.rest, plane);
+  for (const Plane& plane : planes_of(c, p)) add(plane.drawing.rest, plane.drawing);
   return fmt::format("{{\"charts\":{},\"rest\":{{{}}}}}", json_quoted(others), rest);
+}
+
+// Paths as the paper draws them: short runs with a point a step, long ones as lines.
+std::string planes_html(const Comparison& c, std::size_t p) {
+  const std::vector<Plane> planes = planes_of(c, p);
+  if (planes.empty()) return "";
+  std::string html;
+  for (const Plane& plane : planes)
+    html += fmt::format("<figure class=plane><figcaption><b>{}</b> {} {}</figcaption>{}</figure>",
+                        plane.title, html_text(plane.reading),
+                        html_text(plane.drawing.plot.caption), drawing_svg(plane.drawing));
+  const Sheet& sheet = *c.problems[p].sheet;
+  return fmt::format(
+      "<div class=planes>{}</div><p class=legend>Thin lines: contours of the loss, {}. The paths "
+      "are those of the run with the median work; points mark the steps of short runs. ○: start; "
+      "●: solution in x, target in y.</p>",
+      html, levels_text(sheet.landscape_x ? *sheet.landscape_x : *sheet.landscape_y));
 }
 
 std::string figure_lines_json(const Document& document) {

@@ -123,11 +123,22 @@ function endOf(chart, group) {
   return made;
 }
 
+// The markers of a line, in view, where the report puts them: at most four, at its points before even steps across.
+const MARKS = 4;
+function markLine(chart, group, inside) {
+  const area = areaOf(chart), box = boxOf(area), [left, top, width, height] = viewOf(area), marks = chart.querySelector('.marks'), line = lineOf(group), steps = new Map();
+  const mark = lineIn(marks, line) ?? marks.appendChild(svgElement('path', {class: 'mark', 'data-s': line}));
+  mark.shape ??= group.dataset.s === undefined ? mark.getAttribute('d').match(/m[^M]*/)?.[0] ?? '' : DATA.shapes[line];
+  for (const [x, y] of inside) if (x >= left && y >= top && y <= top + height) steps.set(Math.floor(MARKS * (x - left) / width - 0.618 * line % 1), [x, y]);
+  mark.setAttribute('d', [...steps.values()].map(([x, y]) => `M${(box.x + box.width * (x - left) / width).toFixed(1)} ${(box.y + box.height * (y - top) / height).toFixed(1)}${mark.shape}`).join(''));
+}
+
 function placeNames(chart) {
-  if (chart.querySelector('.ends') === null) return;
-  const area = areaOf(chart), box = boxOf(area), [left, top, width, height] = viewOf(area), ends = [], clamp = (share) => Math.min(1, Math.max(0, share));
+  const area = areaOf(chart), box = boxOf(area), [left, top, width, height] = viewOf(area), ends = [], clamp = (share) => Math.min(1, Math.max(0, share)), isNamed = chart.querySelector('.ends') !== null;
   for (const group of linesOf(chart)) {
     const inside = isLineShown(group) ? pointsOf(pathOf(group)).filter(([x]) => x <= left + width) : [];
+    if (group.dataset.s !== undefined || lineIn(chart.querySelector('.marks'), lineOf(group))) markLine(chart, group, inside);
+    if (!isNamed) continue;
     if (inside.length === 0) {
       lineIn(chart.querySelector('.ends'), lineOf(group))?.classList.add('off');
       continue;

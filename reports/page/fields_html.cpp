@@ -144,7 +144,7 @@ std::string found_html(const Comparison& c, const FoundFields& all, const FoundF
   return fmt::format(
       "<figure data-s={}><div class=two>{}</div><figcaption>{}<b>{}</b>{} {}: iteration <output "
       "class=at>{}</output>{}</figcaption></figure>",
-      found.optimizer, pictures, swatch(), html_text(name), marks_html(axis),
+      found.optimizer, pictures, swatch(axis.method), html_text(name), marks_html(axis),
       html_text(kind_title(axis.mathematics())), found.frames.iterations[last], apart);
 }
 

@@ -154,55 +154,8 @@ function makeMore(table, draw) {
   };
 }
 
-// Three methods on their way from y* to x, by forward solves: a field stands until the next one that its run
-// kept, and a flag until the run reaches τ. Once; again on demand.
-const RACE_FRAMES = 60;
-function makeMotion(place) {
-  const kinds = ['Adaptive gradient', 'Least squares', 'Inversion of the physics'], stepsOf = (three) => Math.min(...three.map(({iterations}) => iterations.length));
-  const runnersOf = ({fields, race}) => kinds.map((kind) => {
-    const at = fields?.found.findIndex(({s, iterations}, i) => DATA.kinds[s] === kind && race[i][0].length === iterations.length && !race[i][0].includes(null)) ?? -1;
-    return at < 0 ? undefined : {...fields.found[at], works: race[at][0], reached: race[at][1]};
-  });
-  const all = DATA.problems.map((problem, p) => ({p, three: runnersOf(problem)}))
-      .filter(({three}) => !three.includes(undefined) && stepsOf(three) > 1).sort((a, b) => stepsOf(b.three) - stepsOf(a.three));
-  if (all.length === 0) return;
-  const [{p, three}] = all, {fields, spec} = DATA.problems[p], article = document.getElementById(`problem-${p}`), made = document.createElement('template');
-  made.innerHTML = article.querySelector(':scope > noscript')?.textContent ?? article.innerHTML;
-  const figures = ['.given', ...three.map(({s}) => `[data-s="${s}"]`)].map((which) => made.content.querySelector(`.field-cards > figure${which}`));
-  const most = Math.max(...three.map(({works}) => works[works.length - 1])), truth = bytesOf(fields.truth), clock = element('output'), flags = three.map(() => element('b'));
-  flags.forEach((flag, i) => figures[i + 1].querySelector('figcaption').prepend(flag));
-  let frame = RACE_FRAMES, timer;
-  const draw = () => {
-    const now = frame === RACE_FRAMES ? most : Math.floor(most ** (frame / RACE_FRAMES));
-    clock.textContent = worded('race-clock', {work: now});
-    three.forEach((found, i) => {
-      showStep(figures[i + 1], {...fields, found, truth}, Math.max(1, found.works.filter((work) => work <= now).length));
-      flags[i].textContent = found.reached !== null && found.reached <= now ? `⚑ ${worded('race-reached', {tau: tauName(DEFAULT_TARGET), work: found.reached})} ` : '';
-    });
-  };
-  const button = pressable('Play', undefined, () => (timer === undefined ? play() : pause()));
-  const pause = () => {
-    clearInterval(timer);
-    timer = undefined;
-    button.textContent = 'Play';
-  };
-  const play = () => {
-    if (frame >= RACE_FRAMES) frame = 0;
-    button.textContent = 'Pause';
-    timer = setInterval(() => {
-      frame = Math.min(RACE_FRAMES, frame + 1);
-      draw();
-      if (frame === RACE_FRAMES) pause();
-    }, 100);
-  };
-  place.replaceChildren(element('p', {}, element('a', {href: `#problem-${p}`}, worded('motion', {problem: spec})), ' ', button, ' ', clock), element('div', {className: 'field-cards'}, ...figures));
-  paintAll(place, {...fields, found: three});
-  draw();
-  if (!matchMedia('(prefers-reduced-motion: reduce)').matches) play();
-}
-
 function liveOverview() {
-  live(document.getElementById('motion'), () => { if (document.getElementById('motion').childElementCount === 0) makeMotion(document.getElementById('motion')); });
+  liveRace(document.getElementById('motion'));
   const standings = document.getElementById('standings-table'), heat = document.getElementById('heat');
   live(standings, makeMore(standings, drawStandings));
   live(heat, makeMore(heat, drawHeat));

@@ -201,13 +201,12 @@ std::string endings_html(const Comparison& c) {
   return "<ul class=tiles>" + html + "</ul>";
 }
 
-// --- kinds of methods as colours, dashes and words
+// --- kinds of methods as colours and words
 
 bool is_kind(std::string_view kind) {
   return all_sentences().contains(fmt::format("kind.{}", kind));
 }
 
-constexpr std::array<std::string_view, 5> kDashes = {"none", "7 3", "2 3", "9 3 2 3", "14 4"};
 // A share of the kind's own colour, in percent, and the colour that it is mixed with: all that come
 // of it are 7 and more apart in Lab, in both themes, within a kind and between kinds.
 struct Shade {
@@ -226,15 +225,21 @@ std::string kind_title(std::string_view kind) {
 std::string kind_rules(const Comparison& c) {
   std::string rules;
   std::map<std::string, std::size_t> counts;
+  std::map<std::string_view, std::string> of_shape;
   for (std::size_t s = 0; s < c.optimizers.size(); ++s) {
     std::string kind = c.optimizers[s].mathematics();
     if (!is_kind(kind)) kind = "other";
-    const std::size_t place = counts[kind]++, round = place / kDashes.size();
-    const auto& [share, mixed] = kShadesOfKind[(place + round) % kShadesOfKind.size()];
+    const std::size_t place = counts[kind]++;
+    const auto& [share, mixed] = kShadesOfKind[place % kShadesOfKind.size()];
+    const Look look = look_of(c.optimizers[s].method);
     rules += fmt::format(
         "[data-s=\"{}\"]{{--series:color-mix(in oklab,var(--{}) {}%,var(--{}));--dash:{}}}\n", s,
-        kind, share, mixed, kDashes[place % kDashes.size()]);
+        kind, share, mixed, look.dash);
+    of_shape[look.shape] +=
+        fmt::format("{}[data-s=\"{}\"]", of_shape[look.shape].empty() ? "" : ",", s);
   }
+  for (const auto& [shape, selectors] : of_shape)  // around (5, 5), for marks that are no drawings
+    rules += fmt::format("{}{{--shape:path(\"M5 5{}\")}}\n", selectors, shape);
   return rules;
 }
 

@@ -48,14 +48,7 @@ std::string curves_html(const Comparison& comparison, std::size_t problem);  // 
 std::string curves_json(const Comparison& comparison, std::size_t problem);
 std::string figure_lines_json(const Document& document);  // [hidden lines of each figure]
 std::string planes_html(const Comparison& comparison, std::size_t problem);
-std::vector<Drawing> plane_drawings(const Comparison& comparison, std::size_t problem);
 std::string figures_html(const Document& document);
-// Isolines by marching squares (Lorensen, Cline 1987, in two dimensions): lines apart by NaN,
-// linear between grid points. A cell with a corner that is not finite is left out.
-PlotSeries isoline(const Landscape& landscape, Real level);
-// Spaced as the landscape asks: 2^i for i = −5 … 7, or even steps of L^0.2 or of log L.
-std::vector<Real> contour_levels(const Landscape& landscape);
-
 // Fields. Bytes 1 to 255, of which 128 is 0 and 255 twice `scale`: colours end at ±scale, and what
 // a difference of two may need is not lost before. Beyond twice the scale a value is cut.
 std::string field_bytes(const std::vector<float>& values, Real scale);
@@ -85,13 +78,14 @@ std::string json_list(Range&& range, Item item) {  // of whatever `item` writes
 // where neither holds.
 std::string marks_html(const OptimizerAxis& axis);
 
-// One colour a kind of method, in every report; within a kind a dash and a shade of it by rank.
+// One colour a kind of method, in every report; within a kind a shade of it by rank. Dash and
+// marker are the method's.
 
 std::string kind_title(std::string_view kind);  // "Adaptive gradients"
-// Rules of the style sheet: what has data-s has the colour and dash of that optimizer. No two of a
-// kind have both alike, up to 25, and no two of five either.
+// Rules of the style sheet: what has data-s has the colour, dash and marker of that optimizer.
 std::string kind_rules(const Comparison& comparison);
-std::string swatch();  // a short line in the colour and dash of the element around it
+// A short line in the colour and dash of the element around it, with the marker of a method.
+std::string swatch(const std::string& method = "");
 
 // What an element is about, as attributes by which the page filters.
 std::string topic_attributes(const Topic& topic);

@@ -149,8 +149,15 @@ std::string origins_json(const Comparison& c, std::size_t p) {
   return text.empty() ? "" : ",\"origins\":{" + text + "}";
 }
 
+std::vector<Real> values_of(const AtEqualWork& method) {
+  std::vector<Real> values;
+  for (const auto& [seed, error] : method.errors) values.push_back(error);
+  return values;
+}
+
 // What is learned, at equal work: [optimizer, error in x, its least, its greatest, loss, runs, how
-// many of them diverged].
+// many of them diverged]; and of two methods how many times larger the error of the second is, its
+// 95 % interval, 0 and null of too few runs, and the p of Mann and Whitney.
 std::string learned_json(const Comparison& c, std::size_t p) {
   if (!c.problems[p].is_learned) return "";
   const EqualWork equal = equal_work(c, p);
@@ -160,29 +167,50 @@ std::string learned_json(const Comparison& c, std::size_t p) {
                        number(at.x_error.low), number(at.x_error.high), number(at.loss.median),
                        at.x_error.n, at.diverged);
   };
-  return fmt::format(",\"learned\":{{\"work\":{},\"rows\":{}}}", number(equal.work),
-                     json_list(equal.nearest_first(), row));
+  const std::vector<std::size_t> order = equal.nearest_first();
+  std::vector<std::string> pairs;
+  for (const std::size_t a : order)
+    for (const std::size_t b : order) {
+      const AtEqualWork &first = *equal.methods[a], &second = *equal.methods[b];
+      if (a == b || !(first.x_error.median > 0) || second.x_error.median < first.x_error.median)
+        continue;
+      const TimesLarger times = times_larger(first, second);
+      const bool has_interval = times.interval && !times.is_range();
+      pairs.push_back(fmt::format("[{},{},{},{},{},{:.2g}]", a, b, number(times.times),
+                                  number(has_interval ? times.interval->low : 0),
+                                  number(has_interval ? times.interval->high : kNever),
+                                  mann_whitney_p(values_of(first), values_of(second))));
+    }
+  return fmt::format(",\"learned\":{{\"work\":{},\"rows\":{},\"pairs\":[{}]}}", number(equal.work),
+                     json_list(order, row), joined(pairs, ","));
 }
 
-// The work of each field that the page shows, and of the run when it reached the tolerance, or
-// null:
-// [[[work, …], reached], …] by method.
-std::string race_json(const Comparison& c, std::size_t p, const FoundFields& fields) {
-  return json_list(fields.found, [&](const FoundField& found) {
-    const Cell& cell = c.cell(p, found.optimizer);
-    const auto own = std::ranges::find_if(
-        cell.runs, [&](std::size_t row) { return c.runs[row].seed == fields.seed; });
-    if (own == cell.runs.end()) return std::string("[[],null]");
-    const Curve& curve = c.runs[*own].record->curve;
-    const std::string works = json_list(found.frames.iterations, [&](auto iteration) {
-      const auto at = std::ranges::find(curve.iteration, iteration);
-      return at == curve.iteration.end()
-                 ? std::string("null")
-                 : std::to_string(
-                       curve.work[static_cast<std::size_t>(at - curve.iteration.begin())]);
-    });
-    return fmt::format("[{},{}]", works, number(c.taken(c.runs[*own], Measure::work, kTightest)));
-  });
+// What runs over contours, or else over fields: [[optimizer, seed, work when it reached the
+// tolerance or null, [work of each point or field that the page has]], …].
+std::string race_json(const Comparison& c, std::size_t p,
+                      const std::optional<FoundFields>& fields) {
+  std::vector<std::string> runners;
+  const auto add = [&](std::size_t s, const Run& run, const std::vector<std::size_t>& kept) {
+    const std::string works =
+        json_list(kept, [&](std::size_t i) { return std::to_string(run.record->curve.work[i]); });
+    runners.push_back(fmt::format("[{},{},{},{}]", s, json_quoted(seed_text(run.seed)),
+                                  number(c.taken(run, Measure::work, kTightest)), works));
+  };
+  if (has_planes(c, p)) {
+    for (const Path& path : paths(c, p)) add(path.optimizer, *path.run, path.kept);
+  } else if (fields) {
+    for (const FoundField& found : fields->found)
+      for (const std::size_t row : c.cell(p, found.optimizer).runs) {
+        const Run& run = c.runs[row];
+        if (run.seed != fields->seed) continue;
+        std::vector<std::size_t> kept;
+        for (const std::int64_t iteration : found.frames.iterations)
+          kept.push_back(point_at(run.record->curve.iteration, iteration));
+        add(found.optimizer, run, kept);
+        break;
+      }
+  }
+  return "[" + joined(runners, ",") + "]";
 }
 
 std::string problem_json(const Comparison& c, std::size_t p,
@@ -204,9 +232,8 @@ std::string problem_json(const Comparison& c, std::size_t p,
               ? fmt::format(",\"goal\":{:.4g}", problem.least_goal)
               : "") +
          (prices_of(problem) ? ",\"sheet\":" + json_quoted(problem.sheet->file_name()) : "") +
-         (fields ? ",\"fields\":" + fields_json(*fields) + ",\"race\":" + race_json(c, p, *fields)
-                 : "") +
-         ",\"curves\":" + curves_json(c, p) + "}";
+         (fields ? ",\"fields\":" + fields_json(*fields) : "") +
+         ",\"race\":" + race_json(c, p, fields) + ",\"curves\":" + curves_json(c, p) + "}";
 }
 
 // {"id": [optimizers, problems]}: what the cells that decide a claim are about.
@@ -329,11 +356,13 @@ std::string axes_json(const Comparison& c) {
                      [&](const OptimizerAxis& axis) { return json_quoted(text(axis)); });
   };
   return fmt::format(
-      "\"optimizers\":{},\"methods\":{},\"kinds\":{},\"privileges\":{},\"marks\":{},\"asks\":{}",
+      "\"optimizers\":{},\"methods\":{},\"kinds\":{},\"privileges\":{},\"marks\":{},\"shapes\":{},"
+      "\"asks\":{}",
       texts([](const OptimizerAxis& axis) { return optimizer_name(axis); }),
       texts([](const OptimizerAxis& axis) { return axis.method; }),
       texts([](const OptimizerAxis& axis) { return kind_title(axis.mathematics()); }),
       texts([](const OptimizerAxis& axis) { return joined(axis.privileges); }), texts(marks_of),
+      texts([](const OptimizerAxis& axis) { return std::string(look_of(axis.method).shape); }),
       json_list(std::views::iota(std::size_t{0}, c.optimizers.size()),
                 [&](std::size_t s) { return json_quoted(counted_oracles(c, s)); }));
 }

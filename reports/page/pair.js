@@ -60,18 +60,15 @@ function readPair() {
 }
 
 // The choice of one method; "–" leaves it out, and a last one adds it.
-function pairSelect(place, redraw) {
-  const select = element('select', {}), {methods} = pair, isOptional = place > 1;
+function methodSelect(methods, able, place, redraw) {
+  const select = element('select', {}), isOptional = place > 1;
   select.setAttribute('aria-label', `Method ${place + 1}`);
   if (isOptional) select.append(element('option', {value: -1, selected: place >= methods.length}, '–'));
-  DATA.optimizers.forEach((name, s) => {
-    if (s === methods[place] || !methods.includes(s)) select.append(element('option', {value: s, selected: s === methods[place]}, name));
-  });
+  for (const s of able)
+    if (s === methods[place] || !methods.includes(s)) select.append(element('option', {value: s, selected: s === methods[place]}, DATA.optimizers[s]));
   select.addEventListener('change', () => {
     const chosen = Number(select.value);
     if (chosen < 0) methods.splice(place, 1); else methods[place] = chosen;
-    pair.isChosen = true;
-    writeAddress();
     redraw();
   });
   return select;
@@ -110,7 +107,12 @@ function pairSentence(a, b) {
 function dotRows(rows) {
   const values = rows.flatMap(({taken}) => taken.filter((value) => value > 0 && value < Infinity)), [low, high] = [Math.min(...values), Math.max(...values)];
   const at = (value) => (value === Infinity ? 1 : high > low ? 0.94 * Math.log(Math.max(value, low) / low) / Math.log(high / low) : 0);
-  return element('ol', {className: 'bars-of'}, ...rows.map(({p, taken, words}) => {
+  const axis = element('li', {className: 'axis'}, element('span'), element('span', {className: 'way'}, ...ticksOf(low, high, true).map((tick) => {
+    const made = element('b', {}, short(tick));
+    made.style.setProperty('--at', at(tick));
+    return made;
+  })));
+  return element('ol', {className: 'bars-of'}, ...high > low ? [axis] : [], ...rows.map(({p, taken, words}) => {
     const dots = taken.map((value, i) => {
       const dot = element('i', {className: value === Infinity ? 'lost' : ''}, value === Infinity ? '✗' : '');
       dot.style.setProperty('--at', at(value));
@@ -130,13 +132,23 @@ function settingRows() {
   return settingsOf(pair.methods).sort((x, y) => ratio(x.taken) - ratio(y.taken)).map(({p, taken}) => ({p, taken: taken.map(atLeast), words: taken.map(amount).join(' : ')}));
 }
 
+// How two methods compare on a learned problem, in the numbers of the report.
+function learnedSentence(p, a, b) {
+  const {pairs, rows} = DATA.problems[p].learned, one = pairs.find(([less, more]) => (less === a && more === b) || (less === b && more === a));
+  if (one === undefined) return [];
+  const [less, more, ratio, low, high, chance] = one, runsOf = (s) => rows.find((row) => row.s === s).runs;
+  const others = document.getElementById('learned').textContent.includes('id="ratio-readings"') || document.getElementById('ratio-readings') !== null;
+  return [element('p', {}, worded('learned-ratio', {problem: DATA.problems[p].spec, a: DATA.optimizers[more], b: DATA.optimizers[less], ratio: multiple(ratio), seeds: `${runsOf(more)} : ${runsOf(less)}`, p: chance,
+    interval: low > 0 && high !== null ? worded('learned-interval', {low: multiple(low), high: multiple(high)}) : worded('learned-few')}), chance > 0.05 ? ` ${worded('pair-open')}` : '', ...others ? [' ', element('a', {href: '#ratio-readings'}, worded('other-readings'))] : [])];
+}
+
 // Learned problems by the error in x at equal work.
 function learnedSection() {
   const rows = DATA.problems.flatMap(({learned}, p) => {
     const found = pair.methods.map((s) => learned?.rows.find((row) => row.s === s)), taken = found.map((row) => row?.error ?? Infinity);
     return found.includes(undefined) ? [] : [{p, taken, words: taken.map(figure).join(' : ')}];
   });
-  return rows.length === 0 ? [] : [element('h3', {}, worded('learned-pair')), dotRows(rows)];
+  return rows.length === 0 ? [] : [element('h3', {}, worded('learned-pair')), ...rows.flatMap(({p}) => pair.methods.slice(1).flatMap((s) => learnedSentence(p, pair.methods[0], s))), dotRows(rows)];
 }
 
 // The work of each other method over settings, against that of the first: below the diagonal it needs less.
@@ -161,8 +173,13 @@ function scatter(rows) {
 }
 
 function drawPair(place) {
-  const redraw = () => drawPair(place), {methods} = pair, rows = settingRows(), selects = [...Array(Math.min(MOST_COMPARED, methods.length + 1)).keys()].map((i) => pairSelect(i, redraw));
-  place.replaceChildren(element('p', {className: 'chosen-two'}, ...selects.flatMap((select, i) => (i === 0 ? [select] : [i === 1 ? ' against ' : ' ', select]))),
+  const redraw = () => {
+    pair.isChosen = true;
+    writeAddress();
+    drawPair(place);
+  };
+  const {methods} = pair, rows = settingRows(), selects = [...Array(Math.min(MOST_COMPARED, methods.length + 1)).keys()].map((i) => methodSelect(methods, DATA.optimizers.keys(), i, redraw));
+  place.replaceChildren(element('style', {}, huesOf(methods, '#pair ')), element('p', {className: 'chosen-two'}, ...selects.flatMap((select, i) => (i === 0 ? [select] : [i === 1 ? ' against ' : ' ', select]))),
       ...methods.slice(1).map((s) => element('p', {className: 'verdict'}, pairSentence(methods[0], s), ' ', pairEvidence(methods[0], s))),
       element('div', {className: 'decided'}, element('div', {}, element('p', {className: 'legend'}, worded('pair-legend', {measure: measureNow().counted})), dotRows(rows), ...learnedSection()),
           element('div', {}, scrolled(priceTable()), ...scatter(rows))));

@@ -14,7 +14,7 @@ function showLines(p, lines) {
 
 // The line of the curves, in the colour and dash of what it stands in.
 const swatch = (index) => {
-  const line = document.createRange().createContextualFragment('<svg class="swatch"><path d="M0 4h24"/></svg>').firstChild;
+  const line = document.createRange().createContextualFragment(`<svg class="swatch"><path d="M0 4h24"/><path class="mark" d="M12 4${DATA.shapes[index]}"/></svg>`).firstChild;
   line.dataset.s = index;
   return line;
 };

@@ -294,7 +294,8 @@ std::string row_html(const Comparison& c, std::size_t s) {
   const OptimizerAxis& axis = c.optimizers[s];
   std::string html = fmt::format(
       "<tr data-s={0}><th scope=row><a href=\"#optimizer-{0}\">{1}{2}</a>{3}<td class=text>{4}", s,
-      swatch(), html_text(optimizer_name(axis)), marks_html(axis), kind_title(axis.mathematics()));
+      swatch(axis.method), html_text(optimizer_name(axis)), marks_html(axis),
+      kind_title(axis.mathematics()));
   std::array<std::optional<bool>, std::size(kProperties)> answers;
   for (const AuditedOptimizer& audited : c.study->audits)
     if (audited.name == axis.method) answers = answers_of(audited);

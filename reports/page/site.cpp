@@ -116,8 +116,11 @@ std::string drawing_html(const SiteResults& results, const NamedDrawing& one,
   std::string names;
   for (std::size_t i = 0; i < drawing.plot.series.size(); ++i) {
     drawing.plot.series[i].optimizer.reset();
-    names += fmt::format("<span class=c{}>{}{}</span> ", i % 8, swatch(),
-                         html_text(drawing.plot.series[i].name));
+    const std::string& method = drawing.plot.series[i].method;
+    names +=
+        fmt::format("<span class=c{}{}>{}{}</span> ", i % 8,
+                    method.empty() ? "" : fmt::format(" style=\"--dash:{}\"", look_of(method).dash),
+                    swatch(method), html_text(drawing.plot.series[i].name));
   }
   const std::string file = report_address(results, "figures/" + one.name);
   return fmt::format(

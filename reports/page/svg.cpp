@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 
 #include "reports/formats/formats.h"
 #include "reports/page/page.h"
@@ -107,7 +108,11 @@ std::string topic_attributes(const Topic& topic) {
   return tag;
 }
 
-std::string swatch() { return "<svg class=swatch><path d=\"M0 4h24\"/></svg>"; }
+std::string swatch(const std::string& method) {
+  const std::string mark =
+      method.empty() ? "" : fmt::format("<path class=mark d=\"M12 4{}\"/>", look_of(method).shape);
+  return fmt::format("<svg class=swatch><path d=\"M0 4h24\"/>{}</svg>", mark);
+}
 
 // Lines.
 
@@ -202,10 +207,12 @@ std::string band_of(const Frame& area, const PlotSeries& line, Join join) {
 // Which line a button is of: of an optimizer in all drawings the same.
 std::string line_attributes(const PlotSeries& line, std::size_t place, std::string classes) {
   if (!line.optimizer) classes += fmt::format("{}c{}", classes.empty() ? "" : " ", place % 8);
-  return fmt::format(" data-{}={}{}", line.optimizer ? "s" : "line", line.optimizer.value_or(place),
-                     classes.empty()    ? ""
-                     : classes == "off" ? " class=off"
-                                        : fmt::format(" class=\"{}\"", classes));
+  std::string tag =
+      fmt::format(" data-{}={}", line.optimizer ? "s" : "line", line.optimizer.value_or(place));
+  if (!classes.empty()) tag += fmt::format(" class=\"{}\"", classes);
+  if (!line.optimizer && !line.method.empty())
+    tag += fmt::format(" style=\"--dash:{}\"", look_of(line.method).dash);
+  return tag;
 }
 
 std::string series_svg(const Drawing& drawing, const Frame& area, std::size_t place) {
@@ -259,6 +266,32 @@ std::string published_svg(const Frame& area, const PlotSeries& goal) {
                    "<path class=points d=\"M{:.0f} {:.0f}h0\"><title>published, {}: {}{}</title>"
                    "</path></g>",
                    x, area.y(goal.y[0]), html_text(goal.name), figure(goal.y[0]), ends);
+}
+
+// The markers of the lines that are shown: at most four a line, at its points before even steps
+// across, which begin elsewhere for each line. Where the scripts have further lines, they mark all.
+std::string marks_svg(const Drawing& drawing, const Frame& frame) {
+  constexpr Real kMarks = 4, kGolden = 0.618;
+  std::string svg;
+  for (std::size_t place = 0; place < drawing.plot.series.size() && drawing.rest.empty(); ++place) {
+    const PlotSeries& line = drawing.plot.series[place];
+    if (line.method.empty() || line.are_points || is_hidden(drawing, line)) continue;
+    const Real shift = kGolden * Real(line.optimizer.value_or(place));
+    std::map<int, std::size_t> marked;
+    for (std::size_t i = 0; i < line.x.size() && i < line.y.size(); ++i) {
+      const Real x = frame.x(line.x[i]), y = frame.y(line.y[i]);
+      if (!(x >= frame.left && x <= frame.right() && y >= frame.top && y <= frame.bottom()))
+        continue;
+      const Real step = kMarks * (x - frame.left) / frame.width - (shift - std::floor(shift));
+      marked[static_cast<int>(std::floor(step))] = i;
+    }
+    std::string path;
+    for (const auto& [step, i] : marked)
+      path += fmt::format("M{:.1f} {:.1f}{}", frame.x(line.x[i]), frame.y(line.y[i]),
+                          look_of(line.method).shape);
+    svg += fmt::format("<path{} d=\"{}\"/>", line_attributes(line, place, "mark"), path);
+  }
+  return "<g class=marks>" + svg + "</g>";
 }
 
 std::size_t letters_of(std::string_view text) {
@@ -351,7 +384,8 @@ std::string drawing_svg(const Drawing& drawing, Real tau) {
     svg += fmt::format(
         "<g class=end><path d=\"{0}\"/><path class={1} d=\"{0}\"><title>{1}</title></path></g>",
         path_of(area, end.x, end.y, Join::none), html_text(end.name));
-  return svg + "</svg>" + (drawing.has_names ? end_names(drawing, frame) : "") + "</svg>";
+  return svg + "</svg>" + marks_svg(drawing, frame) +
+         (drawing.has_names ? end_names(drawing, frame) : "") + "</svg>";
 }
 
 std::string hidden_lines_svg(const Drawing& drawing) {
@@ -371,7 +405,7 @@ std::string names_html(const Drawing& drawing) {
     count += is_off;
     (is_off ? others : shown) +=
         fmt::format("<button type=button aria-pressed={}{}>{}{}</button>", !is_off,
-                    line_attributes(line, i, "name"), swatch(), html_text(line.name));
+                    line_attributes(line, i, "name"), swatch(line.method), html_text(line.name));
   }
   if (!drawing.plot.published.empty())
     shown += fmt::format("<span class=goal>{} published, with its error</span>", swatch());

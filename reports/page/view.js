@@ -30,14 +30,16 @@ function hiddenMethods() {
   return [...new Set(DATA.methods)].filter((method) => !shown.has(method));
 }
 
+// A hue for each of these methods, in their order.
+const huesOf = (methods, place = '') => methods.map((s, i) => `${place}[data-s="${s}"] { --series: var(--s${i}); }`).join('\n');
+
 const RULES = document.head.appendChild(document.createElement('style'));
 
 function hideElements() {
   const selectors = ['s', 'p'].flatMap((kind) => [...view.hidden[kind]].map((index) => `[data-${kind}="${index}"]`));
   selectors.push(...hiddenMethods().map((method) => `[data-method="${CSS.escape(method)}"]`));
-  const shown = shownOf('s');  // up to eight have a hue each, in their order, which the address keeps
-  const hues = isFiltered() && shown.length <= 8 ? shown.map((s, i) => `[data-s="${s}"] { --series: var(--s${i}); }`) : [];
-  RULES.textContent = [selectors.length === 0 ? '' : `:is(${selectors.join(',')}) { display: none !important; }`, ...hues].join('\n');
+  const shown = shownOf('s');  // up to eight have a hue each, which the address keeps
+  RULES.textContent = `${selectors.length === 0 ? '' : `:is(${selectors.join(',')}) { display: none !important; }`}\n${isFiltered() && shown.length <= 8 ? huesOf(shown) : ''}`;
   document.documentElement.classList.toggle('filtered', isFiltered());
 }
 

@@ -38,7 +38,9 @@ Plot curves(const Evidence& evidence) {
         [&](const EvidenceTerm& other) {
           return other.runs.at(0).cell == term.runs.at(0).cell && other.scale == term.scale;
         });
-    if (!is_known) plot.series.push_back({{}, names[i], term.x, term.y, term.low, term.high});
+    if (is_known) continue;
+    plot.series.push_back({{}, names[i], term.x, term.y, term.low, term.high});
+    plot.series.back().method = term.method;
   }
   constexpr Real kLong = 100;
   plot.is_log_x = plot.series.at(0).x.back() > kLong || evidence.is_over_time;
@@ -54,7 +56,8 @@ PlotSeries over_abscissa(std::vector<EvidenceTerm> terms) {
   std::ranges::sort(terms, {}, &EvidenceTerm::at);
   const bool is_one = std::ranges::all_of(
       terms, [&](const EvidenceTerm& term) { return term.optimizer == terms[0].optimizer; });
-  PlotSeries line{.name = is_one ? shown_spec(terms[0].optimizer) : terms[0].method};
+  PlotSeries line{.name = is_one ? shown_spec(terms[0].optimizer) : terms[0].method,
+                  .method = terms[0].method};
   for (const EvidenceTerm& term : terms) {
     const auto [low, high] = std::ranges::minmax(term.runs, {}, &EvidenceRun::figure);
     line.x.push_back(term.at);

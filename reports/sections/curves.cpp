@@ -4,6 +4,7 @@
 #include <functional>
 #include <set>
 #include <span>
+#include <tuple>
 
 #include "core/results/study.h"
 #include "reports/sections/figures.h"
@@ -88,14 +89,25 @@ MedianCurve median_curve(const Comparison& c, const Cell& cell, std::size_t poin
 }
 
 std::vector<Path> paths(const Comparison& c, std::size_t problem) {
+  constexpr std::size_t kAll = 8000, kLeast = 12, kMost = 120;  // points
   std::vector<Path> all;
-  for (std::size_t s = 0; s < c.optimizers.size(); ++s)
-    for (const std::size_t run : c.cell(problem, s).runs) {
-      const auto& trajectory = c.runs[run].record->trajectory;
-      if (!trajectory || trajectory->x.empty()) continue;
-      all.push_back({s, &*trajectory});
-      break;
-    }
+  for (std::size_t s = 0; s < c.optimizers.size(); ++s) {
+    std::vector<std::size_t> runs = c.cell(problem, s).runs;
+    std::erase_if(runs, [&](std::size_t run) {
+      const auto& path = c.runs[run].record->trajectory;
+      return !path || path->x.empty();
+    });
+    if (runs.empty()) continue;
+    std::ranges::sort(runs, {}, [&](std::size_t run) {  // of runs without an end, by the loss
+      const Real loss = c.runs[run].record->summary.best_loss;
+      return std::tuple(c.taken(c.runs[run], Measure::work, kTightest),
+                        std::isfinite(loss) ? loss : kNever, run);
+    });
+    const Run& middle = c.runs[runs[(runs.size() - 1) / 2]];
+    all.push_back({s, &middle, &*middle.record->trajectory});
+  }
+  for (Path& one : all)
+    one.kept = thinned(one.points->x.size(), std::clamp(kAll / all.size(), kLeast, kMost));
   return all;
 }
 

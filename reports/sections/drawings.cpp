@@ -5,7 +5,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <map>
 
 #include "reports/sections/words.h"
@@ -32,6 +34,36 @@ std::vector<Measure> measures_of(const Comparison& c) {
   std::vector<Measure> measures = {Measure::work, Measure::cost, Measure::time};
   if (c.yardstick.by == Measure::iterations) measures.push_back(Measure::iterations);
   return measures;
+}
+
+Look look_of(std::string_view method) {
+  constexpr std::array<std::string_view, 6> kDashes = {"none",    "7 3",  "2 3",
+                                                       "9 3 2 3", "14 4", "9 3 2 3 2 3"};
+  constexpr std::string_view kMarkers = "os^vDPX<|";
+  constexpr std::array<std::string_view, kMarkers.size()> kShapes = {
+      "m-3.5 0a3.5 3.5 0 1 0 7 0a3.5 3.5 0 1 0-7 0z",
+      "m-3-3h6v6h-6z",
+      "m0-4l4 7h-8z",
+      "m0 4l4-7h-8z",
+      "m0-4.4l4.4 4.4-4.4 4.4-4.4-4.4z",
+      "m-1.4-4.2h2.8v2.8h2.8v2.8h-2.8v2.8h-2.8v-2.8h-2.8v-2.8h2.8z",
+      "m0-1.9l2.3-2.3 1.9 1.9-2.3 2.3 2.3 2.3-1.9 1.9-2.3-2.3-2.3 2.3-1.9-1.9 2.3-2.3-2.3-2.3 1.9-1.9z",
+      "m-4 0l7-4v8z",
+      "m-1.2-4.4h2.4v8.8h-2.4z"};
+  // FNV-1a (Fowler, Noll, Vo), from a start with which no two of our methods of a kind have both
+  // alike.
+  constexpr std::uint32_t kStart = 4407, kPrime = 0x01000193;
+  std::uint32_t hash = kStart;
+  for (const char letter : method) hash = (hash ^ static_cast<unsigned char>(letter)) * kPrime;
+  hash ^= hash >> 16;
+  const std::size_t mark = hash / kDashes.size() % kMarkers.size();
+  return {kDashes[hash % kDashes.size()], kMarkers[mark], kShapes[mark]};
+}
+
+PlotSeries line_of(const Comparison& c, std::size_t s) {
+  PlotSeries line{.optimizer = s, .name = optimizer_name(c.optimizers[s])};
+  line.method = c.optimizers[s].method;
+  return line;
 }
 
 bool is_hidden(const Drawing& drawing, const PlotSeries& line) {
@@ -227,6 +259,7 @@ class Curves {
                                    : kept;
       line.optimizer = s;
       line.name = optimizer_name(c_.optimizers[s]);
+      line.method = c_.optimizers[s].method;
       if (is_of_error == is_x_sought() && !is_learned)
         line.is_worse_at_end = line.y.back() <= least_unmet(s, by);
       if (are_stairs || !shown_.contains(s)) line.low.clear(), line.high.clear();
@@ -313,9 +346,10 @@ Drawing figure_drawing(const Comparison& c, const Figure& figure) {
               .join = figure.kind == "scatter" ? Join::none : Join::straight,
               .has_names = figure.kind != "scatter",
               .shown = lines_of_paper(c, figure)};
-  for (const FigureLine& line : figure.lines)
-    out.plot.series.push_back({line.optimizer, optimizer_name(c.optimizers[line.optimizer]), line.x,
-                               line.y, line.low, line.high});
+  for (const FigureLine& line : figure.lines) {
+    PlotSeries& drawn = out.plot.series.emplace_back(line_of(c, line.optimizer));
+    drawn.x = line.x, drawn.y = line.y, drawn.low = line.low, drawn.high = line.high;
+  }
   for (const PublishedMark& mark : figure.published)
     if (out.shown->contains(mark.optimizer))
       out.plot.published.push_back(
@@ -359,6 +393,13 @@ std::vector<NamedDrawing> drawings_of(const Document& document) {
   for (std::size_t p = 0; p < c.problems.size(); ++p)
     if (std::optional<Drawing> curves = own_curves(c, p))
       add("curves-" + file_name_of(problem_name(c.problems[p])), std::move(*curves), p);
+  for (std::size_t p = 0; p < c.problems.size(); ++p)
+    for (Plane& plane : planes_of(c, p)) {
+      plane.drawing.plot = shown_lines(plane.drawing);  // all of them would double the file
+      plane.drawing.plot.reading = plane.reading;
+      add("paths-" + plane.drawing.rest + "-" + file_name_of(problem_name(c.problems[p])),
+          std::move(plane.drawing));
+    }
   for (const Figure& one : document.figures)
     if (one.pictures.empty()) add("figure-" + file_name_of(one.title), figure_drawing(c, one));
   for (const Judgement& one : document.claims)

@@ -16,6 +16,18 @@ namespace isoline::reports {
 enum class Join { straight, steps, none };
 inline constexpr std::string_view kJoinNames[] = {"straight", "steps", "none"};
 
+// The dash and the marker of a method: of its name alone, so that it has them in every report, site
+// and exported figure. `marker` is the letter of matplotlib; `shape` the same as a relative path of
+// SVG, from its centre.
+struct Look {
+  std::string_view dash;
+  char marker;
+  std::string_view shape;
+};
+Look look_of(std::string_view method);
+// A line of an optimizer, without points: its name, and whose dash and marker it has.
+PlotSeries line_of(const Comparison& comparison, std::size_t optimizer);
+
 // A plot of lines, with how it is drawn.
 struct Drawing {
   Plot plot;
@@ -58,6 +70,20 @@ struct CurveDrawing {
 std::vector<CurveDrawing> curve_drawings(const Comparison& comparison, std::size_t problem);
 std::optional<Drawing> own_curves(const Comparison& comparison, std::size_t problem);
 Drawing figure_drawing(const Comparison& comparison, const Figure& figure);
+
+// Paths of a problem of two unknowns over isolines of its loss, in x and in y, as far as the
+// problem has them and runs kept their paths.
+struct Plane {
+  Drawing drawing;
+  std::string title, reading;
+};
+std::vector<Plane> planes_of(const Comparison& comparison, std::size_t problem);
+bool has_planes(const Comparison& comparison, std::size_t problem);
+// Isolines by marching squares (Lorensen, Cline 1987, in two dimensions): lines apart by NaN,
+// linear between grid points. A cell with a corner that is not finite is left out.
+PlotSeries isoline(const Landscape& landscape, Real level);
+// Spaced as the landscape asks: 2^i for i = −5 … 7, or even steps of L^0.2 or of log L.
+std::vector<Real> contour_levels(const Landscape& landscape);
 
 // The best two of a ranking and the best of each kind, at most eight: more cannot be told apart.
 inline constexpr std::size_t kMostShown = 8;

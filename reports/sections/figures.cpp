@@ -54,7 +54,7 @@ std::string label(const Comparison& c, const FigureLine& line) {
   return shown_spec(c.optimizers[line.optimizer].brief);
 }
 
-// "At the end sip has 0.0129, adam 0.31 (24×), …": the last values, least first.
+// "At the end sip has 0.0129, adam 0.31, …": the last values, least first.
 std::string ends_reading(const Comparison& c, std::vector<FigureLine> lines) {
   std::erase_if(lines, [](const FigureLine& line) { return !std::isfinite(line.y.back()); });
   std::ranges::sort(lines, {}, [](const FigureLine& line) { return line.y.back(); });
@@ -62,7 +62,6 @@ std::string ends_reading(const Comparison& c, std::vector<FigureLine> lines) {
   for (std::size_t i = 0; i < std::min(kMostRead, lines.size()); ++i) {
     const Real end = lines[i].y.back();
     parts.push_back(fmt::format("{}{} {}", label(c, lines[i]), i == 0 ? " has" : "", figure(end)));
-    if (i > 0) parts.back() += fmt::format(" ({})", multiple(end / lines[0].y.back()));
   }
   return parts.empty() ? "" : words("figure.ends", joined(parts));
 }

@@ -37,10 +37,12 @@ std::size_t point_at(const std::vector<Value>& axis, Value place) {
   return static_cast<std::size_t>(std::max<std::ptrdiff_t>(1, passed) - 1);
 }
 
-// The path of each optimizer, of the lowest seed that has one.
+// The path of each optimizer, of its run with the median work, and the points of it that are drawn.
 struct Path {
   std::size_t optimizer = 0;
+  const Run* run = nullptr;
   const Trajectory* points = nullptr;
+  std::vector<std::size_t> kept = {};
 };
 std::vector<Path> paths(const Comparison& comparison, std::size_t problem);
 // The length of a path over the distance between its ends, infinite where that says nothing.

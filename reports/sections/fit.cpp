@@ -8,7 +8,7 @@
 
 #include "core/results/uncertainty.h"
 #include "reports/sections/answers.h"
-#include "reports/sections/sections.h"
+#include "reports/sections/drawings.h"
 #include "reports/sections/words.h"
 
 namespace isoline::reports {
@@ -204,8 +204,7 @@ Plot calls_plot(const std::string& problem, const std::vector<const Run*>& fits,
   std::set<std::size_t> seen;
   for (const Run* run : fits) {
     if (seen.size() == kMostLines || !seen.insert(run->optimizer).second) continue;
-    PlotSeries line{.optimizer = run->optimizer,
-                    .name = optimizer_name(c.optimizers[run->optimizer])};
+    PlotSeries line = line_of(c, run->optimizer);
     const Curve& curve = run->record->curve;
     Real least = kNever;
     for (std::size_t i = 0; i < curve.loss.size(); ++i) {

@@ -57,9 +57,52 @@ Table learned_table(const Comparison& c, std::size_t p, const std::vector<std::s
   return table;
 }
 
+// Ratios of errors in x that claims read too: the text of a report has the first row of each, this
+// table the others.
+Table ratio_readings(const Comparison& c, const std::vector<Judgement>& claims) {
+  Table table = worded_table("ratio-readings");
+  for (std::size_t p = 0; p < c.problems.size(); ++p) {
+    const EqualWork equal = c.problems[p].is_learned ? equal_work(c, p) : EqualWork{};
+    const std::vector<std::size_t> order = equal.nearest_first();
+    for (const std::size_t b : order) {
+      const std::size_t a = order[0];
+      std::vector<const Judgement*> others;
+      for (const Judgement& claim : claims) {
+        const std::vector<EvidenceTerm>& terms = claim.evidence.terms;
+        if (claim.evidence.kind == "ratio" && claim.measured && terms.size() == 2 &&
+            claim.evidence.column.find("x_error") != std::string::npos &&
+            terms[0].problem == c.problems[p].spec && terms[0].method == c.optimizers[b].method &&
+            terms[1].method == c.optimizers[a].method)
+          others.push_back(&claim);
+      }
+      if (others.empty()) continue;
+      const auto add = [&](const std::string& read, Real ratio, Real low, Real high,
+                           std::size_t seeds) {
+        const std::string names = setting_text(c, p, b) + " / " + setting_text(c, p, a);
+        const bool is_known = low > 0 && high < kNever;
+        table.rows.push_back({problem_name(c.problems[p]), names, read, multiple(ratio),
+                              is_known ? multiple(low) + " to " + multiple(high) : "",
+                              std::to_string(seeds)});
+        table.row_topics.push_back({.optimizer = b, .problem = p});
+      };
+      const AtEqualWork &least = *equal.methods[a], &other = *equal.methods[b];
+      const TimesLarger times = times_larger(least, other);
+      const bool has_interval = times.interval && !times.is_range();
+      add(words("ratio-readings.text"), times.times, has_interval ? times.interval->low : 0,
+          has_interval ? times.interval->high : kNever, times.seeds);
+      add(words("ratio-readings.end"), c.cell(p, b).x_error.median / c.cell(p, a).x_error.median, 0,
+          kNever, other.errors.size());
+      for (const Judgement* claim : others)
+        add(claim->id + ": " + claim->quantity, claim->measured->value, claim->measured->low,
+            claim->measured->high, claim->measured->n);
+    }
+  }
+  return table;
+}
+
 }  // namespace
 
-Section learned_section(const Comparison& c) {
+Section learned_section(const Comparison& c, const std::vector<Judgement>& claims) {
   Section section = worded_section("learned");
   for (std::size_t p = 0; p < c.problems.size(); ++p) {
     if (!c.problems[p].is_learned) continue;
@@ -69,6 +112,8 @@ Section learned_section(const Comparison& c) {
     std::ranges::stable_sort(order, {}, [&](std::size_t s) { return c.cell(p, s).x_error.median; });
     if (!order.empty()) section.tables.push_back(learned_table(c, p, order));
   }
+  if (Table readings = ratio_readings(c, claims); !readings.rows.empty())
+    section.tables.push_back(std::move(readings));
   return section;
 }
 

@@ -9,7 +9,7 @@
 
 #include "core/options.h"
 #include "core/results/statistics.h"
-#include "reports/sections/sections.h"
+#include "reports/sections/drawings.h"
 #include "reports/sections/words.h"
 
 namespace isoline::reports {
@@ -225,7 +225,7 @@ Plots noise_plot(const Comparison& c) {
   plot.kind = Plot::Kind::lines;
   plot.is_log_x = plot.is_log_y = true;
   for (std::size_t s = 0; s < c.optimizers.size(); ++s) {
-    PlotSeries line{.optimizer = s, .name = optimizer_name(c.optimizers[s])};
+    PlotSeries line = line_of(c, s);
     for (const Real noise : levels) {
       std::vector<Real> errors;
       for (const auto& [plain, sweep] : sweeps)

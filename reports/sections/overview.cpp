@@ -28,7 +28,7 @@ Document document_of(Comparison comparison, std::vector<Judgement> claims) {
   document.remarks = remarks(c);
   document.sections = {standings_section(c),
                        problems_section(c),
-                       learned_section(c),
+                       learned_section(c, document.claims),
                        amortized_section(c),
                        sweeps_section(c),
                        spectra_section(c),
@@ -126,42 +126,6 @@ std::string runner_up(const Comparison& c, std::size_t problem, std::size_t one,
                pairs.size() < 2 ? ""
                                 : " " + words("curve.seeds", name_in_sentence(c.optimizers[one]),
                                               less, pairs.size()));
-}
-
-// How many times as large the error of the second method is, by the mean of the logarithm over the
-// seeds that both have, with its 95 % t interval, or with the range of fewer than six.
-struct TimesLarger {
-  Real times = kNever;
-  std::optional<Interval> interval;
-  std::size_t larger = 0, seeds = 0;
-
-  bool is_range() const { return seeds < kFewestForInterval; }
-};
-TimesLarger times_larger(const AtEqualWork& first, const AtEqualWork& second) {
-  TimesLarger out{.times = second.x_error.median / first.x_error.median, .interval = {}};
-  std::vector<Real> logarithms;
-  for (const auto& [seed, error] : first.errors)
-    if (const auto other = second.errors.find(seed); other != second.errors.end()) {
-      logarithms.push_back(std::log(other->second / error));
-      out.larger += other->second > error;
-    }
-  out.seeds = logarithms.size();
-  if (out.seeds < 2 ||
-      !std::ranges::all_of(logarithms, [](Real value) { return std::isfinite(value); }))
-    return out;
-  const Real n = static_cast<Real>(out.seeds);
-  const Real mean = std::accumulate(logarithms.begin(), logarithms.end(), 0.0) / n;
-  auto [low, high] = std::ranges::minmax(logarithms);
-  if (!out.is_range()) {
-    constexpr Real kTwoSided = 0.975;
-    const Real half =
-        student_quantile(kTwoSided, out.seeds - 1) * deviation_of(logarithms) / std::sqrt(n);
-    low = mean - half;
-    high = mean + half;
-  }
-  out.times = std::exp(mean);
-  out.interval = {std::exp(low), std::exp(high)};
-  return out;
 }
 
 }  // namespace

@@ -34,6 +34,19 @@ Lines lines_of(const Build& build) {
 
 }  // namespace
 
+std::string version_text(const Comparison& c) {
+  constexpr std::size_t kShort = 7, kMost = 3;
+  std::set<std::string> programs;
+  for (const Run& run : c.runs) {
+    if (run.record->imported) continue;
+    const Build& build = *run.record->provenance.build;
+    programs.insert("Isoline " + build.version +
+                    (build.commit.empty() ? "" : " (" + build.commit.substr(0, kShort) + ")"));
+  }
+  return programs.size() > kMost ? counted(programs.size(), "version") + " of Isoline"
+                                 : joined({programs.begin(), programs.end()});
+}
+
 Section builds_section(const Comparison& c) {
   constexpr std::size_t kMost = 8;  // builds, and commands
   Section section = worded_section("provenance");

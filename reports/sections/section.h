@@ -69,6 +69,7 @@ struct PlotSeries {
   std::vector<Real> x = {}, y = {}, low = {}, high = {};
   bool is_worse_at_end = false;  // the answer that it returned is worse than the line's best
   bool are_points = false;       // no line; low and high are then bars
+  std::string method = {};       // whose dash and marker it has
 };
 
 struct Plot {

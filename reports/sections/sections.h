@@ -26,7 +26,7 @@ using Plots = std::vector<Plot>;  // none where there is too little to show
 Section fit_section(const Comparison& comparison);  // of a user's own problems; empty without one
 Section standings_section(const Comparison& comparison);
 Section problems_section(const Comparison& comparison);  // a sentence each, and the matrix
-Section learned_section(const Comparison& comparison);
+Section learned_section(const Comparison& comparison, const std::vector<Judgement>& claims = {});
 Section amortized_section(const Comparison& comparison);  // training once, or solving each
 Section sweeps_section(const Comparison& comparison);     // two options at a time, as heat maps
 Section spectra_section(const Comparison& comparison);    // of J, where runs kept them
@@ -59,6 +59,7 @@ Document document_of(Comparison comparison, std::vector<Judgement> claims = {});
 
 // Sentences of them that others say too.
 std::string headline(const Comparison& comparison);
+std::string version_text(const Comparison& comparison);  // "Isoline 0.1.0 (1a2b3c4)"
 std::string missing_text(const Comparison& comparison);
 std::vector<std::string> remarks(const Comparison& comparison);
 std::vector<std::string> verdict(const Comparison& comparison);          // what the decision says

@@ -9,7 +9,7 @@
 
 #include "core/options.h"
 #include "core/results/statistics.h"
-#include "reports/sections/sections.h"
+#include "reports/sections/drawings.h"
 #include "reports/sections/words.h"
 
 namespace isoline::reports {
@@ -151,11 +151,11 @@ Plots size_plots(const Comparison& c) {
     plot.reading = words("plot-size.reading", name_in_sentence(c.optimizers[first.optimizer]),
                          first.growth.unknowns.back());
     if (all.size() > kMostLines) all.resize(kMostLines);
-    for (MethodGrowth& each : all)
-      plot.series.push_back({.optimizer = each.optimizer,
-                             .name = optimizer_name(c.optimizers[each.optimizer]),
-                             .x = std::move(each.growth.unknowns),
-                             .y = std::move(each.growth.work)});
+    for (MethodGrowth& each : all) {
+      PlotSeries& line = plot.series.emplace_back(line_of(c, each.optimizer));
+      line.x = std::move(each.growth.unknowns);
+      line.y = std::move(each.growth.work);
+    }
     plots.push_back(std::move(plot));
   }
   return plots;

@@ -11,7 +11,7 @@
 #include "core/errors.h"
 #include "core/options.h"
 #include "core/spec.h"
-#include "reports/sections/sections.h"
+#include "reports/sections/drawings.h"
 #include "reports/sections/words.h"
 
 namespace isoline::reports {
@@ -22,7 +22,7 @@ constexpr Real kVisible = 1e-6;  // of the largest, the usual cut-off
 // The run of the least seed that kept spectra.
 struct Seen {
   std::size_t optimizer;
-  std::string name;
+  std::string name, method;
   const Spectrum* spectrum;
 
   const std::vector<Real>& first() const { return spectrum->sigma.front(); }
@@ -39,7 +39,7 @@ std::vector<Seen> seen_on(const Comparison& c, std::size_t problem) {
       const auto is_drawn = [](Real one) { return one > 0 && std::isfinite(one); };
       if (std::ranges::any_of(spectrum->sigma.front(), is_drawn) &&
           std::ranges::any_of(spectrum->sigma.back(), is_drawn))
-        all.push_back({s, optimizer_text(c, s), &*spectrum});
+        all.push_back({s, optimizer_text(c, s), c.optimizers[s].method, &*spectrum});
       break;
     }
   return all;
@@ -54,8 +54,8 @@ std::ptrdiff_t visible(const std::vector<Real>& sigma) {
   return std::ranges::count_if(sigma, [&](Real one) { return one > kVisible * sigma[0]; });
 }
 
-PlotSeries values(std::string name, const std::vector<Real>& sigma) {
-  PlotSeries line{.optimizer = {}, .name = std::move(name)};
+PlotSeries values(std::string name, const std::vector<Real>& sigma, std::string method = {}) {
+  PlotSeries line{.name = std::move(name), .method = std::move(method)};
   for (std::size_t i = 0; i < sigma.size(); ++i) {
     line.x.push_back(Real(i + 1));
     line.y.push_back(sigma[i] > 0 ? sigma[i] : kUnknown);
@@ -69,8 +69,9 @@ constexpr std::size_t kMostSeen = 4;
 Plot values_plot(Plot plot, const std::vector<Seen>& seen) {
   plot.series.push_back(values("at the start", seen[0].first()));
   for (const Seen& one : std::span(seen).first(std::min(seen.size(), kMostSeen)))
-    plot.series.push_back(values(
-        fmt::format("{}, iteration {}", one.name, one.spectrum->iterations.back()), one.last()));
+    plot.series.push_back(
+        values(fmt::format("{}, iteration {}", one.name, one.spectrum->iterations.back()),
+               one.last(), one.method));
   plot.reading = words("plot-spectrum.reading", visible(seen[0].first()), seen[0].first().size(),
                        seen[0].name, visible(seen[0].last()));
   return plot;
@@ -78,8 +79,8 @@ Plot values_plot(Plot plot, const std::vector<Seen>& seen) {
 
 Plot conditions_plot(Plot plot, const std::vector<Seen>& seen) {
   for (const Seen& one : std::span(seen).first(std::min(seen.size(), kMostSeen))) {
-    PlotSeries& line =
-        plot.series.emplace_back(PlotSeries{one.optimizer, one.name, {}, {}, {}, {}});
+    PlotSeries& line = plot.series.emplace_back(
+        PlotSeries{.optimizer = one.optimizer, .name = one.name, .method = one.method});
     for (std::size_t k = 0; k < one.spectrum->sigma.size(); ++k) {
       line.x.push_back(1 + Real(one.spectrum->iterations[k]));
       line.y.push_back(condition(one.spectrum->sigma[k]));

@@ -12,7 +12,7 @@
 #include "core/files.h"
 #include "core/results/study.h"
 #include "core/threads.h"
-#include "reports/sections/sections.h"
+#include "reports/sections/drawings.h"
 #include "reports/sections/words.h"
 
 namespace isoline::reports {
@@ -249,7 +249,8 @@ PlotSeries share_series(const Comparison& c, std::size_t s, const Costs& measure
   Band band = bootstrap_ratio(groups, "problems");
   if (groups.size() < kFewestForInterval) band.low = band.high = band.value;
   for (auto* values : {&band.value, &band.low, &band.high}) values->resize(grid.size(), 0);
-  return {s, optimizer_text(c, s), grid, band.value, band.low, band.high};
+  return {s,     optimizer_text(c, s),  grid, band.value, band.low, band.high, false,
+          false, c.optimizers[s].method};
 }
 
 // With its lines, and the best at a place and at the end.
@@ -338,7 +339,7 @@ PlotSeries runtime_series(const Comparison& c, std::size_t s, const std::vector<
   const Real pairs = std::max(Real(c.order.settings.size() * kTargets * kDraws), 1.0);
   std::partial_sum(hits.begin(), hits.end(), hits.begin());
   for (Real& share : hits) share /= pairs;
-  return {s, optimizer_text(c, s), grid, hits, {}, {}};
+  return {s, optimizer_text(c, s), grid, hits, {}, {}, false, false, c.optimizers[s].method};
 }
 
 }  // namespace

@@ -523,7 +523,8 @@ TEST(Predictions, AreProcessorTimesOfCellsThatComputeAlone) {
     if (is_foreign) json["foreign"] = Json::object();
     std::filesystem::create_directories(folder.path() / "runs");
     write_text(folder.path() / "runs" / record.file_name(), json_text(json));
-    return EarlierTimes(record_outlines({folder.path()})).of(request);
+    std::vector<results::Unreadable> unreadable;
+    return EarlierTimes(record_outlines({folder.path()}, unreadable)).of(request);
   };
   EXPECT_EQ(predicted(1, false), 2);
   EXPECT_EQ(predicted(2, false), 9);
@@ -609,18 +610,14 @@ TEST(TimeLeft, CountsDownBetweenTwoEndsAndSaysZeroWhereItTakesLonger) {
   EXPECT_EQ(left.at(1000).value_or(-1), 0);
 }
 
-TEST(TimeLeft, CountsCellsWithoutAPredictionAsTheMeanOfTheOthers) {
-  TimeLeft left;
-  for (const std::optional<double> predicted :
-       {std::optional(1.0), std::optional(3.0), std::optional<double>(), std::optional<double>()})
-    left.expect(predicted);
-  left.finish(3, 6);  // twice as long as predicted, and so is the rest
-  EXPECT_EQ(left.at(6).value_or(0), 2 * (1 + 2 + 2));
-  TimeLeft unknown;
-  for (int i = 0; i < 4; ++i) unknown.expect({});
-  EXPECT_FALSE(unknown.at(1).has_value()) << "nothing has ended yet";
-  unknown.finish({}, 5);
-  EXPECT_EQ(unknown.at(5).value_or(0), 15);
+TEST(TimeLeft, SaysNothingWhereACellHasNoPrediction) {
+  TimeLeft all, some;
+  for (const double predicted : {1.0, 3.0, 4.0}) all.expect(predicted), some.expect(predicted);
+  some.expect({});
+  all.finish(3, 6);  // twice as long as predicted, and so is the rest
+  some.finish(3, 6);
+  EXPECT_EQ(all.at(6).value_or(0), 2 * (1 + 4));
+  EXPECT_FALSE(some.at(6).has_value());
   EXPECT_FALSE(TimeLeft().at(1).has_value()) << "nothing is expected";
 }
 

@@ -1,12 +1,15 @@
 """The page of a real run in a real browser. Skipped (77) where Chromium is not installed."""
 
 import base64
+import io
 import itertools
 import json
 import pathlib
+import random
 import re
 import subprocess
 import sys
+import tarfile
 import tempfile
 import unittest
 import urllib.request
@@ -184,6 +187,11 @@ class Page(InBrowser):
 
     def test_the_first_screen_has_few_words_the_ranking_and_three_ways_on(self):
         self.browser.wait(STANDINGS)
+        left, top, bottom = self.browser.wait("const race = document.querySelector('#motion .race')?.getBoundingClientRect();"
+                                              "return race && [race.left, race.top, race.bottom]")
+        self.assertGreater(left, 700, "the race is on the right")
+        self.assertLess(top, bottom)
+        self.assertLessEqual(bottom, 900)
         words = self.browser.run(FIRST_SCREEN)
         self.assertGreater(len(words), 30)
         self.assertLessEqual(len(words), 120, words)
@@ -460,6 +468,101 @@ class Page(InBrowser):
             for name in ("gd", "sip", "levenberg-marquardt"):
                 self.assertEqual(self.browser.run(colour, name), mine[name], name)
 
+    def test_dash_and_marker_are_those_of_the_method_in_every_report_and_figure(self):
+        look = ("const one = document.createElement('i'); one.dataset.s = DATA.optimizers.indexOf(arguments[0]);"
+                "document.body.append(one); const dash = getComputedStyle(one).getPropertyValue('--dash').trim();"
+                "one.remove(); return [dash, DATA.shapes[Number(one.dataset.s)]]")
+        names = ("gd", "sip", "levenberg-marquardt", "ceres-lm")
+        mine = {name: self.browser.run(look, name) for name in names}
+        self.assertEqual(len({tuple(one) for one in mine.values()}), len(names))
+        p = self.problem("beale")
+        self.open(f"#problem-{p}")
+        self.lines_of("beale")
+        drawn = dict(self.browser.run(
+            "const chart = document.querySelector('.problem.chosen .chart:not([hidden])');"
+            "return [...chart.querySelectorAll('.marks .mark')].filter((mark) => mark.getAttribute('d')).map((mark) => "
+            "[DATA.optimizers[mark.dataset.s], mark.getAttribute('d').match(/m[^M]*/)[0]])"))
+        markers = {}  # of matplotlib, by the shape of the page
+        for plot in self.json["plots"]:
+            for line in plot["series"]:
+                if line.get("optimizer") in mine:
+                    self.assertEqual(line["dash"], mine[line["optimizer"]][0])
+                    self.assertEqual(markers.setdefault(mine[line["optimizer"]][1], line["marker"]), line["marker"])
+        for name in names:
+            self.assertEqual(drawn[name], mine[name][1])
+        self.assertEqual(len(set(markers.values())), len(markers))
+        with tempfile.TemporaryDirectory() as folder:
+            run("run", "--problem", "beale,square", "--optimizer", "sip,levenberg-marquardt,gd", "--out", folder, "--quiet")
+            self.browser.open(pathlib.Path(folder, "report", "index.html").as_uri())
+            for name in ("gd", "sip", "levenberg-marquardt"):
+                self.assertEqual(self.browser.run(look, name), mine[name], name)
+
+    # --- the race
+
+    SCENE = "document.getElementById('motion').scrollIntoView(); if (!document.querySelector('.race')) return null;" \
+            "const scene = sceneOf(arguments[0], arguments[1]); document.getElementById('motion').append(scene.svg);"
+
+    def scene(self, script, methods=("gd", "levenberg-marquardt")):
+        return self.browser.wait(self.SCENE + f"const told = (() => {{{script}}})(); scene.svg.remove(); return told;",
+                                 self.problem("beale"), [self.optimizer(name) for name in methods])
+
+    def test_the_race_is_run_by_the_run_with_the_median_work(self):
+        runners = self.scene("return scene.runners", ("gd", "adam", "levenberg-marquardt", "ceres-lm"))
+        self.assertEqual(len(runners), 4)
+        for runner in runners:
+            names = self.browser.run("return cellOf(DATA.problems[arguments[0]], arguments[1]).records", self.problem("beale"), runner["s"])
+            records = [json.loads(pathlib.Path(self.folder.name, "runs", f"{name}.json").read_text()) for name in names]
+            record = next(one for one in records if str(one["request"]["seed"]) == runner["seed"])
+            self.assertLessEqual(set(runner["works"]), set(record["curve"]["work"]))
+            self.assertEqual(runner["works"][-1], record["curve"]["work"][-1])
+            taken = self.browser.run("return takenBy(cellOf(DATA.problems[arguments[0]], arguments[1]))", self.problem("beale"), runner["s"])
+            self.assertEqual(runner["reached"], taken)  # both null where it is infinite
+
+    def test_a_point_of_the_race_stands_until_the_next_one_and_a_flag_from_the_arrival_on(self):
+        for share in (0, 0.3, 0.6, 1):
+            seen = self.scene(
+                f"const now = clockAt(scene.most, {share} * RACE_FRAMES); showWork(scene.items, now);"
+                "const shown = scene.items.filter(({node}) => !node.classList.contains('off'));"
+                "return [now, scene.runners.map(({s, reached, works}) => [reached, works.filter((work) => work <= now).length, "
+                "shown.filter(({node}) => node.matches('.mark') && Number(node.dataset.s) === s).length, "
+                "shown.filter(({node}) => node.matches('.line') && Number(node.dataset.s) === s).length]), "
+                "shown.filter(({node}) => node.textContent.startsWith('⚑')).length]")
+            now, runners, flags = seen
+            self.assertEqual(flags, sum(reached is not None and reached <= now for reached, *_ in runners))
+            for _, passed, marks, lines in runners:
+                self.assertLessEqual(marks, 1)
+                self.assertEqual(lines, max(0, passed - 1))
+
+    def test_the_race_is_kept_as_frames_and_as_one_file_that_moves(self):
+        frames = self.scene("const bytes = framesOf(scene); return bytes")
+        self.assertEqual(len(frames), 61)
+        flags = [text.count("⚑") for _, text in frames]
+        self.assertEqual(flags, sorted(flags))
+        self.assertGreater(flags[-1], flags[0])
+        self.assertEqual(xml.etree.ElementTree.fromstring(frames[-1][1]).tag, "{http://www.w3.org/2000/svg}svg")
+        packed = self.browser.call("POST", "/execute/async", {"script":
+            "const done = arguments[0]; tarOf([['a.svg', 'ä'], ['b.svg', 'b'.repeat(600)]]).arrayBuffer().then((one) => "
+            "done(btoa(String.fromCharCode(...new Uint8Array(one)))))", "args": []})
+        with tarfile.open(fileobj=io.BytesIO(base64.b64decode(packed))) as archive:
+            self.assertEqual({one.name: archive.extractfile(one).read().decode() for one in archive}, {"a.svg": "ä", "b.svg": "b" * 600})
+        moving = xml.etree.ElementTree.fromstring(self.scene("return animatedText(scene)"))
+        animations = list(moving.iter("{http://www.w3.org/2000/svg}animate"))
+        self.assertGreater(len(animations), 20)
+        for one in animations:
+            times = [float(time) for time in one.get("keyTimes").split(";")]
+            self.assertEqual(times[0], 0)
+            self.assertEqual(times, sorted(set(times)))
+            self.assertEqual(len(times), len(one.get("values").split(";")))
+
+    def test_a_reader_who_wants_less_motion_sees_the_last_picture(self):
+        for wish, is_still in (("reduce", True), ("no-preference", False)):
+            self.browser.call("POST", "/goog/cdp/execute", {"cmd": "Emulation.setEmulatedMedia", "params": {
+                "features": [{"name": "prefers-reduced-motion", "value": wish}]}})
+            self.open("")
+            self.browser.run("document.getElementById('motion').scrollIntoView()")
+            self.browser.wait("return document.querySelector('.race') !== null")
+            self.assertEqual(self.browser.run("return race.timer === undefined && race.frame === RACE_FRAMES"), is_still)
+
     def test_colours_differ_to_readers_who_see_fewer_of_them(self):
         told_apart = 20  # in Lab; 2.3 is just noticeable side by side, lines are thin and apart
         kinds = ("gradient", "adaptive", "quasi-newton", "second-order", "least-squares",
@@ -670,7 +773,8 @@ class Page(InBrowser):
             self.assertEqual(one[:2], other[:2])
             self.assertAlmostEqual(one[2], other[2], delta=1e-4)
         kept = {file: file.read_text() for file in pathlib.Path(self.folder.name, "components").glob("problem-*.json")}
-        for gradient, jacobian in ((1.0, 1.0), (6.5, 2.25), (2.0, 300.0)):
+        prices = random.Random(60)
+        for gradient, jacobian in [(1.0, 1.0), *((10 ** prices.uniform(0, 3), 10 ** prices.uniform(0, 3)) for _ in range(20))]:
             expected = {name: (solved, score) for name, solved, score in self.browser.run(at_prices, gradient, jacobian)}
             for file, text in kept.items():
                 sheet = json.loads(text)
@@ -742,7 +846,11 @@ class Page(InBrowser):
         four = ["gauss-newton", "adam", "ceres-lm", "newton"]
         self.open("?" + "&".join(f"vs={name}" for name in four) + "#compare")
         self.browser.wait("return document.querySelectorAll('#pair select').length === 4")
-        rows = self.browser.run("return [...document.querySelectorAll('#pair .bars-of:first-of-type li')]"
+        ticks = self.browser.run("return [...document.querySelectorAll('#pair .bars-of:first-of-type .axis b')]"
+                                 ".map((tick) => Number(tick.textContent))")
+        self.assertGreaterEqual(len(ticks), 3)
+        self.assertEqual(ticks, sorted(ticks))
+        rows = self.browser.run("return [...document.querySelectorAll('#pair .bars-of:first-of-type li[data-p]')]"
                                 ".map((row) => row.querySelectorAll('i').length)")
         self.assertEqual(set(rows), {4})
         self.assertGreater(self.browser.run("return document.querySelectorAll('#pair .scatter "
@@ -1061,6 +1169,7 @@ class Claims(unittest.TestCase):
         try:
             resized(page, 1400, 900)
             page.open(self.address)
+            page.run("document.querySelector('.first figure').scrollIntoView()")
             hero = page.run("const hero = document.querySelector('.first figure'); return hero && "
                             "[hero.innerText, hero.querySelector('.ground') !== null, "
                             "hero.getBoundingClientRect().left]")

@@ -10,8 +10,7 @@
 #include <utility>
 
 #include "core/records/sheet.h"
-#include "reports/formats/formats.h"
-#include "reports/page/page.h"
+#include "reports/sections/drawings.h"
 #include "reports/sections/figures.h"
 #include "reports/sections/words.h"
 
@@ -23,12 +22,6 @@ std::vector<Real> even_steps(Real low, Real high, Real (*from)(Real)) {
   std::vector<Real> levels;
   for (int i = 1; i <= kLevels; ++i) levels.push_back(from(low + (high - low) * i / (kLevels + 1)));
   return levels;
-}
-
-std::string levels_text(const Landscape& landscape) {
-  if (landscape.spacing == "powers of two") return "at 2ⁱ for i = −5 … 7";
-  if (landscape.spacing == "fifth root") return "in even steps of its fifth root";
-  return "in even steps of its logarithm";
 }
 
 }  // namespace
@@ -134,7 +127,6 @@ Drawing plane_drawing(const Comparison& c, std::size_t p, const std::vector<Path
                       const Landscape& landscape, const char* space, Rows Trajectory::*rows,
                       const std::vector<Real>& goal) {
   constexpr Real kMostStretch = 12;  // beyond it a valley would be a line
-  const std::size_t points = std::clamp<std::size_t>(8000 / all.size(), 12, 120);
   const auto& [left, right, low, high] = landscape.window;
   const Real stretch = std::max((right - left) / (high - low), (high - low) / (right - left));
   Drawing out{
@@ -149,11 +141,9 @@ Drawing plane_drawing(const Comparison& c, std::size_t p, const std::vector<Path
   for (const Real level : contour_levels(landscape))
     out.ground.push_back(isoline(landscape, level));
   for (const Path& path : all) {
-    PlotSeries& line = out.plot.series.emplace_back();
+    PlotSeries& line = out.plot.series.emplace_back(line_of(c, path.optimizer));
     const Rows& all_points = path.points->*rows;
-    line.optimizer = path.optimizer;
-    line.name = optimizer_name(c.optimizers[path.optimizer]);
-    for (const std::size_t i : thinned(all_points.size(), points)) {
+    for (const std::size_t i : path.kept) {
       const std::vector<Real>& point = all_points[i];
       line.x.push_back(point.size() == 2 ? point[0] : NAN);
       line.y.push_back(point.size() == 2 ? point[1] : NAN);
@@ -168,7 +158,7 @@ Drawing plane_drawing(const Comparison& c, std::size_t p, const std::vector<Path
   return out;
 }
 
-// Of the paths in x or in y; empty where fewer than two say anything.
+// A sentence on the paths in x or in y; empty where fewer than two say anything.
 std::string path_reading(const Comparison& c, std::vector<Path> all, Rows Trajectory::*rows) {
   const auto length = [rows](const Path& path) { return detour(path.points->*rows); };
   std::erase_if(all, [&](const Path& path) { return length(path) == kNever; });
@@ -183,16 +173,13 @@ std::string path_reading(const Comparison& c, std::vector<Path> all, Rows Trajec
       shown_spec(c.optimizers[winding.optimizer].label), multiple(length(winding)));
 }
 
-struct Plane {
-  Drawing drawing;
-  std::string title, reading;
-};
+}  // namespace
 
 // In x and in y, as far as the problem has such contours and runs kept their paths.
 std::vector<Plane> planes_of(const Comparison& c, std::size_t p) {
-  const Sheet* sheet = c.problems[p].sheet;
   std::vector<Plane> planes;
-  if (sheet == nullptr || !(sheet->landscape_x || sheet->landscape_y)) return planes;
+  if (!has_planes(c, p)) return planes;
+  const Sheet* sheet = c.problems[p].sheet;
   const std::vector<Path> all = paths(c, p);
   const auto add = [&](const std::optional<Landscape>& landscape, const char* space,
                        Rows Trajectory::*rows, const std::vector<Real>& goal, const char* title) {
@@ -206,29 +193,9 @@ std::vector<Plane> planes_of(const Comparison& c, std::size_t p) {
   return planes;
 }
 
-}  // namespace
-
-std::vector<Drawing> plane_drawings(const Comparison& c, std::size_t p) {
-  std::vector<Drawing> drawings;
-  for (Plane& plane : planes_of(c, p)) drawings.push_back(std::move(plane.drawing));
-  return drawings;
-}
-
-// Paths as the paper draws them: short runs with a point a step, long ones as lines.
-std::string planes_html(const Comparison& c, std::size_t p) {
-  const std::vector<Plane> planes = planes_of(c, p);
-  if (planes.empty()) return "";
-  std::string html;
-  for (const Plane& plane : planes)
-    html += fmt::format("<figure class=plane><figcaption><b>{}</b> {} {}</figcaption>{}</figure>",
-                        plane.title, html_text(plane.reading),
-                        html_text(plane.drawing.plot.caption), drawing_svg(plane.drawing));
-  const Sheet& sheet = *c.problems[p].sheet;
-  return fmt::format(
-      "<div class=planes>{}</div><p class=legend>Thin lines: contours of the loss, {}. The paths "
-      "are those of the run with the lowest seed; points mark the steps of short runs. ○: start; "
-      "●: solution in x, target in y.</p>",
-      html, levels_text(sheet.landscape_x ? *sheet.landscape_x : *sheet.landscape_y));
+bool has_planes(const Comparison& c, std::size_t p) {
+  const Sheet* sheet = c.problems[p].sheet;
+  return sheet != nullptr && (sheet->landscape_x || sheet->landscape_y);
 }
 
 }  // namespace isoline::reports
