@@ -8,16 +8,18 @@
                                                      into benchmarks/published/conduct.json and the page
 
 Each column is a function; its text has what is measured, the rule for ✓, and what to do at ✗. It returns whether the
-rule holds, none where it cannot apply, and figures.
+rule holds, none where it cannot apply or where the last bits of r decide, and figures. Each cell names its runs, and the file has the record of each run.
 """
 import csv
 import datetime
 import functools
 import json
+import math
 import os
 import pathlib
 import pickle
 import re
+import resource
 import select
 import signal
 import subprocess
@@ -32,9 +34,10 @@ import numpy
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 PUBLISHED = ROOT / "benchmarks/published/conduct.json"
-SECONDS = 60  # of one run
+SECONDS = 20  # of the processor, for one run
 BUDGET = 10
 FAR = 1e6
+VARIANTS = 5  # of the last bits of r, where these may decide
 
 
 class Lost(Exception):
@@ -50,7 +53,16 @@ class Run:
         self.loss = problem.loss_at(self.x)
 
     def best(self):
-        return min(self.calls, key=lambda each: each[1] if each[1] == each[1] else numpy.inf)
+        return min((loss for _, loss in self.calls if loss == loss), default=numpy.inf)
+
+    def is_evaluated(self):
+        return any(bits == self.x.tobytes() for bits, _ in self.calls)
+
+    def record(self):
+        number = lambda value: float(value) if math.isfinite(value) else None
+        return {"calls": len(self.calls), "own": self.outcome.own, "success": bool(self.outcome.success),
+                "code": self.outcome.code, "x": [number(each) for each in self.x], "evaluated": self.is_evaluated(),
+                "loss": number(self.loss), "best": number(self.best()), "bytes": self.printed}
 
 
 def twice(method, problem, limit, in_threads):
@@ -67,6 +79,8 @@ def twice(method, problem, limit, in_threads):
             each.start()
         for each in threads:
             each.join()
+    elif method.is_program():
+        found = method.run(both, limit)
     else:
         one(0), one(1)
     same = found[0].x.tobytes() == found[1].x.tobytes() and both[0].calls == both[1].calls
@@ -80,6 +94,7 @@ def in_child(work):
         child = os.fork()
         if child == 0:
             os.setpgid(0, 0)
+            resource.setrlimit(resource.RLIMIT_CPU, (SECONDS, SECONDS + 1))
             os.dup2(printed.fileno(), 1)
             os.dup2(printed.fileno(), 2)
             try:
@@ -94,7 +109,7 @@ def in_child(work):
                 pickle.dump(answer, file)
             os._exit(0)
         os.close(result_write)
-        data, deadline = b"", time.monotonic() + SECONDS
+        data, deadline = b"", time.monotonic() + 20 * SECONDS
         while time.monotonic() < deadline:
             if select.select([result_read], [], [], 0.5)[0]:
                 more = os.read(result_read, 1 << 20)
@@ -108,12 +123,12 @@ def in_child(work):
             os.killpg(child, signal.SIGKILL)
         except ProcessLookupError:
             pass
-        os.waitpid(child, 0)
+        _, status = os.waitpid(child, 0)
         size = printed.seek(0, os.SEEK_END)
-    if data is None:
-        raise Lost("not run: hung")
+    if data is None or os.WIFSIGNALED(status) and os.WTERMSIG(status) == signal.SIGXCPU:
+        raise Lost(f"without end in {SECONDS} s")
     if not data:
-        raise Lost("not run: crashed")
+        raise Lost("crashed")
     is_done, answer = pickle.loads(data)
     if not is_done:
         raise Lost(answer)
@@ -125,16 +140,28 @@ def libc_flush():
 
 
 class Runs:
-    """The runs of a method, each made once."""
+    """The runs of a method, each made once; those that a column asks for are noted."""
 
     def __init__(self, method):
-        self.method = method
+        self.method, self.made, self.used = method, {}, []
 
-    @functools.lru_cache(maxsize=None)
-    def of(self, name, limit=None):
+    def of(self, name, limit=None, bits=0):
+        key = name + (f" in {limit}" if limit else "") + (f", bits {bits}" if bits else "")
+        if key not in self.used:
+            self.used.append(key)
+        if key not in self.made:
+            try:
+                self.made[key] = self.run(name, limit, bits)
+            except Lost as lost:
+                self.made[key] = lost
+        if isinstance(self.made[key], Lost):
+            raise self.made[key]
+        return self.made[key]
+
+    def run(self, name, limit, bits):
         if name in self.method.lost:
             raise Lost(self.method.lost[name])
-        make = PROBLEMS[name](self.method)
+        make = functools.partial(PROBLEMS[name](self.method), **({"bits": bits} if bits else {}))
 
         def work():
             problem = make()
@@ -150,9 +177,9 @@ class Runs:
 PROBLEMS = {
     "line": lambda _: inputs.line,
     "E3": lambda _: inputs.decay,
-    "E3s": lambda _: lambda: inputs.decay(1e-6),
-    "E3 small": lambda _: lambda: inputs.decay(factor=1e-3),
-    "E3 within": lambda _: lambda: inputs.decay(bounds=(numpy.full(3, -FAR), numpy.full(3, FAR))),
+    "E3s": lambda _: functools.partial(inputs.decay, 1e-6),
+    "E3 small": lambda _: functools.partial(inputs.decay, factor=1e-3),
+    "E3 within": lambda _: functools.partial(inputs.decay, bounds=(numpy.full(3, -FAR), numpy.full(3, FAR))),
     "RB": lambda _: inputs.valley,
     "RBb": lambda _: inputs.bounded_valley,
     "QD": lambda _: inputs.solved,
@@ -183,12 +210,10 @@ def returned_point(runs):
     words, is_best = [], True
     for limit in (None, BUDGET) if runs.method.has_limit else (None,):
         run = runs.of("RB", limit)
-        where = {bits for bits, _ in run.calls}
-        best = run.best()
-        if run.x.tobytes() not in where:
+        if not run.is_evaluated():
             words.append("never evaluated")
-        elif run.loss > best[1]:
-            words.append(f"{run.loss - best[1]:.1g} above the best")
+        elif run.loss > run.best():
+            words.append(f"{run.loss - run.best():.1g} above the best")
         else:
             words.append("best")
         is_best &= words[-1] == "best"
@@ -258,38 +283,58 @@ def outside(runs):
     return count == 0, f"{count} of {len(by)}" + (f", by up to {max(by):.2g}" if count else "")
 
 
+def over_bits(runs, once):
+    """Whether the rule holds; where it is close, the runs are repeated with other last bits of r, which must agree."""
+    holds, words, is_close = once(0)
+    if not is_close:
+        return holds, words
+    others = [once(bits)[0] for bits in range(1, VARIANTS)]
+    if all(each == holds for each in others):
+        return holds, words
+    return None, f"{words}; the last bits decide: {[holds, *others].count(True)} of {VARIANTS} hold"
+
+
 def scales(runs):
     """An unknown in units of 1e6 (E3s), and the loss times 1e-3. ✓: the same x to 1e-6, calls within 10 %. ✗: divide
     unknowns by their sizes, and the loss by its value at the start."""
-    plain, words, is_same = runs.of("E3"), [], True
-    for name, units in (("E3s", numpy.array([1, 1e6, 1])), ("E3 small", numpy.ones(3))):
-        run = runs.of(name)
-        off = float((abs(run.x / units - plain.x) / abs(plain.x)).max())
-        is_same &= off <= 1e-6 and abs(len(run.calls) - len(plain.calls)) <= 0.1 * len(plain.calls)
-        words.append(f"x off by {off:.1g}, {len(run.calls)} for {len(plain.calls)} calls")
-    return is_same, "; ".join(words)
+
+    def once(bits):
+        plain, words, is_same, is_clear, is_equal = runs.of("E3", bits=bits), [], True, False, True
+        for name, units in (("E3s", numpy.array([1, 1e6, 1])), ("E3 small", numpy.ones(3))):
+            run = runs.of(name, bits=bits)
+            off = float((abs(run.x / units - plain.x) / abs(plain.x)).max())
+            share = len(run.calls) / len(plain.calls)
+            is_same &= off <= 1e-6 and abs(share - 1) <= 0.1
+            is_clear |= not off <= 1e-4 or not 0.5 <= share <= 2
+            is_equal &= off <= 1e-8 and share == 1
+            words.append(f"x off by {off:.1g}, {len(run.calls)} for {len(plain.calls)} calls")
+        return is_same, "; ".join(words), not is_clear and not is_equal
+
+    return over_bits(runs, once)
 
 
 def loose_bound(runs):
     """A bound that never binds (±1e6, on E3). ✓: at most 1.1 times the calls. ✗: pass only bounds that can bind."""
     if not runs.method.keeps_bounds:
         return None, "takes no bounds"
-    plain, within = runs.of("E3"), runs.of("E3 within")
-    return len(within.calls) <= 1.1 * len(plain.calls), f"{len(within.calls)} for {len(plain.calls)}"
+
+    def once(bits):
+        plain, within = len(runs.of("E3", bits=bits).calls), len(runs.of("E3 within", bits=bits).calls)
+        return within <= 1.1 * plain, f"{within} for {plain}", within != plain and 0.6 <= within / plain <= 1.7
+
+    return over_bits(runs, once)
 
 
 def second_run(runs):
     """A second run in one process, and two threads, on E3. ✓: the same bits. ✗: run each fit in a process of its own."""
-    if runs.method.package.split()[0] in ("Rscript", "octave-cli", "c++"):
-        return None, "a process per run"
     (same, _), _ = in_child(lambda: twice(runs.method, inputs.decay, None, False))
     words = "second run " + ("same" if same else "differs")
-    if "threads" in runs.method.lost:
-        return same, f"{words}; threads {runs.method.lost['threads']}"
+    if "threads" in runs.method.lost or runs.method.is_program():
+        return same, f"{words}; threads {runs.method.lost.get('threads', 'not run: the library is in another process')}"
     try:
         (same_too, calls), _ = in_child(lambda: twice(runs.method, inputs.decay, None, True))
     except Lost as lost:
-        return None, f"{words}; threads {lost}"
+        return False, f"{words}; threads {lost}"
     words += "; threads " + ("same" if same_too else f"differ: {calls[0]} and {calls[1]} calls")
     return same and same_too, words
 
@@ -320,37 +365,50 @@ def versions():
 
 def is_installed(method):
     try:
+        if method.is_program():  # which may be built now, without a limit
+            method.run(inputs.solved(), None)
         in_child(lambda: method.run(inputs.solved(), None).code)
-    except Lost as lost:
-        print(f"{method.name} is left out: {lost}", file=sys.stderr)
+    except (Lost, OSError, RuntimeError, subprocess.CalledProcessError) as why:
+        print(f"{method.name} is left out: {why}", file=sys.stderr)
         return False
     return True
 
 
 def row_of(method):
+    """The cells of a method, and the records of its runs."""
     runs, row = Runs(method), {}
     for name, column in COLUMNS.items():
+        runs.used = []
         try:
             holds, words = column(runs)
         except Lost as lost:
-            is_wrong = column in (trial_without_value, scales) and not str(lost).startswith("not run")
-            holds, words = (False if is_wrong else None), str(lost)
+            is_open = str(lost).startswith("not run") or column in (counts_equal, text_printed)
+            holds, words = (None if is_open else False), str(lost)
         mark = "–" if holds is None else "✓" if holds else "✗"
-        row[name] = {"mark": mark, "figures": words}
+        row[name] = {"mark": mark, "figures": words, "runs": runs.used}
         print(method.name, "|", name, "|", row[name]["mark"], words, file=sys.stderr)
-    return row
+    records = {key: {"lost": str(run)} if isinstance(run, Lost) else run.record() for key, run in runs.made.items()}
+    return row, records
 
 
 def measure(file, names):
     wanted = [each for each in methods.ALL if not names or each.name in names]
     path = pathlib.Path(file)
-    known = json.loads(path.read_text())["methods"] if names and path.exists() else {}
-    measured = {each.name: row_of(each) for each in wanted if is_installed(each)}
-    rows = {each.name: (known | measured)[each.name] for each in methods.ALL if each.name in known | measured}
+    known = json.loads(path.read_text()) if names and path.exists() else {"methods": {}, "runs": {}}
+    for each in wanted:
+        if is_installed(each):
+            known["methods"][each.name], known["runs"][each.name] = row_of(each)
+            write(path, known)
+
+
+def write(path, known):
+    in_order = lambda rows: {each.name: rows[each.name] for each in methods.ALL if each.name in rows}
     rules = {name: " ".join(column.__doc__.split()) for name, column in COLUMNS.items()}
     table = {"schema": "isoline.conduct/1", "origin": "raw", "date": str(datetime.date.today()),
-             "packages": versions(), "rules": rules, "methods": rows}
-    path.write_text(json.dumps(table, indent=1, ensure_ascii=False) + "\n")
+             "packages": versions(), "rules": rules, "methods": in_order(known["methods"]), "runs": in_order(known["runs"])}
+    text = json.dumps(table, ensure_ascii=False, separators=(",", ":"))
+    names = "|".join(re.escape(json.dumps(each)) for each in [*table, *table["methods"]])
+    path.write_text(re.sub(rf",({names}):", r",\n\1:", text) + "\n")  # a line for each method
 
 
 def page(file, page):
@@ -409,9 +467,9 @@ def publish(file, page):
 def print_csv(file):
     table = json.loads(pathlib.Path(file).read_text())
     out = csv.writer(sys.stdout)
-    out.writerow(["method", "column", "mark", "figures"])
+    out.writerow(["method", "column", "mark", "figures", "runs"])
     for method, row in table["methods"].items():
-        out.writerows([method, name, cell["mark"], cell["figures"]] for name, cell in row.items())
+        out.writerows([method, name, cell["mark"], cell["figures"], "; ".join(cell["runs"])] for name, cell in row.items())
 
 
 if __name__ == "__main__":

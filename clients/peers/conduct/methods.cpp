@@ -82,6 +82,5 @@ void run_dlib(const std::string& method) {
 
 int main(int, char** words) {
   const std::string package = words[1], method = words[2];
-  begin();
-  package == "dlib" ? run_dlib(method) : run_alglib(method);
+  run_each([&] { package == "dlib" ? run_dlib(method) : run_alglib(method); });
 }

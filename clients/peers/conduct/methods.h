@@ -14,6 +14,7 @@ using Vector = std::vector<double>;
 inline struct {
   std::size_t n, m, limit;
   bool has_bounds;
+  std::size_t runs;
   Vector x, lower, upper;
 } given;
 
@@ -44,11 +45,20 @@ inline void begin() {
            std::size_t(begun[1]),
            std::size_t(begun[2]),
            begun[3] == 1,
+           std::size_t(begun[4]),
            {},
            {},
            {}};
   const auto part = [&](std::size_t i) {
-    return Vector(&begun[4 + i * given.n], &begun[4 + i * given.n] + given.n);
+    return Vector(&begun[5 + i * given.n], &begun[5 + i * given.n] + given.n);
   };
   given.x = part(0), given.lower = part(1), given.upper = part(2);
+}
+
+// Runs a method as often as asked, each time from the start.
+template <class Method>
+void run_each(const Method& method) {
+  begin();
+  const Vector start = given.x;
+  for (std::size_t i = 0; i < given.runs; ++i) given.x = start, method();
 }

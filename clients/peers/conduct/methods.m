@@ -13,12 +13,16 @@ warning off
 pkg load optim
 name = argv(){end};
 begun = sscanf(input("", "s"), "%f");
-x0 = begun(5:begun(1) + 4);
-if strcmp(name, "leasqr")
-  m = begun(2);
-  [y, x, success, iterations] = leasqr((1:m)', zeros(m, 1), x0, @(t, x) ask("residual", x));
-  printf("done %d none converged_%d%s\n", success, success, sprintf(" %.17g", x));
-else
-  [x, value, info, output] = fminunc(@both, x0, optimset("GradObj", "on"));
-  printf("done %d %d info_%d%s\n", info > 0, output.funcCount, info, sprintf(" %.17g", x));
+m = begun(2); limit = begun(3);
+x0 = begun(6:begun(1) + 5);
+for run = 1:begun(5)
+  if strcmp(name, "leasqr")
+    [y, x, success, iterations] = leasqr((1:m)', zeros(m, 1), x0, @(t, x) ask("residual", x));
+    ask(sprintf("done %d none converged_%d", success, success), x);
+  else
+    options = optimset("GradObj", "on");
+    if limit > 0, options = optimset(options, "MaxFunEvals", limit); end
+    [x, value, info, output] = fminunc(@both, x0, options);
+    ask(sprintf("done %d %d info_%d", info > 0, output.funcCount, info), x);
+  end
 end

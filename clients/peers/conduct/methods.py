@@ -1,5 +1,6 @@
 """Methods of libraries, called directly with their defaults. Each returns x, whether it claims success, its code and
-its own count of calls (none: it has none). `limit` is the library's own limit of calls, or none."""
+its own count of calls (none: it has none). `limit` is the library's own limit of calls, or none.
+Programs in R, Octave and C++ also take a list of inputs, which they run one after the other in one process."""
 import ctypes
 import ctypes.util
 import dataclasses
@@ -35,6 +36,9 @@ class Method:
     keeps_bounds: bool = False
     has_limit: bool = True  # of calls
     lost: dict = dataclasses.field(default_factory=dict)  # what was not run, or must not be: why
+
+    def is_program(self):
+        return self.package.split()[0] in ("Rscript", "octave-cli", "c++")
 
 
 ALL = []
@@ -107,7 +111,7 @@ def migrad(p, limit, _):
 
 # --- PETSc
 
-NOT_FOR_THREADS = {"threads": "not run"}
+NOT_FOR_THREADS = {"threads": "not run: PETSc is for one thread"}
 
 
 @add("TAO POUNDERS", package="petsc4py", takes="residuals", differences=True, keeps_bounds=True,
@@ -138,8 +142,9 @@ def tao(p, limit, name):
         method.setMaximumFunctionEvaluations(limit)
     method.setFromOptions()
     method.solve(x)
-    reason = method.getConvergedReason()
-    return Outcome(x.getArray().copy(), reason > 0, f"reason {reason}", None)
+    reason, own = method.getConvergedReason(), INT()
+    library("petsc_real").TaoGetCurrentFunctionEvaluations(POINTER(method.handle), ctypes.byref(own))
+    return Outcome(x.getArray().copy(), reason > 0, f"reason {reason}", own.value)
 
 
 def petsc():
@@ -187,10 +192,8 @@ class Carried:
 
 @add("NLopt LD_LBFGS", "NLopt LD_SLSQP", "NLopt LD_VAR2", "NLopt LD_TNEWTON_PRECOND_RESTART", "NLopt LD_MMA",
      package="nlopt", takes="loss", keeps_bounds=True)
-@add("NLopt LN_NELDERMEAD", "NLopt LN_SBPLX", "NLopt LN_BOBYQA", package="nlopt", takes="loss", differences=True,
-     keeps_bounds=True)
-@add("NLopt LN_COBYLA", package="nlopt", takes="loss", differences=True, keeps_bounds=True,
-     lost={"missing": "not run: hung"})
+@add("NLopt LN_NELDERMEAD", "NLopt LN_SBPLX", "NLopt LN_BOBYQA", "NLopt LN_COBYLA", package="nlopt", takes="loss",
+     differences=True, keeps_bounds=True)
 def nlopt(p, limit, name):
     lib = library("nlopt")
     lib.nlopt_create.restype = POINTER
@@ -286,8 +289,7 @@ def lbfgs(p, _, __):
     return Outcome(array_at(x, p.n).copy(), code in (0, 2), f"code {code}", None)
 
 
-@add("Ipopt", package="ipopt", takes="loss", keeps_bounds=True, has_limit=False,
-     lost={"threads": "not run: crashed"})
+@add("Ipopt", package="ipopt", takes="loss", keeps_bounds=True, has_limit=False)
 def ipopt(p, _, __):
     lib, n = library("ipopt"), p.n
     lib.CreateIpoptProblem.restype = POINTER
@@ -327,7 +329,7 @@ def ipopt(p, _, __):
 @add("R optim-BFGS", package="Rscript stats", takes="loss", has_limit=False)
 @add("R optim-L-BFGS-B", package="Rscript stats", takes="loss", keeps_bounds=True, has_limit=False)
 @add("Octave leasqr", package="octave-cli optim", takes="residuals", differences=True, has_limit=False)
-@add("Octave fminunc", package="octave-cli optim", takes="loss", has_limit=False)
+@add("Octave fminunc", package="octave-cli optim", takes="loss")
 def of_a_script(p, limit, name):
     is_octave = name in ("leasqr", "fminunc")
     program = ["octave-cli", "-qf", HERE / "methods.m"] if is_octave else ["Rscript", HERE / "methods.R"]
@@ -355,21 +357,29 @@ def of_more_cpp(p, limit, name):
     return of_program([built(HERE / "more_methods.cpp").resolve(), package, name], p, limit)
 
 
-def of_program(command, p, limit):
+def of_program(command, given, limit):
+    """The outcome of an input; of a list of them, whose values are alike, a list."""
     numbers = lambda values: " ".join(map(repr, map(float, values)))
-    answers = {"value": lambda x: [p.value(x)], "residual": p.residual, "gradient": p.gradient}
+    answers = {"value": lambda p, x: [p.value(x)], "residual": lambda p, x: p.residual(x),
+               "gradient": lambda p, x: p.gradient(x)}
+    problems, outcomes = given if isinstance(given, list) else [given], []
+    p = problems[0]
     bounds = p.bounds or (numpy.full(p.n, -numpy.inf), numpy.full(p.n, numpy.inf))
     with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True) as child:
         try:
-            print(p.n, p.m, limit or 0, int(p.bounds is not None), numbers([*p.start, *bounds[0], *bounds[1]]),
-                  file=child.stdin, flush=True)
+            print(p.n, p.m, limit or 0, int(p.bounds is not None), len(problems),
+                  numbers([*p.start, *bounds[0], *bounds[1]]), file=child.stdin, flush=True)
             for line in child.stdout:
                 mark, *words = line.split() or [""]
                 if mark == "done":
                     success, own, code, *x = words
-                    return Outcome(numpy.array(x, float), success == "1", code, None if own == "none" else int(own))
-                if mark in answers:
-                    answer = answers[mark](numpy.array(words, float))
+                    outcomes.append(Outcome(numpy.array(x, float), success == "1", code,
+                                            None if own == "none" else int(own)))
+                    if len(outcomes) == len(problems):
+                        return outcomes if isinstance(given, list) else outcomes[0]
+                    print(file=child.stdin, flush=True)
+                elif mark in answers:
+                    answer = answers[mark](problems[len(outcomes)], numpy.array(words, float))
                     print(numbers(answer), file=child.stdin, flush=True)
                 else:
                     print(line, end="")

@@ -114,9 +114,10 @@ void run_pagmo(const std::string& method) {
 
 int main(int, char** words) {
   const std::string package = words[1], method = words[2];
-  begin();
   gsl_set_error_handler_off();
-  if (package == "gsl") run_gsl(method);
-  if (package == "ceres") run_ceres();
-  if (package == "pagmo") run_pagmo(method);
+  run_each([&] {
+    if (package == "gsl") run_gsl(method);
+    if (package == "ceres") run_ceres();
+    if (package == "pagmo") run_pagmo(method);
+  });
 }
