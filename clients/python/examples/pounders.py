@@ -26,7 +26,8 @@ radius = min(radius, 0.4 * (p.upper - p.lower).min())
 x = vector(numpy.minimum(p.x0, p.upper - radius))
 method = PETSc.TAO().create(PETSc.COMM_SELF)
 method.setType("pounders")
-method.setResidual(lambda _, x, r: r.setArray(p.residual(within(x))), vector(numpy.zeros(p.residuals)))
+finite = lambda r: numpy.clip(r, -1e100, 1e100)  # a sum of squares that overflows ends it with an error
+method.setResidual(lambda _, x, r: r.setArray(finite(p.residual(within(x)))), vector(numpy.zeros(p.residuals)))
 if numpy.isfinite([p.lower, p.upper]).any():
     method.setVariableBounds(vector(p.lower), vector(p.upper))
 PETSc.Options().setValue("tao_pounders_delta", radius)
