@@ -85,6 +85,8 @@ std::string decision_sentence(const Comparison& c, const Decision& decision) {
     for (std::size_t i = 0; i < decision.tied; ++i) tied.push_back(decision.places[i].method);
     return words("ranking.tied", on, names_text(c, tied, 3), measure, tau, first.score);
   }
+  if (!decision.is_lead && !decision.fewest_wins())  // so few families name no winner
+    return words("ranking.open-few", on, measure, tau, needed_text(decision));
   if (!decision.is_lead)
     return words("ranking.open", on, measure, tau, name(first), first.score, first.solved,
                  needed_text(decision));
@@ -106,6 +108,7 @@ std::string first_sentence(const Comparison& c, const Decision& decision) {
     return words("ranking.first-tied", names_text(c, tied, 3), first.score);
   }
   if (decision.is_lead) return words("ranking.first-lead", name, first.score, decision.places[1].p);
+  if (!decision.fewest_wins()) return words("ranking.first-few", needed_text(decision));
   return words("ranking.first-open", needed_text(decision), name, first.score);
 }
 
@@ -320,7 +323,10 @@ std::vector<std::string> first_sentences(const Comparison& c) {
   }
   if (c.yardstick.by == Measure::time && c.is_any_timed_together)
     return {words("ranking.shared-time"), words("ranking.chosen")};
-  return {first_sentence(c, *c.decision), varies_text(c, *c.decision), words("ranking.chosen")};
+  const bool can_decide = c.decision->places.size() < 2 || c.decision->fewest_wins().has_value();
+  return {first_sentence(c, *c.decision),
+          can_decide ? varies_text(c, *c.decision) : kinds_text(c, *c.decision),
+          words("ranking.chosen")};
 }
 
 std::vector<Reading> ranking_facts(const Comparison& c) {
