@@ -293,9 +293,10 @@ bool is_ordered(const Comparison& c, std::size_t p) {
 }
 
 bool is_sanity(const Comparison& c, std::size_t p) {
+  const auto is_run = [](const Cell& cell) { return !cell.runs.empty(); };  // else noise is unknown
   if (c.yardstick.has_contrasts)
     return c.problems[p].noise == 0 && !is_ordered(c, p) && !c.problems[p].lacks_least_loss() &&
-           !c.problems[p].is_learned;
+           !c.problems[p].is_learned && std::ranges::any_of(c.cells[p], is_run);
   const auto is_in = [](const char* group) {
     return [group](const ProblemAxis& problem) { return problem.group() == group; };
   };

@@ -461,8 +461,9 @@ Table sanity_table(const Comparison& c) {
     first.offer(Real(standing.solved), optimizer_text(c, s));
   }
   table.is_folded = true;
-  table.reading = words(std::string(key) + ".reading", first.value, c.sanity.settings.size(),
-                        first.text(), first.names.size());
+  const char* const none = c.yardstick.has_contrasts ? "controls.none" : "sanity.none";
+  table.reading = words(first.value > 0 ? std::string(key) + ".reading" : none, first.value,
+                        c.sanity.settings.size(), first.text(), first.names.size());
   return table;
 }
 
