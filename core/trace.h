@@ -69,7 +69,7 @@ struct Trace {
   std::atomic<bool> is_finished{false};
   std::atomic<int> points{0};
   TracePoint point[kPoints];
-  TraceHit hit[kRungs], x_hit[kRungs];  // the latter of a direct problem with a known solution
+  TraceHit hit[kRungs], x_hit[kRungs];  // the latter of a direct problem that is judged by x
   bool is_learned = false;
   char series_names[kText] = "";  // a line each
 

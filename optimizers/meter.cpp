@@ -271,7 +271,8 @@ Status Meter::begin(VectorRef theta) {
 void Meter::set_scales() {
   trace_.x_scale = problem_.x_scale(judging());
   trace_.x_floor = problem_.x_floor(judging());
-  if (!problem_.is_learned() && std::isfinite(trace_.x_scale)) next_x_goal_ = kInfinity;
+  if (!problem_.is_learned() && trace_.aim == Aim::x && std::isfinite(trace_.x_scale))
+    next_x_goal_ = kInfinity;
   const bool stops_at_target = budget_.target > 0 && most_discrepancy_ == kNone;
   if (trace_.aim == Aim::x && stops_at_target && std::isfinite(trace_.x_scale))
     target_x_error_ = x_goal(budget_.target, trace_.x_scale, trace_.x_floor);

@@ -458,7 +458,8 @@ Record record_of(const Request& request, const Trace& trace) {
   record.summary = summary_of(trace);
   record.curve = curve_of(trace);
   if (record.minimum) record.hits = hits_of(trace, trace.hit);
-  if (record.x_scale && !trace.is_learned) record.x_hits = hits_of(trace, trace.x_hit);
+  if (record.x_scale && record.aim == Aim::x && !trace.is_learned)
+    record.x_hits = hits_of(trace, trace.x_hit);
   record.series = series_of(trace);
   write_parts(trace, record);
   record.privileges = lines_of(trace.privileges);

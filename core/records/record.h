@@ -91,7 +91,7 @@ struct Record : Parts {
   Summary summary;
   Curve curve;
   std::optional<Hits> hits;    // where f_L is declared
-  std::optional<Hits> x_hits;  // of a direct problem with a known solution; older: none
+  std::optional<Hits> x_hits;  // of a direct problem that is judged by x; older: none
   std::map<std::string, std::vector<Real>> series;  // a problem's own quantities, as the curve
   std::vector<std::string> privileges;
   ForeignParts foreign;

@@ -314,7 +314,7 @@ INSTANTIATE_TEST_SUITE_P(Methods, Stopped,
 
 // eki evaluates its members, and its iterate is another point: the budget ends after any of them.
 TEST(StoppedRuns, ThatEndWithinTheNextStepPayForNoPointTwice) {
-  for (int work = 8; work < 32; ++work) {
+  for (int work = 40; work < 64; ++work) {
     const Request request =
         cell_of("rosenbrock", "eki", {.iterations = 30, .work = work, .target = 0});
     EXPECT_EQ(trace_of(executed_in_pieces(catalog(), request)), trace_of(request, {})) << work;

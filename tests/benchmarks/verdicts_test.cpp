@@ -164,8 +164,9 @@ TEST(Hits, ComeInOrderWithTheirWorkAndAsTheBestLossAndTheCurveHaveThem) {
   std::size_t in_x = 0;
   for (const Record& record : judged_matrix().records) {
     const bool is_run = record.status != Status::inapplicable;
-    EXPECT_EQ(record.x_hits.has_value(),
-              is_run && record.x_scale.has_value() && !record.request.problem.is_learned)
+    EXPECT_EQ(record.x_hits.has_value(), is_run && record.aim == Aim::x &&
+                                             record.x_scale.has_value() &&
+                                             !record.request.problem.is_learned)
         << title_of(record);
     if (record.x_hits) {
       ++in_x;

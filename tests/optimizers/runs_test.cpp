@@ -129,6 +129,7 @@ TEST(Hits, InXAreOfTheFirstEvaluatedXThatMeetsEachTarget) {
       {.physics = std::make_unique<Linear>(easy_matrix()),
        .start = at(1),
        .target = easy_matrix() * truth,
+       .aim = Aim::x,
        .minimum = 0,
        .x_error = [=](BatchRef x, const Batch&) { return (x.col(0) - truth).norm(); }});
   const auto trace = std::make_unique<Trace>();

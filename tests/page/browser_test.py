@@ -243,7 +243,7 @@ class Page(InBrowser):
             self.assertRegex(text, r"(error in x|loss gap) \S+.*, goal \S+")
         for index in range(len(self.json["optimizers"])):
             self.open(f"#optimizer-{index}")
-            self.assertNotIn("of 0", self.browser.run("return document.querySelector('.optimizer.chosen').innerText"))
+            self.assertNotRegex(self.browser.run("return document.querySelector('.optimizer.chosen').innerText"), r"\d of 0\b")
 
     def test_the_grid_of_methods_marks_what_was_measured(self):
         self.open("#methods")
@@ -939,7 +939,7 @@ class Workers(InBrowser):
         counted, shared = set(), 0
         for file in (self.results / "runs").glob("*.json"):
             record = json.loads(file.read_text())
-            for columns in (record["curve"], record.get("hits", {})):
+            for columns in (record["curve"], record.get("hits", {}), record.get("x_hits", {})):
                 counted.update(zip(columns.get("work", []), columns.get("rounds", {}).get("64", [])))
         self.open("")
         calls = self.browser.run("return DATA.calls.map(([, methods]) => methods)")

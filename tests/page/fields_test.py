@@ -3,7 +3,6 @@
 import math
 import pathlib
 import sys
-import time
 import unittest
 
 import browser
@@ -113,26 +112,6 @@ class Fields(InBrowser):
         reading = self.browser.run("return document.querySelector(arguments[0]).innerText",
                                    self.fields + " .reading")
         self.assertIn(f"nearest to x* for {nearest}", reading)
-
-    def moving(self, motion):
-        """The button of the first tab's fields and their first picture, with this wish for motion."""
-        self.browser.call("POST", "/goog/cdp/execute", {
-            "cmd": "Emulation.setEmulatedMedia",
-            "params": {"features": [{"name": "prefers-reduced-motion", "value": motion}]}})
-        self.open("")
-        return self.browser.wait("return document.querySelector('#motion button')?.innerText")
-
-    def test_the_first_tab_moves_three_fields_unless_motion_is_unwanted(self):
-        picture = "#motion figure[data-s] .picture canvas"
-        self.assertEqual(self.moving("no-preference"), "Pause")
-        pictures = {tuple(self.browser.wait(CELLS, picture)) for _ in range(40)
-                    if time.sleep(0.1) is None}
-        self.assertGreater(len(pictures), 2)
-        self.assertEqual(self.moving("reduce"), "Play")
-        self.assertEqual(self.browser.run("return document.querySelectorAll("
-                                          "'#motion figure[data-s]').length"), 3)
-        self.browser.call("POST", "/goog/cdp/execute", {"cmd": "Emulation.setEmulatedMedia",
-                                                        "params": {"features": []}})
 
     def test_a_method_left_out_takes_its_pictures_along(self):
         s = self.found[0]["s"]
