@@ -191,7 +191,10 @@ TEST_F(SharedProcess, GivesTheRecordsOfFreshOnesInAnyOrder) {
     block.budget.work = std::min<std::int64_t>(block.budget.work, 300);
   }
   std::vector<Request> requests = expand(catalog, suite, Rates::builtin());
-  std::erase_if(requests, [](const Request& request) { return request.problem.is_learned; });
+  std::erase_if(requests, [](const Request& request) {  // and what ends by a limit of time
+    return request.problem.is_learned || request.problem.name == "broken" ||
+           request.optimizer.name == "hostile";
+  });
   std::ranges::shuffle(requests, std::mt19937_64(kSeed));
   if (!is_whole) requests.resize(requests.size() / kShare);
   options = {.jobs = one_a_core()};
