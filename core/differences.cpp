@@ -123,31 +123,33 @@ Vector last_places(const std::vector<Vector>& values, const std::vector<Index>& 
 }  // namespace
 
 Real noise_of_calls(const Vector& y0, const std::function<Vector(Real t)>& y, Vector* slope) {
-  const auto [far, twice, thrice, near] = kNoiseSteps;
-  constexpr Real kNotSmooth = 0.5;
+  const auto [far, twice, near] = kNoiseSteps;
+  constexpr Real kNotSmooth = 0.5, kSmooth = 0.1;
   constexpr Real kBent = 1e-4;  // of the change: a smooth y bends less over so small a step
   constexpr std::size_t kMostRows = 1000;
   const Real size = y0.norm();
   Real noise = std::numeric_limits<Real>::epsilon();
   if (!(size > 0) || !std::isfinite(size)) return noise;
-  std::vector<Vector> values{y0};
-  for (const Real t : {far, twice, thrice}) values.push_back(y(t));
-  const Vector first = (-11 * y0 + 18 * values[1] - 9 * values[2] + 2 * values[3]) / (6 * far);
-  const Vector once = y(near);
-  const Real change = (once - y0).norm();
-  if (!((once - y0 - near * first).norm() <= kBent * change)) {
+  std::vector<Vector> values{y0, y(far), y(twice)};
+  const Vector once = y(near), second = values[2] - 2 * values[1] + y0;
+  const Vector moved = once - y0, first = (values[1] - y0 - second / 2) / far;
+  const Real change = moved.norm(), gap = (moved - near * first).norm();
+  if (!(gap <= kBent * change)) {
     const Real bend = (y(2 * near) - 2 * once + y0).norm() / std::sqrt(6.0);
     if (std::isfinite(bend) && bend > kBent * change) noise = std::max(noise, bend / size);
   }
-  const Vector second = values[2] - 2 * values[1] + y0;
-  const Real third = (values[3] - 3 * values[2] + 3 * values[1] - y0).norm();
-  if (!std::isfinite(third)) return noise;
-  if (third > kNotSmooth * second.norm()) noise = std::max(noise, third / std::sqrt(20.0) / size);
+  if (!is_finite(second)) return noise;
+  if (!(far / near * gap <= kSmooth * second.norm())) {
+    values.push_back(y(3 * far));
+    const Real third = (values[3] - values[2] - values[1] + y0 - 2 * second).norm();
+    if (!std::isfinite(third)) return noise;
+    if (third > kNotSmooth * second.norm()) noise = std::max(noise, third / std::sqrt(20.0) / size);
+  }
   std::vector<Index> rows;
   for (Index i = 0; i < y0.size() && rows.size() < kMostRows; ++i)
-    if (values[3][i] != y0[i]) rows.push_back(i);
+    if (values[2][i] != y0[i]) rows.push_back(i);
   if (!rows.empty()) noise = std::max(noise, last_places(values, rows).norm() / size);
-  if (slope != nullptr && noise == std::numeric_limits<Real>::epsilon()) *slope = first;
+  if (slope != nullptr && noise == std::numeric_limits<Real>::epsilon()) *slope = moved / near;
   return noise;
 }
 
@@ -179,6 +181,12 @@ std::array<Real, 2> difference_offsets(Real h, bool is_central, Real up, Real do
 
 Real forward_step(Real noise) { return std::pow(8.0, 0.25) * std::sqrt(noise); }
 Real central_step(Real noise) { return std::cbrt(3 * noise); }
+Real size_for_steps(Real size, Real column, Real size_of_y) {
+  constexpr Real kLeast = 1e-3, kMost = 1e3;
+  const Real share = size_of_y / (column * size);
+  if (!(share > 0)) return size;
+  return size * std::clamp(share < 1 ? share : std::sqrt(share), kLeast, kMost);
+}
 
 Real GivenSteps::of(Index j, Index n, Real size, Real otherwise) const {
   if (steps.empty()) return otherwise * size;
@@ -212,7 +220,7 @@ GivenSteps given_steps(const std::string& text) {
 }
 
 Vector sizes_of_unknowns(const Vector& start) {
-  constexpr Real kNothing = 1e-8;  // of the largest, from which fits differ by up to 1e7: rounding
+  constexpr Real kNothing = 1e-14;  // of the largest: rounding
   const Real largest = start.lpNorm<Eigen::Infinity>();
   const Real unknown = largest > 0 ? std::min<Real>(1, largest) : 1;
   return (start.array().abs() > kNothing * largest).select(start.cwiseAbs(), unknown);

@@ -26,6 +26,11 @@ Vector noise_of_values(const std::function<Vector(Real t)>& f);
 Real forward_step(Real noise);
 Real central_step(Real noise);
 
+// The size of an unknown that a step is relative to, where the column of J has this norm: y bends
+// as an exponential or a wave of it does, ‖J‖²/‖y‖, where the column is large, else as a term of a
+// sum, ‖J‖ over the size.
+Real size_for_steps(Real size, Real column, Real size_of_y);
+
 // Steps as a user gives them: one number, or one for each unknown with colons between, relative to
 // the sizes of the unknowns; or in their units, where "absolute" follows: "1e-3", "0.1:2 absolute".
 struct GivenSteps {
@@ -45,19 +50,17 @@ inline constexpr const char* kStepHelp =
 // The size of each unknown: |x₀|, or that of the largest, at most 1, where x₀ = 0.
 Vector sizes_of_unknowns(const Vector& start);
 
-// The noise of y in a call, relative to ‖y‖, at least rounding: by four or five calls y(t) at t > 0
-// along a line through the point where y is `y0`; t in sizes of the unknowns. What near calls
-// differ by from a smooth y, and what is not smooth at three steps farther away, as of an adaptive
-// solver, whose values jump where the number of its steps does; the larger one holds. And the last
-// place of values that were printed with few digits or are of single precision, which small steps
-// do not show. `slope`: dy/dt at 0, (m), by the steps farther away; empty where y is not smooth
-// there.
+// The noise of y in a call, relative to ‖y‖, at least rounding: by three to five calls y(t) at t >
+// 0 along a line through the point where y is `y0`; t in sizes of the unknowns. What near calls
+// differ by from a smooth y, and what is not smooth at two or three steps farther away, as of an
+// adaptive solver, whose values jump where the number of its steps does; the larger one holds. And
+// the last place of values that were printed with few digits or are of single precision, which
+// small steps do not show. `slope`: dy/dt at 0, (m), by the nearest; empty where y has noise.
 Real noise_of_calls(const Vector& y0, const std::function<Vector(Real t)>& y,
                     Vector* slope = nullptr);
 // t of the first calls: no round numbers, at which y would seem printed with few digits.
 inline constexpr Real kNoiseStep = 1.0471975511965976e-3;
-inline constexpr std::array<Real, 4> kNoiseSteps = {kNoiseStep, 2 * kNoiseStep, 3 * kNoiseStep,
-                                                    1e-8};
+inline constexpr std::array<Real, 3> kNoiseSteps = {kNoiseStep, 2 * kNoiseStep, 1e-8};
 
 // The direction of those calls, (n), in sizes of the unknowns; towards the inside at a bound. No
 // bounds: nullptr.

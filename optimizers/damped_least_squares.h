@@ -97,6 +97,9 @@ class DampedLeastSquares {
     Jd = moved_;
     return true;
   }
+  const Matrix& jacobian() const {
+    return J_;
+  }  // (m·B, n), those of unknowns that a bound holds are 0
   void push_dense(const Vector& d, Vector& Jd) const { Jd.noalias() = J_ * d; }
   Real misfit() const { return 0.5 * right_.squaredNorm(); }  // ½‖b‖²
   const Vector& scale() const { return scale_; }              // (n) D

@@ -1,6 +1,6 @@
 // J of residuals without derivatives, for methods of least squares: by differences whose steps
 // follow from the noise of the calls, with rank-one updates between; Broyden (1965). The noise is
-// measured once, by four or five calls or by ECNoise's tables, and is at least rounding. M₂ of h =
+// measured once, by three to five calls or by ECNoise's tables, and is at least rounding. M₂ of h =
 // 8^¼ √(ε_f/M₂), a bound on the second derivative along an unknown, is ‖y‖ over the square of the
 // unknown's size; Moré, Wild (2012), ACM TOMS 38.
 #pragma once
@@ -23,7 +23,7 @@ namespace isoline::optimizers {
 inline const Choices kJacobians{"exact", "differences", "central", "ecnoise"};
 inline constexpr const char* kJacobianHelp =
     "exact: as the problem offers it; differences, central: by forward or central differences of "
-    "r, which cost n or 2n forward solves, with steps that follow from the noise of y, which four or five "
+    "r, which cost n or 2n forward solves, with steps that follow from the noise of y, which three to five "
     "calls at the start measure; ecnoise: by forward differences with the noise by ECNoise, 8 to 29 "
     "calls at the start";
 
@@ -68,6 +68,7 @@ class DifferenceJacobian {
       J_.col(j) =
           column(f, theta, j, difference_offsets(kLarger * h, is_central, room.up, room.down));
     }
+    columns_ = J_.colwise().norm();
     theta_ = theta;
     is_fresh_ = true;
     at.set_jacobian(J_);
@@ -111,12 +112,15 @@ class DifferenceJacobian {
     return std::max(std::abs(theta[j]), (is_noisy() ? 1 : kLeast) * sizes_[j]);
   }
   void persist(Archive& archive) {
-    archive(J_, theta_, y_, sizes_, noise_, is_fresh_, is_central_);
+    archive(J_, columns_, theta_, y_, sizes_, noise_, is_fresh_, is_central_);
   }
 
  private:
   Real step_of(const Vector& theta, Index j, Real otherwise) const {
-    const Real h = given_.of(j, theta.size(), size_of(theta, j), otherwise);
+    Real size = size_of(theta, j);
+    if (given_.steps.empty() && columns_.size() > 0)
+      size = size_for_steps(size, columns_[j], y_.norm());
+    const Real h = given_.of(j, theta.size(), size, otherwise);
     return given_.are_absolute && own_scales_.size() > 0 ? h / own_scales_[j] : h;
   }
   static Room room_of(const Meter& f, const Vector& theta, Index j) {
@@ -166,6 +170,7 @@ class DifferenceJacobian {
   }
 
   Matrix J_;                      // (m, n)
+  Vector columns_;                // (n), their norms when last measured, or empty
   Vector theta_, moved_, sizes_;  // (n)
   Vector y_;                      // (m), at θ
   Real noise_ = 0;                // of y in a call, relative to ‖y‖

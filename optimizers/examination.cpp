@@ -40,7 +40,9 @@ std::string doubt_of(const LeastSquaresPoint& at) {
     return "its Jacobian has no singular values";
   const Vector& sigma = svd.sigma;
   const Index rank = std::min(m, n);
-  const Real least = at.has_exact_jacobian ? static_cast<Real>(std::max(m, n)) * kRounding : step;
+  const Real least = at.has_exact_jacobian ? static_cast<Real>(std::max(m, n)) * kRounding
+                     : at.is_central       ? step * step
+                                           : step;
   if (!(sigma[rank - 1] > least * sigma[0])) {
     Index largest = 0;  // of the direction that does not change y
     svd.Vt.row(rank - 1).cwiseAbs().maxCoeff(&largest);
@@ -52,15 +54,15 @@ std::string doubt_of(const LeastSquaresPoint& at) {
   const Real r = at.residual.norm();
   const Real spread = m > n ? r / std::sqrt(static_cast<Real>(m - n)) : 0;
   const Matrix root = svd.Vt.transpose() * sigma.cwiseInverse().asDiagonal();
-  const Matrix square = root * sigma.cwiseInverse().asDiagonal();
-  Real slope_error = 0;  // of an entry of D⁻¹ Jᵀ r
+  Vector slope_errors(n);  // of the entries of D⁻¹ Jᵀ r, by those of J
   for (Index i = 0; i < n; ++i)
-    slope_error = std::max(slope_error, error / (step * size_of(i)) * r / D[i]);
+    slope_errors[i] = error / (step * size_for_steps(size_of(i), D[i], at.size_of_y)) * r / D[i];
+  const Matrix spreads = (root * root.transpose()) * slope_errors.asDiagonal();
   for (Index i = 0; i < n; ++i) {
     const Real enough_of_unknown =
         kEnoughOfUnknown * least_size(at.theta[free[i]], at.sizes[free[i]]);
     const Real length = root.row(i).norm() / D[i];
-    const Real unsure = error * length + slope_error * square.row(i).norm() / D[i];
+    const Real unsure = std::hypot(error * length, spreads.row(i).norm() / D[i]);
     const bool forgives = at.forgives_noise || at.is_central;
     const Real of_noise = forgives ? std::min(kSure * unsure, kOfSpread * spread * length) : 0;
     const Real known = std::max(enough_of_unknown, at.enough_of_deviation * spread * length);

@@ -3,11 +3,12 @@
 // column of J has had. Steps that do not lower ‖r‖ are rejected and the damping is raised. After a
 // step that gained little, d gets a term of second order. On fresh samples at every step J and r
 // are those of the step's own. Where J comes by differences, μ follows from a radius, ‖D d‖ ≤ Δ, as
-// Moré has it: there a rejected step is dear, and J is updated by Broyden's formula between. With
-// damping=fixed, the rule of mini-batches that cannot be compared: θ ← θ − η Jᵀ (K + μ)⁻¹ r, K =
-// JJᵀ, μ a share of the mean diagonal of K, and every step is taken; absolute: the same with μ
-// added to JJᵀ/B. With a small μ it is the energy natural gradient of Müller, Zeinhofer (2023), in
-// the form of Guzmán-Cordero et al. (2025) where J is wide.
+// Moré has it: there a rejected step is dear, and J is updated by Broyden's formula between; near a
+// solution JᵀJ gets the curvature of the residuals, Dennis, Gay, Welsch (1981). With damping=fixed,
+// the rule of mini-batches that cannot be compared: θ ← θ − η Jᵀ (K + μ)⁻¹ r, K = JJᵀ, μ a share of
+// the mean diagonal of K, and every step is taken; absolute: the same with μ added to JJᵀ/B. With a
+// small μ it is the energy natural gradient of Müller, Zeinhofer (2023), in the form of
+// Guzmán-Cordero et al. (2025) where J is wide.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -21,6 +22,7 @@
 #include "optimizers/differences.h"
 #include "optimizers/examination.h"
 #include "optimizers/optimizer.h"
+#include "optimizers/residual_curvature.h"
 #include "optimizers/spectral_step.h"
 
 namespace isoline::optimizers {
@@ -62,20 +64,22 @@ struct LevenbergMarquardt {
   struct State {
     DampedLeastSquares squares;
     DifferenceJacobian differences;
+    ResidualCurvature curvature;
     SpectralStep spectral;
     NielsenDamping damping;
     bool is_fine = false;     // what steps gain is little beside errors of forward differences
     bool is_retried = false;  // a step was rejected, and J updated by it, since J was fresh
+    bool is_limited = false;  // the last step, by the radius
     bool has_point = false;
-    Real radius = 0;  // Δ, of steps by differences
-    Real gain = 1;    // actual over predicted decrease of the last step, 0 where rejected
+    Index updates = 0;  // of J since it was fresh
+    Real radius = 0;    // Δ, of steps by differences
+    Real gain = 1;      // actual over predicted decrease of the last step, 0 where rejected
     Linearization at, trial;
-    Vector step, candidate, bend;   // (n), of the acceleration
-    Vector Jd, residual, Jbend;     // (m·B)
-    Vector last_step;               // (n) D d of the last Gauss-Newton step; empty: another one
-    Real last_factor = 1;           // that it was multiplied by
-    Real last_length = kUnbounded;  // ‖D d‖ of the last step that only rounding could judge
-    std::string jacobian;           // as the option has it; by differences where none is offered
+    Vector step, candidate, bend;    // (n), of the acceleration, or with S
+    Vector Jd, residual, Jbend;      // (m·B)
+    Real last_length = kUnbounded;   // ‖D d‖ of the last step that only rounding could judge
+    Real last_promise = kUnbounded;  // of ½‖r‖², that the last step by a fresh J was to gain
+    std::string jacobian;            // as the option has it; by differences where none is offered
 
     bool has_updated_jacobian() const { return jacobian != "exact" && !differences.is_fresh(); }
   };
@@ -84,8 +88,9 @@ struct LevenbergMarquardt {
     s.spectral.persist(archive);
     s.damping.persist(archive);
     s.differences.persist(archive);
-    archive(s.is_fine, s.has_point, s.is_retried, s.radius, s.gain, s.last_length, s.residual,
-            s.last_step, s.last_factor);
+    s.curvature.persist(archive);
+    archive(s.is_fine, s.has_point, s.is_retried, s.is_limited, s.updates, s.radius, s.gain,
+            s.last_length, s.last_promise, s.residual);
   }
 
   State init(Meter& f, const Vector&) const {
@@ -147,9 +152,14 @@ struct LevenbergMarquardt {
   // what they hardly determine.
   Status stop(Meter& f, const Vector& theta, State& s) const {
     if (s.has_updated_jacobian()) return renew(f, theta, s);
-    s.is_fine = s.jacobian == "differences" && !s.differences.is_noisy() &&
-                !s.differences.is_central() && is_blurred(f, theta, s);
-    return s.is_fine ? renew(f, theta, s) : Status::converged;
+    const bool can_refine = s.jacobian != "exact" && s.jacobian != "central" && !s.is_fine;
+    return can_refine && is_blurred(f, theta, s) ? refine(f, theta, s) : Status::converged;
+  }
+  // From here on J is by central differences.
+  Status refine(Meter& f, const Vector& theta, State& s) const {
+    s.is_fine = true;
+    s.last_length = s.last_promise = kUnbounded;
+    return renew(f, theta, s);
   }
   bool is_blurred(const Meter& f, const Vector& theta, State& s) const {
     const Problem& problem = f.problem();
@@ -175,48 +185,61 @@ struct LevenbergMarquardt {
   Status renew(Meter& f, const Vector& theta, State& s) const {
     s.differences.renew(f, theta, s.is_fine ? "central" : s.jacobian, s.at);
     s.squares.set(f, s.at, theta, s.residual, scaling);
+    if (!s.differences.is_noisy()) s.curvature.measured(s.at.jacobian(), theta, s.residual);
+    s.updates = 0;
     s.is_retried = false;
     return Status::running;
   }
 
   // A step within the radius, by a J of differences.
   Status step_within(Meter& f, Vector& theta, State& s) const {
-    constexpr Real kSettled = 1e-8;  // of ½‖r‖², that the Gauss-Newton step would gain
-    constexpr Real kFirst = 0.1, kLonger = 1.1, kShorter = 0.9;
+    constexpr Real kSettled = 1e-7;  // of ½‖r‖², that the Gauss-Newton step would gain
+    constexpr Real kFirst = 0.25, kLonger = 1.1;
     Vector sizes(theta.size()), least(theta.size());
     for (Index j = 0; j < theta.size(); ++j) {
       sizes[j] = s.differences.size_of(theta, j);
       least[j] = least_size(theta[j], sizes[j]);
     }
     if (!s.squares.solve(kUndamped, factorization, s.step, s.Jd)) return stalled(f, theta, s);
+    const bool is_fresh = !s.has_updated_jacobian();
     const Real share = s.step.cwiseQuotient(least).lpNorm<Eigen::Infinity>();
     const bool is_settled = 0.5 * s.Jd.squaredNorm() <= kSettled * s.squares.misfit();
     const bool is_enough = share <= kEnoughOfUnknown || leaves_enough(s, theta);
-    if (is_enough || (is_settled && s.has_updated_jacobian())) return stop(f, theta, s);
+    if (is_enough || (is_settled && !is_fresh)) return stop(f, theta, s);
+    if (is_fresh && stagnates(s))
+      return s.is_fine || s.jacobian == "central" ? Status::converged : refine(f, theta, s);
     if (s.radius == 0) s.radius = kFirst * std::sqrt(s.squares.squared_length(sizes));
-    const bool is_limited = length_of(s) > kLonger * s.radius;
-    if (is_limited && !shorten(s)) return stalled(f, theta, s);
-    is_limited || s.has_updated_jacobian() ? s.last_step.resize(0) : lengthen(s);
+    const bool bends = bend(s) && length_of(s.squares, s.bend) <= kLonger * s.radius;
+    if (bends) s.step = s.bend;
+    s.is_limited = length_of(s.squares, s.step) > kLonger * s.radius;
+    if (s.is_limited && !shorten(s)) return stalled(f, theta, s);
     s.candidate = theta + s.step;
     if (f.bounds()) s.candidate = f.bounds()->nearest(s.candidate);
     if (s.candidate == theta) return stop(f, theta, s);
     s.step = s.candidate - theta;
     s.squares.push_dense(s.step, s.Jd);
-    const Real slope = s.residual.dot(s.Jd), predicted = slope - 0.5 * s.Jd.squaredNorm();
+    const Real slope = s.residual.dot(s.Jd), misfit = s.squares.misfit();
+    const Real curvature = s.Jd.squaredNorm() + (bends ? s.curvature.along(s.step) : 0);
+    const Real predicted = slope - 0.5 * curvature, rounding = rounding_of_misfit(f, s);
+    if (!is_fresh && std::abs(predicted) <= rounding) return renew(f, theta, s);
     f.linearize(s.candidate, s.trial);
-    const Real misfit = s.squares.misfit();
     const Real actual = misfit - 0.5 * (s.trial.y() - f.target()).squaredNorm();
-    const Real length = length_of(s), rounding = rounding_of_misfit(f, s);
+    const Real length = length_of(s.squares, s.step);
     const bool is_rounding =
         std::abs(predicted) <= rounding && std::abs(actual) <= rounding;  // false for NaN
-    if (is_rounding && (s.has_updated_jacobian() || !(length <= kShorter * s.last_length)))
-      return stop(f, theta, s);
-    if (is_rounding) s.last_length = length;
-    s.gain = is_rounding ? 1 : std::isfinite(actual) && predicted > 0 ? actual / predicted : -1;
-    const bool is_fresh = !s.has_updated_jacobian();
+    if (is_rounding) {
+      const Real shorter = s.differences.is_noisy() ? 0.5 : 0.9;
+      if (!(length <= shorter * s.last_length)) return stop(f, theta, s);
+      s.last_length = length;
+    }
+    // On a bound, J may predict no decrease of a step that has one.
+    const bool is_better = predicted <= 0 && actual > rounding;
+    s.gain = is_rounding || is_better                 ? 1
+             : std::isfinite(actual) && predicted > 0 ? actual / predicted
+                                                      : -1;
     if (s.gain < kPoorGain && is_fresh) {
       s.radius = shrinkage(actual, slope) * std::min(s.radius, length);
-    } else if (s.gain > 1 - kPoorGain || !is_limited) {
+    } else if (s.gain > 1 - kPoorGain || !s.is_limited) {
       s.radius = std::max(s.radius, 2 * length);
     }
     constexpr Real kAccepted = 1e-4;
@@ -228,13 +251,29 @@ struct LevenbergMarquardt {
     }
     f.reject_step();
     if (is_fresh) return s.radius > 0 ? Status::running : Status::converged;
-    constexpr Real kFar = 99;  // of ½‖r‖²: such a point tells little of J
-    if (s.is_retried || !(-actual <= kFar * misfit)) return renew(f, theta, s);
+    constexpr Real kFar = 99,
+                   kNear = 0.1;  // of ½‖r‖²: where a point tells little of J, or J is dear
+    if (s.is_retried || predicted <= kNear * misfit || !(-actual <= kFar * misfit))
+      return renew(f, theta, s);
+    constexpr Real kNearer = 0.6;
     s.is_retried = true;
-    s.radius = 0.5 * std::min(s.radius, length);
+    s.radius = kNearer * std::min(s.radius, length);
     s.differences.learn(s.candidate, s.trial.y().reshaped(), s.squares.scale(), s.at);
     s.squares.set(f, s.at, theta, s.residual, scaling);
     return Status::running;
+  }
+  // Whether what a full step by a fresh J gains is tiny, and no longer shrinks: errors of J make
+  // it.
+  static bool stagnates(State& s) {
+    constexpr Real kTiny = 1e-10, kShrinks = 0.5;
+    const Real gains = 0.5 * s.Jd.squaredNorm(), before = std::exchange(s.last_promise, gains);
+    return !s.is_limited && gains <= kTiny * s.squares.misfit() && gains > kShrinks * before;
+  }
+  // The step with the curvature of the residuals, near a solution.
+  static bool bend(State& s) {
+    constexpr Real kNear = 1e-2;  // of ½‖r‖², that the Gauss-Newton step would gain
+    return 0.5 * s.Jd.squaredNorm() <= kNear * s.squares.misfit() &&
+           s.curvature.solve(s.squares.jacobian(), s.residual, s.squares.scale(), s.bend);
   }
   // ‖J d‖ in units of ‖r‖/√(m − n) is at least |dⱼ| in standard deviations of unknown j.
   bool leaves_enough(const State& s, const Vector& theta) const {
@@ -245,17 +284,19 @@ struct LevenbergMarquardt {
   Status stalled(Meter& f, const Vector& theta, State& s) const {
     return s.has_updated_jacobian() ? renew(f, theta, s) : Status::stalled;
   }
-  static Real length_of(const State& s) { return std::sqrt(s.squares.squared_length(s.step)); }
+  static Real length_of(const DampedLeastSquares& squares, const Vector& d) {
+    return std::sqrt(squares.squared_length(d));
+  }
   // The μ at which ‖D d‖ is the radius to a tenth, by the secant of 1/‖D d‖, which is nearly linear
   // in μ; within a bracket. False where no step is finite.
   bool shorten(State& s) const {
     constexpr int kMostTries = 60;
     constexpr Real kToTheRadius = 0.1;
     Real low = 0, high = kUnbounded, mu = 0.5 * s.Jd.squaredNorm() / (s.radius * s.radius);
-    Real last_mu = 0, last = 1 / length_of(s);  // as good as undamped
+    Real last_mu = 0, last = 1 / length_of(s.squares, s.step);  // as good as undamped
     for (int i = 0; i < kMostTries; ++i) {
       if (!s.squares.solve(mu, factorization, s.step, s.Jd)) return false;
-      const Real length = length_of(s);
+      const Real length = length_of(s.squares, s.step);
       if (std::abs(length - s.radius) <= kToTheRadius * s.radius) return true;
       (length > s.radius ? low : high) = mu;
       const Real change = (1 / length - last) / (mu - last_mu);
@@ -267,21 +308,6 @@ struct LevenbergMarquardt {
       mu = next;
     }
     return true;
-  }
-  // Where residuals remain at the solution, Gauss-Newton steps shrink, or alternate, by a factor ρ:
-  // one that is parallel to the last one ends where all that follow would; Aitken (1926).
-  static void lengthen(State& s) {
-    constexpr Real kParallel = 0.9, kLeast = 0.1;
-    const Vector scaled = s.squares.scale().cwiseProduct(s.step);
-    const Vector last = std::exchange(s.last_step, scaled);
-    const Real by = std::exchange(s.last_factor, 1);
-    if (last.size() == 0) return;
-    const Real ratio = scaled.dot(last) / last.squaredNorm();
-    if (!(std::abs(ratio) * last.norm() >= kParallel * scaled.norm())) return;
-    const Real rest = (1 - ratio) / by;  // 1 − ρ
-    if (!(rest >= kLeast && rest <= 2 - kLeast)) return;
-    s.last_factor = 1 / rest;
-    s.step *= s.last_factor;
   }
   // The share of the radius after a poor step: where the parabola through ½‖r‖² at both ends, with
   // the slope at the first one, is least.
@@ -295,6 +321,7 @@ struct LevenbergMarquardt {
   // after a gain of 1/10 by a fresh one, and of 0.3 to 1.7 by an updated one.
   static constexpr Real kUndamped = 1e-30;  // μ
   static constexpr Real kPoorGain = 0.25, kLeastGain = 0.1, kOff = 0.7;
+  static constexpr Index kMostUpdates = 2;  // for each unknown
 
   Status step_fixed(Meter& f, Vector& theta, State& s) const {
     f.linearize(theta, s.at);
@@ -319,12 +346,14 @@ struct LevenbergMarquardt {
     const bool is_first = !std::exchange(s.has_point, true) || f.has_fresh_batches();
     if (s.jacobian != "exact") {
       const bool is_fresh = s.differences.is_fresh();
-      const bool is_good = s.gain >= kLeastGain && (is_fresh || std::abs(s.gain - 1) <= kOff);
+      const bool is_good = s.updates < kMostUpdates * theta.size() && s.gain >= kLeastGain &&
+                           (is_fresh || std::abs(s.gain - 1) <= kOff);
       if (is_first || !broyden || !is_good) {
         renew(f, theta, s);
         return;
       }
       s.differences.update(theta, s.squares.scale(), s.at);
+      ++s.updates;
     }
     s.squares.set(f, s.at, theta, s.residual, scaling);
   }
@@ -347,8 +376,11 @@ struct LevenbergMarquardt {
   // its prediction change ½‖r‖² by less, the loss cannot judge it; x, which depends on the
   // gradient, still becomes more accurate as long as steps become shorter.
   static Real rounding_of_misfit(Meter& f, const State& s) {
+    constexpr Real kSure = 3;  // standard deviations
     const Real largest = (f.target().reshaped() - s.residual).lpNorm<Eigen::Infinity>();  // of y
-    const Real error = s.jacobian == "exact" ? kEpsilon : s.differences.noise();
+    const Real error = s.jacobian == "exact"      ? kEpsilon
+                       : s.differences.is_noisy() ? kSure * s.differences.noise()
+                                                  : s.differences.noise();
     return error * (s.squares.misfit() + s.residual.norm() * largest);
   }
 
@@ -540,7 +572,8 @@ void register_levenberg_marquardt(OptimizerRegistry& registry) {
        .family = Family::curvature,
        .kind = Kind::least_squares,
        .formula = "θ ← θ + argmin ‖J d + r‖² + μ‖D d‖²",
-       .source = "Marquardt (1963); Moré (1978); Nielsen (1999); Transtrum, Sethna (2012)",
+       .source = "Marquardt (1963); Moré (1978); Nielsen (1999); Transtrum, Sethna (2012); by "
+                 "differences Broyden (1965); Dennis, Gay, Welsch (1981)",
        .note =
            "A rejected candidate counts as an iteration. With damping=fixed, every step is "
            "accepted, D is 1, and μ is a share of the mean diagonal of JJᵀ. On mini-batches, the "

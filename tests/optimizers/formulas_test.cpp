@@ -2,6 +2,7 @@
 // gradient rules and baselines.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 #include <map>
 #include <string>
@@ -9,6 +10,7 @@
 
 #include "core/decompose.h"
 #include "optimizers/examination.h"
+#include "optimizers/residual_curvature.h"
 #include "optimizers/ssbroyden.h"
 #include "tests/optimizers/run.h"
 #include "tests/optimizers/trial_problems.h"
@@ -502,6 +504,31 @@ TEST(Examination, ConfirmsASolutionAndNamesWhatSpeaksAgainstOne) {
   EXPECT_NE(doubt_at(J, Vector::Zero(2)).find("c has no effect"), std::string::npos);
   J.col(1) = 2 * J.col(0);
   EXPECT_NE(doubt_at(J, Vector::Zero(2)).find("rank"), std::string::npos);
+}
+
+// r = (x₁ − 1, x₂ + x₁², 3 + x₁x₂/2, …) leaves a residual: with S, steps shrink ever faster;
+// without, by a factor.
+TEST(ResidualCurvature, MakesStepsConvergeFasterThanGaussNewton) {
+  const auto residual = [](const Vector& x) -> Vector {
+    return Vector{{x[0] - 1, x[1] + x[0] * x[0], 3 + 0.5 * x[0] * x[1], 2 - std::sin(x[1])}};
+  };
+  const auto jacobian = [](const Vector& x) -> Matrix {
+    return Matrix{{1, 0}, {2 * x[0], 1}, {0.5 * x[1], 0.5 * x[0]}, {0, -std::cos(x[1])}};
+  };
+  const auto slope_after = [&](int steps, bool bends) {
+    ResidualCurvature curvature;
+    Vector x{{0.4, -0.2}}, d;
+    for (int i = 0; i < steps; ++i) {
+      Matrix J = jacobian(x);
+      const Vector b = -residual(x), D = J.colwise().norm();
+      if (bends) curvature.measured(J, x, b);
+      if (!curvature.solve(J, b, D, d)) least_squares(J, b, 1e-14, d);
+      x += d;
+    }
+    return (jacobian(x).transpose() * residual(x)).norm();
+  };
+  EXPECT_LT(slope_after(9, true), 1e-10);
+  EXPECT_GT(slope_after(9, false), 1e-4);
 }
 
 }  // namespace

@@ -338,12 +338,12 @@ class Folded final : public Physics {
 };
 
 bool examines_well(bool tells_its_kink) {
-  // Most of the halved steps are longer than the way to the kink. Beside 1000, a start of 6e-6 is
+  // Most of the halved steps are longer than the way to the kink. Beside 1e9, a start of 6e-6 is
   // taken for an unknown of size 1.
   bool all = true;
   for (std::uint64_t seed = 0; seed < 40; ++seed) {
     const Problem problem({.physics = std::make_unique<Folded>(tells_its_kink),
-                           .start = Eigen::Vector2d(6e-6, 1000),
+                           .start = Eigen::Vector2d(6e-6, 1e9),
                            .start_scale = StartScale::own,
                            .target = Vector::Ones(2)});
     RandomStream stream(seed, "folded", "conformance");
