@@ -7,8 +7,8 @@
 //
 // the source times h², the observed state, and a prior of a smooth m at the nodes with four
 // neighbours. Without the latter, an m of alternating signs has no effect. x* is m* = x₁² − x₂² +
-// 2x₁x₂, whose prior vanishes, and u* = sin πx₁ sin πx₂. Haber and Ascher (2001) state such
-// problems in this form.
+// 2x₁x₂, whose prior vanishes, and u* = sin πx₁ sin πx₂; other instances turn m* by an angle, as
+// √2 ((x₁² − x₂²) cos β + 2x₁x₂ sin β). Haber and Ascher (2001) state such problems in this form.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -137,21 +137,24 @@ class Diffusion final : public BySparseJacobian {
   int n_;
 };
 
-Vector truth_of(Index n) {
+Vector truth_of(Index n, const Draw& draw) {
+  const Real beta = 2 * std::numbers::pi * draw.stream("target").uniform();
+  const Real a = draw.is_published() ? 1 : std::numbers::sqrt2 * std::cos(beta);
+  const Real b = draw.is_published() ? 1 : std::numbers::sqrt2 * std::sin(beta);
   const Index nodes = n * n;
   Vector truth(2 * nodes);
   for (Index i = 0; i < nodes; ++i) {
     const Real width = 1 / static_cast<Real>(n + 1);
     const Real x1 = static_cast<Real>(i % n + 1) * width;
     const Real x2 = static_cast<Real>(i / n + 1) * width;
-    truth[i] = x1 * x1 - x2 * x2 + 2 * x1 * x2;
+    truth[i] = a * (x1 * x1 - x2 * x2) + b * 2 * x1 * x2;
     truth[nodes + i] = std::sin(std::numbers::pi * x1) * std::sin(std::numbers::pi * x2);
   }
   return truth;
 }
 
 ProblemParts make_diffusivity(const Diffusivity& o, const Draw& draw) {
-  const Vector truth = truth_of(o.n);
+  const Vector truth = truth_of(o.n, draw);
   ProblemParts parts =
       from_exact_data(std::make_unique<Diffusion>(static_cast<int>(o.n)), truth, draw);
   Vector start = truth;  // u as observed, and a diffusivity of 1
@@ -162,7 +165,7 @@ ProblemParts make_diffusivity(const Diffusivity& o, const Draw& draw) {
   const Diffusion finer(static_cast<int>(n));
   Matrix y(finer.outputs(), 1);
   Workspace w;
-  finer.forward(truth_of(n), Matrix(0, 1), y, w);
+  finer.forward(truth_of(n, draw), Matrix(0, 1), y, w);
   const auto area = static_cast<Real>(o.refine * o.refine);  // h² over that of the finer grid
   for (Index i = 0; i < o.n * o.n; ++i) {
     const Index row = o.refine * (i % o.n + 1) - 1, column = o.refine * (i / o.n + 1) - 1;

@@ -72,7 +72,7 @@ Real contrast_power(Real factor, std::size_t families, Real deviation) {
 
 Real detectable_factor(std::size_t families, Real deviation) {
   constexpr Real kOften = 0.8;
-  for (const Real factor : {2, 3, 4, 6, 8, 16, 32, 64})
+  for (const Real factor : {2, 3, 4, 5, 6, 8, 16, 32, 64})
     if (contrast_power(factor, families, deviation) >= kOften) return factor;
   return kNever;
 }

@@ -83,9 +83,20 @@ std::string failures_text(const Comparison& c, const std::vector<std::size_t>& s
   return fmt::format("{}/{} ({}–{})", failed, runs, percent(bounds.low), percent(bounds.high));
 }
 
-// Work of the first over that of the second: 64^(−difference).
+// Work of the first over that of the second: 64^(−difference). More digits where two do not show on
+// which side of 1 it is.
 std::string factor_text(Real difference) {
-  return fmt::format("{:.2g}", std::pow(kProfileEnd, -difference));
+  const Real factor = std::pow(kProfileEnd, -difference);
+  const std::string text = fmt::format("{:.2g}", factor);
+  return text == "1" ? fmt::format("{:.3g}", factor) : text;
+}
+
+std::size_t solved_by(const Comparison& c, const std::vector<std::size_t>& settings,
+                      std::size_t method) {
+  return static_cast<std::size_t>(std::ranges::count_if(settings, [&](std::size_t p) {
+    const Real cost = c.cell(p, method).median(Measure::work, c.yardstick.tightest().rung);
+    return cost < kNever;
+  }));
 }
 
 // The contrasts on some settings: their rows, or how many runs are missing.
@@ -115,7 +126,8 @@ std::string both_text(const Comparison& c, const std::vector<std::size_t>& setti
 }
 
 Sequence add_sequence(Table& table, const Comparison& c, const std::vector<Pair>& pairs,
-                      const std::vector<std::size_t>& settings, const std::string& on) {
+                      const std::vector<std::size_t>& settings, bool is_noisy) {
+  const std::string on = is_noisy ? words("contrasts.with-noise") : "";
   Sequence out;
   std::vector<std::size_t> methods;
   std::vector<std::array<std::size_t, 2>> places;  // in `methods`
@@ -158,6 +170,12 @@ Sequence add_sequence(Table& table, const Comparison& c, const std::vector<Pair>
     const results::Contrast& contrast = out.contrasts[i];
     out.outcomes.push_back(
         words(kOutcomes[static_cast<std::size_t>(contrast.outcome)], pairs[i][0], pairs[i][1]));
+    const std::string decision = is_noisy             ? words("contrasts.estimate")
+                                 : contrast.is_tested ? out.outcomes.back()
+                                                      : words("contrasts.untested");
+    for (const std::size_t side : {0, 1})
+      if (solved_by(c, settings, methods[places[i][side]]) == 0)
+        out.outcomes.back() += words("contrasts.solves-none", pairs[i][side], settings.size());
     table.rows.push_back(
         {fmt::format("{} against {}{}", pairs[i][0], pairs[i][1], on),
          {fmt::format("{:+.2f} ({:+.2f} to {:+.2f})", contrast.mean, contrast.interval.low,
@@ -171,23 +189,24 @@ Sequence add_sequence(Table& table, const Comparison& c, const std::vector<Pair>
          both_text(c, settings, methods[places[i][0]], methods[places[i][1]]),
          failures_text(c, settings, methods[places[i][0]]),
          failures_text(c, settings, methods[places[i][1]]),
-         contrast.is_tested ? out.outcomes.back() : words("contrasts.untested")});
+         decision});
   }
   return out;
 }
 
-// The decisions, and what so many families can find: at a usual deviation, and at the largest here.
+// The decisions, and what so many families can find: at a usual deviation, and at that of the last
+// contrast that was tested.
 std::vector<std::string> sentences_of(const Sequence& sequence) {
   if (!sequence.absent.empty())
     return {words("contrasts.absent", joined(sequence.absent), sequence.absent.size())};
   if (sequence.missing > 0) return {words("contrasts.incomplete", sequence.missing)};
   std::vector<std::string> decisions;
-  std::vector<Real> deviations;
+  Real here = 0;
   for (std::size_t i = 0; i < sequence.contrasts.size(); ++i) {
-    deviations.push_back(sequence.contrasts[i].deviation);
-    if (sequence.contrasts[i].is_tested) decisions.push_back(sequence.outcomes[i]);
+    if (!sequence.contrasts[i].is_tested) continue;
+    decisions.push_back(sequence.outcomes[i]);
+    here = sequence.contrasts[i].deviation;
   }
-  const auto [least, most] = std::ranges::minmax(deviations);
   const auto found = [&](Real deviation) {
     const Real factor = detectable_factor(sequence.families, deviation);
     return factor < kNever ? words("contrasts.factor", factor) : words("contrasts.no-factor");
@@ -198,7 +217,7 @@ std::vector<std::string> sentences_of(const Sequence& sequence) {
   if (!(detectable_factor(sequence.families) < kNever))
     return {decided, words("contrasts.no-power", sequence.families)};
   return {decided, words("contrasts.power", sequence.families, found(results::kUsualDeviation),
-                         least, most, found(most))};
+                         here, found(here))};
 }
 
 }  // namespace
@@ -210,7 +229,7 @@ std::vector<std::string> contrast_sentences(const Comparison& c) {
   const std::vector<std::size_t> exact = settings_of(c, false);
   if (pairs.empty() || exact.empty()) return {};
   Table rows;
-  return sentences_of(add_sequence(rows, c, pairs, exact, ""));
+  return sentences_of(add_sequence(rows, c, pairs, exact, false));
 }
 
 Table contrast_table(const Comparison& c) {
@@ -218,8 +237,8 @@ Table contrast_table(const Comparison& c) {
   const std::vector<Pair> pairs = named_contrasts(*c.study);
   const std::vector<std::size_t> exact = settings_of(c, false), noisy = settings_of(c, true);
   if (pairs.empty() || exact.empty()) return table;
-  table.reading = joined(sentences_of(add_sequence(table, c, pairs, exact, "")), " ");
-  if (!noisy.empty()) add_sequence(table, c, pairs, noisy, words("contrasts.with-noise"));
+  table.reading = joined(sentences_of(add_sequence(table, c, pairs, exact, false)), " ");
+  if (!noisy.empty()) add_sequence(table, c, pairs, noisy, true);
   return table;
 }
 

@@ -127,6 +127,7 @@ std::string variation_text(const Decision& decision) {
 // name, the others as a number.
 std::string group_text(const Comparison& c, const Decision& decision) {
   constexpr std::size_t kAbout = 3;  // settings
+  if (!decision.fewest_wins()) return words("ranking.group-any", decision.families);
   std::vector<std::size_t> close;
   std::size_t others = 0;
   for (const results::Place& place : decision.places)
@@ -557,7 +558,8 @@ Table noise_level_table(const Comparison& c) {
   std::vector<std::size_t> settings;
   for (std::size_t p = 0; p < c.problems.size() && c.yardstick.has_contrasts; ++p)
     if (is_ill_posed(c, p)) settings.push_back(p);
-  std::map<std::size_t, std::vector<Real>> ratios;  // by method
+  std::map<std::size_t, std::vector<Real>> ratios;                       // by method
+  std::map<std::size_t, std::pair<std::size_t, std::size_t>> all_ended;  // of so many runs
   const auto title = [&](std::size_t p) { return problem_name(c.problems[p]); };
   Table table = settings_table(
       c, "noise-level", settings, title, [&](TableCell& shown, std::size_t p, std::size_t s) {
@@ -574,17 +576,25 @@ Table noise_level_table(const Comparison& c) {
                                  ended, cell.runs.size());
         shown.numbers = {{"ratio", ratio}};
         ratios[s].push_back(ratio);
+        all_ended[s].first += ended;
+        all_ended[s].second += cell.runs.size();
       });
-  std::vector<std::string> ranges;
+  std::vector<std::string> ranges, never;
   for (const auto& [s, all] : ratios) {
     const auto [low, high] = std::ranges::minmax(all);
-    ranges.push_back(words("noise-level.range", name_in_sentence(c.optimizers[s]),
-                           reached_figure(std::round(100 * low) / 100),
+    const std::string name = name_in_sentence(c.optimizers[s]);
+    const auto [ended, runs] = all_ended[s];
+    if (2 * ended <= runs) {
+      never.push_back(words("noise-level.never-in", name, runs - ended, runs));
+      continue;
+    }
+    ranges.push_back(words("noise-level.range", name, reached_figure(std::round(100 * low) / 100),
                            reached_figure(std::round(100 * high) / 100)));
   }
   for (auto& row : table.rows)
     for (TableCell& cell : row) cell.is_best = false;
-  table.reading = words("noise-level.ranges", settings.size(), joined(ranges, "; "));
+  table.reading = words("noise-level.ranges", settings.size(), joined(ranges, "; "),
+                        never.empty() ? "" : words("noise-level.never", joined(never)));
   return table;
 }
 
