@@ -123,33 +123,63 @@ Vector last_places(const std::vector<Vector>& values, const std::vector<Index>& 
 }  // namespace
 
 Real noise_of_calls(const Vector& y0, const std::function<Vector(Real t)>& y, Vector* slope) {
-  const auto [far, twice, near] = kNoiseSteps;
-  constexpr Real kNotSmooth = 0.5, kSmooth = 0.1;
+  const Real near = kNoiseSteps[2];
+  Real far = kNoiseSteps[0];
+  constexpr Real kNotSmooth = 0.5, kSmooth = 0.1, kSmaller = 0.01, kFalls = 0.01, kBends = 0.3;
   constexpr Real kBent = 1e-4;  // of the change: a smooth y bends less over so small a step
   constexpr std::size_t kMostRows = 1000;
   const Real size = y0.norm();
   Real noise = std::numeric_limits<Real>::epsilon();
   if (!(size > 0) || !std::isfinite(size)) return noise;
-  std::vector<Vector> values{y0, y(far), y(twice)};
-  const Vector once = y(near), second = values[2] - 2 * values[1] + y0;
-  const Vector moved = once - y0, first = (values[1] - y0 - second / 2) / far;
-  const Real change = moved.norm(), gap = (moved - near * first).norm();
+  std::vector<Vector> values{y0, y(far), y(2 * far), y(near)};
+  if (!is_finite(values[1]) || !is_finite(values[2])) {  // failed calls: once more, beside them
+    far *= 0.75;
+    values[1] = y(far);
+    values[2] = y(2 * far);
+  }
+  const auto difference = [&](const Vector& once, const Vector& two) -> Vector {
+    return two - 2 * once + y0;
+  };
+  // The third difference over steps of t, of which y(t) and y(2 t) are known.
+  const auto third_over = [&](Real t, const Vector& once, const Vector& two) {
+    values.push_back(y(3 * t));
+    return (values.back() - two - once + y0 - 2 * difference(once, two)).norm();
+  };
+  Vector second = difference(values[1], values[2]);
+  const Vector moved = values[3] - y0;
+  const auto gap_to = [&](Real t, const Vector& once) {
+    return (moved - near / t * (once - y0 - second / 2)).norm();
+  };
+  Real gap = gap_to(far, values[1]);
+  if (is_finite(second) && !(far / near * gap <= kSmooth * second.norm())) {
+    Real third = third_over(far, values[1], values[2]);
+    if (third > kNotSmooth * second.norm()) {
+      // A narrow feature of a smooth y bends over small steps as much as over large ones, and its
+      // third difference falls with the cube of the step. Noise does not fall, and jumps do not
+      // bend.
+      const Real small = far * kSmaller;
+      const Vector once = y(small), two = y(2 * small);
+      second = difference(once, two);
+      const Real smaller = third_over(small, once, two);
+      gap = gap_to(small, once);
+      const bool bends = second.norm() >= kBends * kSmaller * kSmaller * third;
+      third = bends && smaller <= kFalls * third ? 0 : std::max(third, smaller);
+      if (std::isfinite(third)) noise = std::max(noise, third / std::sqrt(20.0) / size);
+    }
+  }
+  const Real change = moved.norm();
   if (!(gap <= kBent * change)) {
-    const Real bend = (y(2 * near) - 2 * once + y0).norm() / std::sqrt(6.0);
+    const Real bend = difference(values[3], y(2 * near)).norm() / std::sqrt(6.0);
     if (std::isfinite(bend) && bend > kBent * change) noise = std::max(noise, bend / size);
   }
-  if (!is_finite(second)) return noise;
-  if (!(far / near * gap <= kSmooth * second.norm())) {
-    values.push_back(y(3 * far));
-    const Real third = (values[3] - values[2] - values[1] + y0 - 2 * second).norm();
-    if (!std::isfinite(third)) return noise;
-    if (third > kNotSmooth * second.norm()) noise = std::max(noise, third / std::sqrt(20.0) / size);
-  }
+  std::erase_if(values, [](const Vector& each) { return !is_finite(each); });
   std::vector<Index> rows;
   for (Index i = 0; i < y0.size() && rows.size() < kMostRows; ++i)
-    if (values[2][i] != y0[i]) rows.push_back(i);
+    if (std::ranges::any_of(values, [&](const Vector& each) { return each[i] != y0[i]; }))
+      rows.push_back(i);
   if (!rows.empty()) noise = std::max(noise, last_places(values, rows).norm() / size);
-  if (slope != nullptr && noise == std::numeric_limits<Real>::epsilon()) *slope = moved / near;
+  if (slope != nullptr && noise == std::numeric_limits<Real>::epsilon() && is_finite(moved))
+    *slope = moved / near;
   return noise;
 }
 

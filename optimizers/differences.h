@@ -1,7 +1,7 @@
 // J of residuals without derivatives, for methods of least squares: by differences whose steps
 // follow from the noise of the calls, with rank-one updates between; Broyden (1965). The noise is
-// measured once, by three to five calls or by ECNoise's tables, and is at least rounding. M₂ of h =
-// 8^¼ √(ε_f/M₂), a bound on the second derivative along an unknown, is ‖y‖ over the square of the
+// measured once, by three to eight calls or by ECNoise's tables, and is at least rounding. M₂ of h
+// = 8^¼ √(ε_f/M₂), a bound on the second derivative along an unknown, is ‖y‖ over the square of the
 // unknown's size; Moré, Wild (2012), ACM TOMS 38.
 #pragma once
 
@@ -23,7 +23,7 @@ namespace isoline::optimizers {
 inline const Choices kJacobians{"exact", "differences", "central", "ecnoise"};
 inline constexpr const char* kJacobianHelp =
     "exact: as the problem offers it; differences, central: by forward or central differences of "
-    "r, which cost n or 2n forward solves, with steps that follow from the noise of y, which three to five "
+    "r, which cost n or 2n forward solves, with steps that follow from the noise of y, which three to eight "
     "calls at the start measure; ecnoise: by forward differences with the noise by ECNoise, 8 to 29 "
     "calls at the start";
 

@@ -15,7 +15,6 @@ namespace isoline::optimizers {
 
 std::string doubt_of(const LeastSquaresPoint& at) {
   constexpr Real kRounding = std::numeric_limits<Real>::epsilon();
-  constexpr Real kSure = 4;        // standard deviations
   constexpr Real kOfSpread = 0.1;  // of its standard deviation: more noise leaves it undetermined
   std::vector<Index> free;
   for (Index i = 0; i < at.theta.size(); ++i)
@@ -54,9 +53,11 @@ std::string doubt_of(const LeastSquaresPoint& at) {
   const Real r = at.residual.norm();
   const Real spread = m > n ? r / std::sqrt(static_cast<Real>(m - n)) : 0;
   const Matrix root = svd.Vt.transpose() * sigma.cwiseInverse().asDiagonal();
-  Vector slope_errors(n);  // of the entries of D⁻¹ Jᵀ r, by those of J
+  // Of the entries of D⁻¹ Jᵀ r, by those of J: of the noise, and what y bends over central steps.
+  Vector slope_errors(n);
   for (Index i = 0; i < n; ++i)
-    slope_errors[i] = error / (step * size_for_steps(size_of(i), D[i], at.size_of_y)) * r / D[i];
+    slope_errors[i] = error / (step * size_for_steps(size_of(i), D[i], at.size_of_y)) * r / D[i] +
+                      (at.is_central && at.forgives_noise ? step * step * r : 0);
   const Matrix spreads = (root * root.transpose()) * slope_errors.asDiagonal();
   for (Index i = 0; i < n; ++i) {
     const Real enough_of_unknown =
@@ -64,14 +65,16 @@ std::string doubt_of(const LeastSquaresPoint& at) {
     const Real length = root.row(i).norm() / D[i];
     const Real unsure = std::hypot(error * length, spreads.row(i).norm() / D[i]);
     const bool forgives = at.forgives_noise || at.is_central;
-    const Real of_noise = forgives ? std::min(kSure * unsure, kOfSpread * spread * length) : 0;
+    const Real of_noise = forgives ? std::min(at.sure * unsure, kOfSpread * spread * length) : 0;
     const Real known = std::max(enough_of_unknown, at.enough_of_deviation * spread * length);
     const Real enough = std::max(known, of_noise);
     const bool is_blurred =
         !forgives && !at.has_exact_jacobian && std::sqrt(static_cast<Real>(m)) * unsure > known;
     if (is_blurred || !(std::abs(move[i]) <= enough))
-      return fmt::format("gradient not small: the Gauss-Newton step moves {} by {:.2g}",
-                         name_of_unknown(at.names, free[i]), move[i]);
+      return fmt::format("gradient not small: the Gauss-Newton step moves {} by {:.2g} of its {}",
+                         name_of_unknown(at.names, free[i]),
+                         spread > 0 ? move[i] / (spread * length) : move[i] / size_of(i),
+                         spread > 0 ? "standard deviation" : "size");
   }
   return "";
 }

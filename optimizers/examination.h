@@ -33,6 +33,7 @@ struct LeastSquaresPoint {
   bool is_central = false;                // of differences, whose error is less
   Real enough_of_deviation = kEnoughOfDeviation;
   bool forgives_noise = true;  // a step that the noise makes counts as none
+  Real sure = 4;               // standard deviations of that
 };
 
 // Empty where J has full rank over the unknowns that no bound holds and the Gauss-Newton step there

@@ -176,7 +176,8 @@ struct LevenbergMarquardt {
                          .has_exact_jacobian = false,
                          .is_central = s.differences.is_central(),
                          .enough_of_deviation = std::max(accuracy, kEnoughOfDeviation),
-                         .forgives_noise = false};
+                         .forgives_noise = false,
+                         .sure = 1};
     for (Index i = 0; f.bounds() && i < theta.size(); ++i)
       at.is_held[static_cast<std::size_t>(i)] =
           f.bounds()->is_active(theta, slope, i) || f.bounds()->lower[i] == f.bounds()->upper[i];
@@ -194,7 +195,7 @@ struct LevenbergMarquardt {
   // A step within the radius, by a J of differences.
   Status step_within(Meter& f, Vector& theta, State& s) const {
     constexpr Real kSettled = 1e-7;  // of ½‖r‖², that the Gauss-Newton step would gain
-    constexpr Real kFirst = 0.25, kLonger = 1.1;
+    constexpr Real kFirst = 0.25, kLonger = 1.1, kShorter = 0.9;
     Vector sizes(theta.size()), least(theta.size());
     for (Index j = 0; j < theta.size(); ++j) {
       sizes[j] = s.differences.size_of(theta, j);
@@ -206,6 +207,8 @@ struct LevenbergMarquardt {
     const bool is_settled = 0.5 * s.Jd.squaredNorm() <= kSettled * s.squares.misfit();
     const bool is_enough = share <= kEnoughOfUnknown || leaves_enough(s, theta);
     if (is_enough || (is_settled && !is_fresh)) return stop(f, theta, s);
+    if (is_fresh && s.is_fine && s.differences.is_noisy() && !is_blurred(f, theta, s))
+      return Status::converged;
     if (is_fresh && stagnates(s))
       return s.is_fine || s.jacobian == "central" ? Status::converged : refine(f, theta, s);
     if (s.radius == 0) s.radius = kFirst * std::sqrt(s.squares.squared_length(sizes));
@@ -228,8 +231,7 @@ struct LevenbergMarquardt {
     const bool is_rounding =
         std::abs(predicted) <= rounding && std::abs(actual) <= rounding;  // false for NaN
     if (is_rounding) {
-      const Real shorter = s.differences.is_noisy() ? 0.5 : 0.9;
-      if (!(length <= shorter * s.last_length)) return stop(f, theta, s);
+      if (!(length <= kShorter * s.last_length)) return stop(f, theta, s);
       s.last_length = length;
     }
     // On a bound, J may predict no decrease of a step that has one.

@@ -467,6 +467,41 @@ TEST(Differences, StepsFollowTheColumnOfTheJacobian) {
   EXPECT_EQ(sizes_of_unknowns(Vector{{2.5, 5e-9, 0}}), (Vector{{2.5, 5e-9, 1}}));
 }
 
+// As of a line at 6,400 eV of a width of 3: the first steps, of a share of 6,400, cross it.
+TEST(NoiseOfCalls, TakesNoNarrowFeatureForNoise) {
+  const auto y = [](Real t) -> Vector {
+    Vector all(50);
+    for (Index i = 0; i < 50; ++i) {
+      const Real u = (6380 + static_cast<Real>(i) - 6399 * (1 + t)) / 3;
+      all[i] = 1 / (1 + u * u);
+    }
+    return all;
+  };
+  EXPECT_EQ(noise_of_calls(y(0), y), std::numeric_limits<Real>::epsilon());
+}
+
+TEST(NoiseOfCalls, SeesPrintedDigitsWhereACallFails) {
+  for (const int failed : {1, 2}) {
+    const auto y = [=](Real t) -> Vector {
+      const Vector all = calls_of(t, [](Real value) {
+        std::array<char, 32> text;
+        std::snprintf(text.data(), text.size(), "%.6g", value);
+        return std::strtod(text.data(), nullptr);
+      });
+      const bool fails = std::abs(t - failed * kNoiseStep) < 1e-9;
+      return fails ? Vector::Constant(30, std::nan("")) : all;
+    };
+    EXPECT_GT(noise_of_calls(y(0), y), 1e-7) << failed;
+  }
+}
+
+// Where one of two calls fails, a call halfway keeps the order: e^t over steps of 0.01.
+TEST(Differences, OfTwoCallsKeepTheirOrderWhereOneFails) {
+  const auto y = [](Real t) { return Vector::Constant(1, t < 0 ? std::nan("") : std::exp(t)); };
+  const Vector slope = quotient_of_calls<Vector>({0.01, -0.01}, {}, y(0), y);
+  EXPECT_NEAR(slope[0], 1, 1e-4);
+}
+
 TEST(Differences, TakeTheStepsOfAUser) {
   EXPECT_EQ(given_steps("").of(0, 2, 5, 1e-3), 5e-3);
   EXPECT_EQ(given_steps("0.1").of(1, 2, 5, 1e-3), 0.5);
