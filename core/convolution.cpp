@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <oneapi/dnnl/dnnl.hpp>
 #include <unordered_map>
+#include <utility>
 
+#include "core/convolution_kernels.h"
 #include "core/errors.h"
 #include "core/threads.h"
 
@@ -40,6 +42,16 @@ struct Arrays {
   }
 };
 
+constexpr std::pair<dnnl::cpu_isa, const char*> kInstructions[] = {
+    {dnnl::cpu_isa::sse41, "SSE41"},
+    {dnnl::cpu_isa::avx, "AVX"},
+    {dnnl::cpu_isa::avx2, "AVX2"},
+    {dnnl::cpu_isa::avx2_vnni, "AVX2_VNNI"},
+    {dnnl::cpu_isa::avx512_core, "AVX512_CORE"},
+    {dnnl::cpu_isa::avx512_core_vnni, "AVX512_CORE_VNNI"},
+    {dnnl::cpu_isa::avx512_core_bf16, "AVX512_CORE_BF16"},
+    {dnnl::cpu_isa::avx512_core_amx, "AVX512_CORE_AMX"}};
+
 // A memory of the library's own must not be shared by threads: it is one of the arguments.
 dnnl::primitive_attr attributes(bool adds) {
   dnnl::primitive_attr attr;
@@ -66,6 +78,17 @@ dnnl::convolution_backward_weights::primitive_desc gradient_of(const Arrays& arr
 }
 
 }  // namespace
+
+std::string convolution_instructions() {
+  for (const auto& [code, name] : kInstructions)
+    if (code == dnnl::get_effective_cpu_isa()) return name;
+  return "others";
+}
+
+bool has_fast_convolutions(const std::string& limit) {
+  const bool is_none = limit.empty() || limit == "ALL" || limit == "DEFAULT";
+  return is_none || kChannels == 8 || limit.starts_with("AVX512_CORE");
+}
 
 // One primitive and its arguments; each call sets their addresses.
 class ConvolutionCall {

@@ -1,6 +1,7 @@
 // The processor by CPUID, and the environment of the libraries that compute.
 #include "core/threads.h"
 
+#include <fmt/format.h>
 #include <omp.h>
 #include <sched.h>
 #include <strings.h>
@@ -10,6 +11,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <cctype>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
@@ -21,6 +23,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/convolution_kernels.h"
 #include "core/text.h"
 
 #ifdef __x86_64__
@@ -157,6 +160,25 @@ void warn_of_kernel() {
                     " has no effect: OpenBLAS uses its kernel " + used + "\n");
 }
 
+// oneDNN computes blocks for which it has no kernel by its reference, a hundred times as slow and
+// with other bits; and takes fewer instructions than were asked for where the processor has fewer.
+void settle_convolutions() {
+  for (const char* variable : {"ONEDNN_MAX_CPU_ISA", "DNNL_MAX_CPU_ISA"}) {
+    std::string asked = setting(variable);
+    std::ranges::transform(asked, asked.begin(), [](unsigned char c) { return std::toupper(c); });
+    if (!has_fast_convolutions(asked)) {
+      say(stderr,
+          fmt::format("isoline: ignores {}={}: the convolutions of this build need AVX-512, "
+                      "and would be a hundred times as slow\n",
+                      variable, asked));
+      unsetenv(variable);
+    } else if (asked.starts_with("AVX") && asked != convolution_instructions()) {
+      say(stderr, fmt::format("isoline: {}={} has no effect: oneDNN uses {}\n", variable, asked,
+                              convolution_instructions()));
+    }
+  }
+}
+
 }  // namespace
 
 const Processor& processor() {
@@ -173,6 +195,7 @@ void prepare_libraries(char** arguments) {
   }
   if (!is_set) execv("/proc/self/exe", arguments);  // on failure we go on, with idle threads
   warn_of_kernel();
+  settle_convolutions();
 }
 
 LibraryKernel library_kernel() {

@@ -183,12 +183,18 @@ std::filesystem::path path_of(const std::string& file) {
 
 std::string text_of(const std::filesystem::path& path) {
   if (path.extension() != ".bz2") return read_text(path);
-  const std::unique_ptr<FILE, int (*)(FILE*)> pipe(
-      popen(("bzip2 -dc " + shell_word(path.string())).c_str(), "r"), pclose);
+  require(std::filesystem::is_regular_file(path),
+          [&] { return fmt::format("cannot read {}: it is not a file", path.string()); });
+  FILE* const pipe =
+      popen(fmt::format("bzip2 -dc {} 2> /dev/null", shell_word(path.string())).c_str(), "r");
   std::string text;
   std::array<char, 1 << 16> part;
-  for (std::size_t read = 1; pipe && read > 0;)
-    text.append(part.data(), read = std::fread(part.data(), 1, part.size(), pipe.get()));
+  for (std::size_t read = 1; pipe != nullptr && read > 0;)
+    text.append(part.data(), read = std::fread(part.data(), 1, part.size(), pipe));
+  require(pipe != nullptr && pclose(pipe) == 0, [&] {
+    return fmt::format("{}: bzip2 cannot decompress it: it is damaged, or bzip2 is not installed",
+                       path.string());
+  });
   return text;
 }
 

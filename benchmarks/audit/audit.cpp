@@ -261,7 +261,7 @@ std::vector<AuditedOptimizer> audit_all(const Catalog& catalog,
   constexpr double kAuditSeconds = 60;  // an optimizer; nearly all take a hundredth of a second
   std::vector<AuditedOptimizer> all;
   for (const std::string& name : names) {
-    const auto [text, failure] = isolated_text(
+    const auto [text, failure, is_interrupted] = isolated_text(
         [&] { return json_text(to_json(audit_optimizer(catalog, name))); }, kAuditSeconds);
     if (text)
       all.push_back(audited_from_text(*text, name));

@@ -210,7 +210,7 @@ Cell second_run(Runs& runs) {
   constexpr double kSeconds = 60;
   const Record& run = runs.of("E3");
   Record on_threads = runs.of(kOnTwoThreads);
-  const auto [first, failure] = isolated_text(
+  const auto [first, failure, is_interrupted] = isolated_text(
       [&] {
         std::string difference;
         for (int i = 0; i < 2; ++i) {

@@ -314,7 +314,8 @@ std::string CommandLine::complaint(const CLI::ParseError& error) const {
   const std::vector<const CLI::App*> parsed =
       app_.get_subcommands([](const CLI::App* verb) { return verb->parsed(); });
   const CLI::App& verb = parsed.empty() ? app_ : *parsed.back();
-  const std::vector<std::string> unexpected = verb.remaining();
+  std::vector<std::string> unexpected = verb.remaining();
+  if (unexpected.empty()) unexpected = app_.remaining();  // behind --
   std::string text = error.what();
   if (parsed.empty() && unexpected.empty())
     text = fmt::format("a command is missing, such as run; `{} help` lists the commands", program_);

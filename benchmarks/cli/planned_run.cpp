@@ -18,15 +18,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Calls read() and puts the flag into its complaint.
-auto read_as(const char* flag, const auto& read) {
-  try {
-    return read();
-  } catch (const UsageError& error) {
-    throw UsageError(fmt::format("{}: {}", flag, error.what()));
-  }
-}
-
 void override_blocks(const RunArguments& given, Suite& suite) {
   const std::uint64_t most_seeds = given.allow_large ? kMostWhereLarge : kMostSeeds;
   for (MatrixBlock& block : suite.blocks) {
@@ -214,7 +205,10 @@ PlannedRun planned_run(const RunArguments& given, const Catalog& catalog) {
   require(size.cells <= most, [&] {
     return too_large(size, most) + (given.allow_large ? "" : "; --allow-large lifts the limit");
   });
-  PlannedRun all{suite.label(), expand(catalog, suite, rates, most), given.out, std::move(rates)};
+  const auto cells = [&] { return expand(catalog, suite, rates, most); };
+  const bool is_of_file = is_suite && given.instead.empty() && fs::is_regular_file(given.suite);
+  PlannedRun all{suite.label(), is_of_file ? read_as(given.suite, cells) : cells(), given.out,
+                 std::move(rates)};
   if (is_suite && is_limited && given.instead.empty())
     all.requests = filtered(catalog, std::move(all.requests), given.problem, given.optimizer);
   if (!all.folder.empty()) return all;

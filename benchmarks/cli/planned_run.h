@@ -9,6 +9,7 @@
 
 #include "benchmarks/cli/verb.h"
 #include "benchmarks/plan/rates.h"
+#include "core/errors.h"
 
 namespace isoline::benchmarks {
 
@@ -35,6 +36,15 @@ struct RunArguments {
   bool in_process = false, uncertified = false;
 };
 void declare_run(VerbArguments& verb, RunArguments& given);
+
+// What read() returns; its UsageError begins with the flag or the file that it is about.
+auto read_as(const std::string& origin, const auto& read) {
+  try {
+    return read();
+  } catch (const UsageError& error) {
+    throw UsageError(origin + ": " + error.what());
+  }
+}
 
 struct PlannedRun {
   std::string name;

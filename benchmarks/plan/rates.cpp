@@ -69,7 +69,7 @@ Rates Rates::from_json(const Json& json, const std::string& origin) {
            json_text(row.value("source", Json::object())),
            row.contains("source") && row["source"].contains("grid")});
     }
-  } catch (const Json::exception& error) {
+  } catch (const std::exception& error) {
     throw UsageError(fmt::format("{} is not a table of rates: {}", origin, reason_of(error)));
   }
   return rates;
@@ -138,7 +138,11 @@ BestLosses BestLosses::from_json(const Json& json, const std::string& origin) {
   for (const Json& row : json.at("rows")) {
     Row& read = best.rows_.emplace_back();
     read.problem = row.at("problem");
-    read.options = option_values_from(row.at("options"));
+    try {
+      read.options = option_values_from(row.at("options"));
+    } catch (const UsageError& error) {
+      throw UsageError(fmt::format("{}: {}", origin, error.what()));
+    }
     for (const Json& one : row.at("losses"))
       read.losses[one.at("seed")] = {real_of(one.at("loss")), one.at("optimizer")};
   }

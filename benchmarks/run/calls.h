@@ -2,12 +2,14 @@
 // them, and what they remark.
 #pragma once
 
+#include <algorithm>
 #include <filesystem>
 #include <string>
 #include <vector>
 
 #include "benchmarks/run/runner.h"
 #include "core/foreign/evaluations.h"
+#include "core/foreign/workers.h"
 
 namespace isoline::benchmarks {
 
@@ -17,6 +19,13 @@ namespace isoline::benchmarks {
 inline double text_seconds_of(const Component& problem, double seconds) {
   if (!is_elsewhere(problem)) return seconds;
   return problem.options.number("call-time", 0) > 0 ? 2 * kForeignSeconds : kForeignSeconds;
+}
+
+// In the process of such work: no call lasts for ever, where --time is given.
+inline void limit_calls(const Request& request) {
+  constexpr double kLeastSeconds = 60, kTimes = 10;
+  if (request.budget.seconds > 0)
+    call_seconds_otherwise() = std::max(kLeastSeconds, kTimes * request.budget.seconds);
 }
 
 // Where the evaluations of a run are kept, in the folder of its results. A run whose time counts

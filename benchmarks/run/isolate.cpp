@@ -33,6 +33,7 @@
 #include "core/errors.h"
 #include "core/files.h"
 #include "core/foreign/foreign.h"
+#include "core/foreign/line.h"
 #include "core/text.h"
 #include "core/threads.h"
 
@@ -363,6 +364,8 @@ void Worker::run(const std::function<void(Trace&)>& work) {
     work(shared_->trace);
   } catch (const std::bad_alloc&) {
     conclude(Status::memory, "the cell exceeded its memory limit");
+  } catch (const KilledProgram& error) {
+    conclude(Status::interrupted, error.what());
   } catch (const std::exception& error) {
     conclude(Status::failed, error.what());
   } catch (...) {
@@ -542,7 +545,9 @@ IsolatedText isolated_text(const std::function<std::string(Trace&)>& work, doubl
       return {{}, "it ran out of memory"};
     default: {
       const std::string words = worker.output().last_words();
-      return {{}, trace.message + (words.empty() ? "" : "; it last wrote: " + words)};
+      return {{},
+              trace.message + (words.empty() ? "" : "; it last wrote: " + words),
+              trace.status == Status::interrupted};
     }
   }
 }

@@ -200,6 +200,7 @@ class Worker {
 struct IsolatedText {
   std::optional<std::string> text;
   std::string failure;  // "it threw: …", "it was ended by signal 11 (Segmentation fault)", …
+  bool is_interrupted = false;  // another program killed it, or the component's own program
 };
 
 // The limit of work that makes calls to another program, each of which may take hours, and during

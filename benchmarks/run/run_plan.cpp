@@ -70,13 +70,6 @@ std::string checks_text(const TracePoint& now, const std::string& problem) {
   return fmt::format("{} of {} checks{} of {}", now.iteration, now.work, calls, problem);
 }
 
-// In the process of a check: no call lasts for ever.
-void limit_calls(const Request& request) {
-  constexpr double kLeastSeconds = 60, kTimes = 10;
-  if (request.budget.seconds > 0)
-    call_seconds_otherwise() = std::max(kLeastSeconds, kTimes * request.budget.seconds);
-}
-
 // As broken_property_of. The store of evaluations answers what it can, and keeps its calls.
 std::string checked(const Catalog& catalog, const Request& request, const Store& store,
                     const RunOptions& options, Trace& trace) {
@@ -113,7 +106,8 @@ std::string answers_differently(const Catalog& catalog, const Request& request,
 }
 
 // Each problem of another program of which the store has evaluations computes one of them again.
-void confirm_evaluations(const Catalog& catalog, const std::vector<const Request*>& requests,
+// False where that was interrupted.
+bool confirm_evaluations(const Catalog& catalog, const std::vector<const Request*>& requests,
                          Store& store, const RunOptions& options) {
   std::set<std::string> seen;
   for (const Request* request : requests) {
@@ -125,11 +119,15 @@ void confirm_evaluations(const Catalog& catalog, const std::vector<const Request
       continue;
     const auto found = isolated_text([&] { return answers_differently(catalog, *request, store); },
                                      text_seconds_of(problem, kForeignSeconds));
+    if (found.is_interrupted)
+      store.remark(
+          fmt::format("the check of the stored calls of {}: {}", problem.spec, found.failure));
+    if (found.is_interrupted || asked_to_end() != Asked::nothing) return false;
     if (found.text && !found.text->empty())
       for (const std::filesystem::path& file : evaluation_files(store.folder(), key.problem))
         store.set_aside(file, "the program answers differently now at a point in " + file.string());
-    if (asked_to_end() != Asked::nothing) return;
   }
+  return true;
 }
 
 // Whether any of its repetitions is still to be done, as runs decide it.
@@ -142,9 +140,11 @@ bool will_run(const Request& request, Store& store, const RunOptions& options) {
 // value, or with the reason if a problem cannot be checked, since it fails or does not answer. With
 // --uncertified, none is checked, and the labels of those without a certificate say so in each
 // table. Checks only problems with cells to run, each at the first of its seeds, in its own
-// process, and once for each build. Returns the builds that have passed, by problem.
-Certificates require_certified(const Catalog& catalog, std::vector<Request>& requests, Store& store,
-                               const RunOptions& options) {
+// process, and once for each build. Returns the builds that have passed, by problem; nothing where
+// a check was interrupted, which says nothing about the problem.
+std::optional<Certificates> require_certified(const Catalog& catalog,
+                                              std::vector<Request>& requests, Store& store,
+                                              const RunOptions& options) {
   constexpr double kCertificateSeconds = 120;
   Certificates passed;
   std::set<std::string> seen;
@@ -158,7 +158,7 @@ Certificates require_certified(const Catalog& catalog, std::vector<Request>& req
     if (passed[spec] != build_of(request.problem) && seen.insert(spec).second)
       firsts.push_back(&request);
   }
-  confirm_evaluations(catalog, to_run, store, options);
+  if (!confirm_evaluations(catalog, to_run, store, options)) return std::nullopt;
   std::set<std::string> uncertified;
   if (options.uncertified)
     for (const Request* request : std::exchange(firsts, {})) {
@@ -169,7 +169,7 @@ Certificates require_certified(const Catalog& catalog, std::vector<Request>& req
   for (const Request* request : firsts) {
     progress.started(request->problem.spec);
     bool is_announced = false;
-    const auto [broken, failure] = isolated_text(
+    const auto [broken, failure, is_interrupted] = isolated_text(
         [&](Trace& trace) { return checked(catalog, *request, store, options, trace); },
         text_seconds_of(request->problem, kCertificateSeconds), Limits{}.memory_bytes,
         [&](const Trace& trace) {
@@ -177,7 +177,9 @@ Certificates require_certified(const Catalog& catalog, std::vector<Request>& req
           const bool has_calls = trace.last.counts[0] > 0;
           progress.show(has_calls && !std::exchange(is_announced, has_calls));
         });
-    if (asked_to_end() != Asked::nothing) return passed;
+    if (is_interrupted)
+      store.remark(fmt::format("the check of {}: {}", request->problem.spec, failure));
+    if (is_interrupted || asked_to_end() != Asked::nothing) return std::nullopt;
     const std::string reason = broken.value_or("it cannot be checked: " + failure);
     require(reason.empty(), [&] {
       return fmt::format(
@@ -285,11 +287,12 @@ Outcome run_plan(const Catalog& catalog, const WholePlan& whole, std::vector<Req
   Outcome outcome{.planned = static_cast<std::int64_t>(requests.size()), .is_interrupted = true};
   require_sound(catalog, requests);
   Store store(folder);
-  const Certificates certificates = require_certified(catalog, requests, store, options);
-  if (asked_to_end() != Asked::nothing) return outcome;
+  const auto certificates = require_certified(catalog, requests, store, options);
+  outcome.remarks = store.remarks();
+  if (!certificates || asked_to_end() != Asked::nothing) return outcome;
   store.plan(whole.name, whole.cells);
   write_used_rates(whole.rates, requests, store);
-  write_sheets(catalog, requests, store, options.progress, certificates);
+  write_sheets(catalog, requests, store, options.progress, *certificates);
   if (asked_to_end() != Asked::nothing) return outcome;
   outcome = run_all(catalog, requests, store, options);
   if (!outcome.missing.empty()) {

@@ -323,7 +323,9 @@ class SheetWriter {
         progress_(style, "measures costs of", 0, 0),
         certificates_(certificates) {}
 
-  void write_problem(const Component& component) {
+  void write_problem(const Request& request) {
+    const Component& component = request.problem;
+    request_ = &request;
     if (!known_.insert("problem " + component.spec).second) return;
     progress_.started(component.spec);
     Sheet sheet = described_problem(catalog_, component);
@@ -402,7 +404,10 @@ class SheetWriter {
                                   std::string& reason) {
     constexpr double kSeconds = 30;
     const auto work = [&] {
-      if (is_elsewhere(component)) evaluations().begin({.folder = store_.folder()});
+      if (is_elsewhere(component)) {
+        evaluations().begin({.folder = store_.folder()});
+        limit_calls(*request_);
+      }
       return file_text(make());
     };
     const IsolatedText made = isolated_text(work, text_seconds_of(component, kSeconds),
@@ -420,6 +425,7 @@ class SheetWriter {
   Store& store_;
   Progress progress_;
   const Certificates& certificates_;
+  const Request* request_ = nullptr;  // whose problem or optimizer is written
   std::set<std::string> known_;
 };
 
@@ -528,7 +534,7 @@ void write_sheets(const Catalog& catalog, const std::vector<Request>& requests, 
   SheetWriter writer(catalog, store, style, certificates);
   for (const Request& request : requests) {
     if (asked_to_end() != Asked::nothing) return;
-    writer.write_problem(request.problem);
+    writer.write_problem(request);
     writer.write_optimizer(request.optimizer);
   }
 }

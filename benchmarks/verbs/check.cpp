@@ -7,6 +7,7 @@
 #include "benchmarks/plan/catalog.h"
 #include "benchmarks/run/calls.h"
 #include "benchmarks/run/isolate.h"
+#include "benchmarks/run/process_group.h"
 #include "core/differences.h"
 #include "core/json.h"
 #include "core/spec.h"
@@ -64,12 +65,18 @@ Json findings_of(const Catalog& catalog, const Component& component, std::uint64
   return all;
 }
 
-// The findings, from a process of its own: a broken problem costs its own check alone.
+// The findings, from a process of its own: a broken problem costs its own check alone. Null where
+// the check was interrupted, which says nothing about the problem.
 Json isolated_findings(const Catalog& catalog, const Component& component, std::uint64_t seed) {
-  const auto [text, failure] =
+  const auto [text, failure, is_interrupted] =
       isolated_text([&] { return json_text(findings_of(catalog, component, seed)); },
                     text_seconds_of(component, kCheckSeconds));
   if (text) return parse_json(*text, component.spec);
+  if (is_interrupted || asked_to_end() != Asked::nothing) {
+    say(stderr,
+        fmt::format("isoline: the check of {} was interrupted: {}\n", component.spec, failure));
+    return {};
+  }
   return Json::array({{{"property", "the problem can be created and checked"},
                        {"figure", "nan"},
                        {"limit", 0},
@@ -101,10 +108,12 @@ void print(const std::string& spec, const Json& findings) {
 }
 
 int run(const CheckArguments& given, Session& session) {
+  const InterruptGuard guard;
   Json all = Json::object();
   std::size_t failed = 0, total = 0;
   for (const Component& component : chosen(session.catalog(), given.spec)) {
     const Json findings = isolated_findings(session.catalog(), component, given.seed);
+    if (findings.is_null()) return kInterrupted;
     for (const Json& finding : findings) failed += !finding.at("holds").get<bool>();
     total += findings.size();
     if (!given.as_json) print(component.spec, findings);

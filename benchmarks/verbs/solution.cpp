@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "benchmarks/cli/left_out.h"
+#include "benchmarks/cli/planned_run.h"
 #include "benchmarks/cli/terminal.h"
 #include "benchmarks/cli/verb.h"
 #include "benchmarks/run/isolate.h"
@@ -396,19 +397,16 @@ void add_profiles(Solution& solution, const SolutionArguments& given, Session& s
 // Reads, infers and writes; the sentence about it.
 std::string inferred(const SolutionArguments& given, const Catalog& catalog) {
   const TrainedNetwork network = read_network(given.folders.front());
-  const Component component =
-      complete_problem(catalog, network.problem.name, network.problem.options);
-  require(component.is_learned, [&] {
-    return given.folders.front() + " is not a trained network: its problem has no network";
+  const Problem problem = read_as(given.folders.front(), [&] {
+    const Component component =
+        complete_problem(catalog, network.problem.name, network.problem.options);
+    require(component.is_learned, "it is not a trained network: its problem has no network");
+    Problem made = make_problem(catalog, component, network.seed);
+    require_fitting(network, made);
+    return made;
   });
-  const Problem problem = make_problem(catalog, component, network.seed);
   require(given.training_data.empty() || !problem.has_fresh_batches(),
           "--training-data requires a network that was trained with data=N");
-  try {
-    require_fitting(network, problem);
-  } catch (const UsageError& error) {
-    throw UsageError(fmt::format("{}: {}", given.folders.front(), error.what()));
-  }
   const NumberArray input = given.training_data.empty()
                                 ? read_numbers(given.input)
                                 : samples_array(problem, problem.batch().input);
@@ -440,7 +438,7 @@ int infer_isolated(const SolutionArguments& given, Session& session) {
     }
   };
   const std::int64_t memory = given.memory_bytes > 0 ? given.memory_bytes : Limits{}.memory_bytes;
-  const auto [text, failure] = isolated_text(work, given.seconds, memory);
+  const auto [text, failure, is_interrupted] = isolated_text(work, given.seconds, memory);
   if (!text || text->empty()) {
     say(stderr, fmt::format("isoline: {} was not written: {}\n", given.out,
                             text ? "the process did not answer" : failure));

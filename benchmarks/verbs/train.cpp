@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <new>
 
+#include "benchmarks/cli/planned_run.h"
 #include "benchmarks/cli/verb.h"
 #include "benchmarks/plan/suite.h"
 #include "benchmarks/run/execute.h"
@@ -104,7 +105,8 @@ Vector start_from(const Catalog& catalog, const Request& request, const std::str
     return fmt::format("{} is a network of {}, not of {}", file, network.problem.spec,
                        request.problem.spec);
   });
-  require_fitting(network, make_problem(catalog, request.problem, request.seed));
+  read_as(file,
+          [&] { require_fitting(network, make_problem(catalog, request.problem, request.seed)); });
   return network.theta;
 }
 
@@ -158,8 +160,9 @@ int run(const TrainArguments& given, Session& session) {
                        trace.message);
   });
   if (!is_trained(trace)) {
-    say(stderr, fmt::format("isoline: no network was written: {}: {}\n", name_of(trace.status),
-                            trace.message));
+    const std::string reason = trace.message;
+    say(stderr, fmt::format("isoline: no network was written: {}{}{}\n", name_of(trace.status),
+                            reason.empty() ? "" : ": ", reason));
     return kWorse;
   }
   say(stdout, fmt::format("{}: {} by {}, {}, validation loss {:.4g}, error in x {:.4g}\n",

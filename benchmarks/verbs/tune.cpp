@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "benchmarks/cli/planned_run.h"
 #include "benchmarks/cli/terminal.h"
 #include "benchmarks/cli/verb.h"
 #include "benchmarks/plan/suite.h"
@@ -81,7 +82,9 @@ std::vector<Request> cells_of(const Catalog& catalog, const TuneArguments& given
   const std::string own =
       given.leaves_out ? std::filesystem::path(given.table).stem().string() : std::string();
   std::erase_if(suite.blocks, [&](const MatrixBlock& block) { return block.rates != own; });
-  return filtered(catalog, expand(catalog, suite, Rates()), given.problem, given.optimizer);
+  std::vector<Request> cells =
+      read_as(given.suite, [&] { return expand(catalog, suite, Rates()); });
+  return filtered(catalog, std::move(cells), given.problem, given.optimizer);
 }
 
 std::vector<Request> cells_named(const Catalog& catalog, const TuneArguments& given) {

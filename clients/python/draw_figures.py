@@ -10,6 +10,7 @@ The numbers are those of report.json. Labels have 7 points and more at the width
 """
 
 import argparse
+import contextlib
 import csv
 import json
 import math
@@ -167,12 +168,19 @@ def read_report(path):
     if not isinstance(plots, list):
         sys.exit(f"{path} is not the JSON of a report: it has no list of plots")
     for number, plot in enumerate(plots, 1):
-        try:
+        with named(path, number):
             require_plot(plot)
-        except (LookupError, TypeError, ValueError, AttributeError, OverflowError) as error:
-            why = f"{error.args[0]} is missing" if isinstance(error, KeyError) else "a value has another type or size than expected"
-            sys.exit(f"{path}: plot {number} cannot be drawn: {why}")
     return report
+
+
+@contextlib.contextmanager
+def named(path, plot):
+    """Where a value of the plot cannot be used, an exit that names it and the file."""
+    try:
+        yield
+    except (LookupError, TypeError, ValueError, AttributeError, OverflowError) as error:
+        why = f"{error.args[0]} is missing" if isinstance(error, KeyError) else "a value has another type or size than expected"
+        sys.exit(f"{path}: plot {plot} cannot be drawn: {why}")
 
 
 def require_plot(plot):
@@ -192,7 +200,7 @@ def require_plot(plot):
         raise ValueError
     if "goal" in plot and not math.isfinite(float(plot["goal"])):
         raise ValueError
-    for line in [*lines, *plot.get("ground", [])]:
+    for line in [*lines, *plot.get("ground", []), *plot.get("ends", [])]:
         x, y, low, high = (numbers(line, each) for each in ("x", "y", "low", "high"))
         if len(y) not in (len(x), 0 if line not in plot["series"] else len(x)) or len(low) != len(high):
             raise ValueError
@@ -246,16 +254,19 @@ def main():
         from matplotlib import pyplot
         pyplot.rcParams.update(STYLE)
     with open(out / "captions.txt", "w", encoding="utf-8") as file:
-        file.writelines(f"{plot['name']}: {caption(plot, report, methods)}\n\n" for plot in plots)
+        for plot in plots:
+            with named(given.report, plot["name"]):
+                file.write(f"{plot['name']}: {caption(plot, report, methods)}\n\n")
     for plot in plots:
         if "csv" in formats:
             write_points(out / f"{plot['name']}.csv", plot)
         for name in drawings:
-            figure = drawn(pyplot, plot, given.width, methods, in_tex if name == "pgf" else lambda text: text)
             plain = {"svg": {"Date": None, "Title": plot["title"]},
                      "pdf": {"CreationDate": None, "Title": plot["title"]}}
-            figure.savefig(out / f"{plot['name']}.{name}", metadata=plain.get(name))
-            pyplot.close(figure)
+            with named(given.report, plot["name"]):
+                figure = drawn(pyplot, plot, given.width, methods, in_tex if name == "pgf" else lambda text: text)
+                figure.savefig(out / f"{plot['name']}.{name}", metadata=plain.get(name))
+                pyplot.close(figure)
     if not given.quiet:
         print(f"{out}: {len(plots)} figure{'' if len(plots) == 1 else 's'} as {', '.join(formats)}")
 

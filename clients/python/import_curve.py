@@ -112,6 +112,11 @@ def described(path):
         require(isinstance(value, kind) and not isinstance(value, bool), f"{name} has the wrong type")
     for name in ("problem", "optimizer", "source", "date", "columns"):
         require(told.get(name), f"{name} is missing")
+    for name in ("problem", "optimizer"):
+        try:
+            component(told[name])
+        except Refused as error:
+            require(False, f"{name}: {error}")
     require(told.get("seed", -1) >= 0, "seed must be an integer of at least 0")
     require(told.setdefault("status", "budget") in STATUSES, f"status must be one of {STATUSES}")
     date = told["date"] if "T" in told["date"] else told["date"] + "T00:00:00Z"

@@ -77,7 +77,11 @@ def _rows_of_file(path):
         mark = next((mark for mark in ";\t" if mark in header), ",")
         yield [name.strip() for name in header.split(mark)]
         reader = csv.reader(file, delimiter=mark)
-        yield from ((f"{path}, line {reader.line_num + 1}", row) for row in reader if row)
+        try:
+            yield from ((f"{path}, line {reader.line_num + 1}", row) for row in reader if row)
+        except csv.Error:
+            raise Refused(f"{path}, line {reader.line_num + 1}: expected fields of at most {csv.field_size_limit()} characters, "
+                          "in lines that end by a line feed; an open quote joins lines") from None
 
 
 def _rows_of_frame(frame):

@@ -73,20 +73,35 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// Empty where the file is sound, or is not there. The record counts without it.
+std::string damage_of_fields(const Record& record, const fs::path& file) {
+  if (record.fields && is_there(file)) try {
+      FieldFrames frames = *record.fields;
+      read_field_numbers(frames, file);
+    } catch (const std::exception& error) {
+      return reason_without(file.string(), error);
+    }
+  return "";
+}
+
 void read_runs(Study& study, const std::vector<std::string>& folders, const Listener& listener,
                const Trim& trim) {
   const std::vector<std::string> files = record_files(folders, study.unreadable);
-  std::vector<std::string> reasons(files.size());
+  std::vector<std::string> reasons(files.size()), reasons_of_fields(files.size());
   std::vector<Record> runs(files.size());
   const auto read = [&](std::size_t i) {
     try {
       runs[i] = read_record(files[i]);
+      reasons_of_fields[i] = damage_of_fields(runs[i], field_path(files[i]));
       if (trim) trim(runs[i]);
     } catch (const std::exception& error) {
       reasons[i] = reason_without(files[i], error);
     }
   };
   share(files.size(), read, listener);
+  for (std::size_t i = 0; i < files.size(); ++i)
+    if (!reasons_of_fields[i].empty())
+      study.unreadable.push_back({field_path(files[i]), std::move(reasons_of_fields[i])});
   std::vector<RunMark> marks(files.size());
   for (std::size_t i = 0; i < files.size(); ++i)
     if (reasons[i].empty())

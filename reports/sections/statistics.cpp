@@ -51,7 +51,8 @@ Section statistics_section(const Comparison& c) {
   std::erase_if(section.tables, [](const Table& table) { return table.id.empty(); });
   for (Table& table : section.tables) table.is_folded = true;
   for (Plots& some : plots)
-    for (Plot& plot : some) section.plots.push_back(std::move(plot));
+    for (Plot& plot : some)
+      if (!plot.series.empty()) section.plots.push_back(std::move(plot));  // else none is ranked
   return section;
 }
 

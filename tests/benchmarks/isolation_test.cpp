@@ -8,6 +8,7 @@
 #include "benchmarks/run/execute.h"
 #include "benchmarks/run/keepers/keeper.h"
 #include "benchmarks/run/run_plan.h"
+#include "core/foreign/line.h"
 #include "tests/benchmarks/builtin.h"
 #include "tests/benchmarks/hostile.h"
 
@@ -275,6 +276,7 @@ TEST(IsolatedText, OfAProcessThatDoesNotEndWellIsNoneButAReason) {
       {[]() -> std::string { throw 7; }, 10, "not a std::exception"},
       {[]() -> std::string { throw std::bad_alloc(); }, 10, "memory"},
       {[]() -> std::string { return std::raise(SIGKILL) == 0 ? "x" : "y"; }, 10, "signal 9"},
+      {[]() -> std::string { throw KilledProgram("somebody killed it"); }, 10, "killed it"},
       {[]() -> std::string { _exit(3); }, 10, "exited with code 3"},
       {[]() -> std::string { _exit(0); }, 10, "without an answer"},
       {[]() -> std::string { std::exit(0); }, 10, "without an answer"},
@@ -303,6 +305,7 @@ TEST(IsolatedText, OfAProcessThatDoesNotEndWellIsNoneButAReason) {
     const IsolatedText found = isolated_text(work, seconds);
     EXPECT_FALSE(found.text.has_value()) << reason;
     EXPECT_NE(found.failure.find(reason), std::string::npos) << found.failure;
+    EXPECT_EQ(found.is_interrupted, reason == "signal 9" || reason == "killed it") << reason;
   }
 }
 

@@ -98,6 +98,30 @@ TEST(Features, AreOptionsOfEveryProblemAndFactorsOfASuite) {
   EXPECT_EQ(shell.expect("./isoline replay out/runs/*.json").out.find("differ"), std::string::npos);
 }
 
+TEST(Run, NamesTheFileThatHoldsAWrongValue) {
+  const Shell shell;
+  write_text(shell.folder() / "s.json",
+             R"({"schema": "isoline.suite/1", "name": "s", "matrix": [{"problems": ["heat[M=8]"],
+                 "optimizers": ["gd"]}]})");
+  write_text(shell.folder() / "r.json", R"({"schema": "isoline.rates/1", "rows": [
+             {"problem": "rosenbrock", "optimizer": "adam", "options": {"rate": ["a"]}}]})");
+  shell("mkfifo pipe.bz2; echo torn > torn.bz2");
+  shell.expect("./isoline run s.json --dry-run", {.exit_code = 1, .err = {"s.json: heat"}});
+  const std::string run = "./isoline run --out out --optimizer adam --problem ";
+  shell.expect(run + "rosenbrock --rates r.json --dry-run", {.exit_code = 1, .err = {"r.json"}});
+  for (const std::string name : {"pipe.bz2", "torn.bz2"})
+    shell.expect(run + "'bal[file=" + name + "]'", {.exit_code = 1, .err = {name}});
+}
+
+TEST(Run, OfOneMethodThatCannotTreatAllProblemsHasAReport) {
+  const Shell shell;
+  shell.expect(
+      "./isoline run --problem 'heat,sine[xi=20]' --optimizer nlopt-neldermead --work 40 "
+      "--out out",
+      {.out = {"1 inapplicable"}});
+  EXPECT_TRUE(fs::exists(shell.folder() / "out" / "report" / "report.json"));
+}
+
 // A plan in parts, in the folder `out`.
 class Shards : public testing::Test {
  protected:

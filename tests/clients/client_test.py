@@ -456,7 +456,7 @@ class Alone(unittest.TestCase):
                 "log_x": False, "log_y": True, "window": [0, 1, 1e-3, 1], "series": [line]}
         damages = [{"name": "../../curve"}, {"name": None}, {"window": [0, 1]}, {"window": [0, 1, 1, 1e-3]},
                    {"window": [0, 1, "inf", 1]}, {"series": [{**line, "y": [3]}]}, {"series": [{"x": 1}]},
-                   {"title": "x" * 70_000}, {"goal": "nan"}]
+                   {"title": "x" * 70_000}, {"goal": "nan"}, {"ends": [{"name": "start", "x": True}]}]
         texts = ["", "[", "[]", "{}", "[" * 60_000, b"\xb8"] + [json.dumps({"plots": [{**plot, **each}]}) for each in damages]
         with tempfile.TemporaryDirectory() as folder:
             path = os.path.join(folder, "report.json")

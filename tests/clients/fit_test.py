@@ -332,6 +332,7 @@ class Tables(unittest.TestCase):
     def test_refuses_missing_values_by_their_line(self):
         for text, word in (("t,y\n1,2\n2,\n", "line 3, column y"), ("t,y\n1,NA\n", "line 2, column y"), ("t,y\n1,2\n\n3\n", "line 4"),
                            ("t,y\nnan,2\n", "line 2, column t"), ("t,y\n1_0,2\n", "line 2, column t"),
+                           (f"t,y\n1,2\n1,{'9' * 200_000}\n", "data.csv, line 3: expected fields"),
                            ("t,z\n1,2\n", "data.csv.*'y'"), ("y,y\n1,2\n", "no name twice")):
             with self.assertRaisesRegex(isoline.Refused, word):
                 self.read(text)

@@ -19,8 +19,11 @@
 #include <vector>
 
 #include "core/clock.h"
+#include "core/convolution.h"
+#include "core/convolution_kernels.h"
 #include "core/errors.h"
 #include "core/foreign/foreign.h"
+#include "core/records/provenance.h"
 #include "core/shell.h"
 #include "core/threads.h"
 
@@ -135,9 +138,29 @@ TEST(LibraryKernel, IsNotBelowTheProcessorUnlessAUserSaysSo) {
     EXPECT_STRCASEEQ(kernel.name.c_str(), std::getenv("OPENBLAS_CORETYPE"));
 }
 
-#ifndef ISOLINE_PORTABLE
-// In a separate process that Google Test starts: OpenBLAS reads its environment only once.
+// In a separate process that Google Test starts: libraries read their environment only once.
 [[noreturn]] void leave_if(bool is_so) { std::_Exit(is_so ? 0 : 1); }
+
+TEST(ProvenanceDeathTest, TellsTheVariantsOfTheMathematicalFunctionsApart) {
+  if (!processor().has("fma")) GTEST_SKIP() << "the C library has one variant here";
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  setenv("ISOLINE_TEST_LIBM", this_build()->libraries.at("libm").c_str(), 0);
+  setenv("GLIBC_TUNABLES", "glibc.cpu.hwcaps=-FMA", 1);
+  EXPECT_EXIT(leave_if(this_build()->libraries.at("libm") != std::getenv("ISOLINE_TEST_LIBM")),
+              testing::ExitedWithCode(0), "");
+  unsetenv("GLIBC_TUNABLES");
+  unsetenv("ISOLINE_TEST_LIBM");
+}
+
+TEST(ConvolutionInstructions, AreInTheProvenanceAndBelowThoseOfTheBuildAreRefused) {
+  EXPECT_TRUE(this_build()->libraries.at("oneDNN").ends_with(" " + convolution_instructions()));
+  for (const char* limit : {"", "ALL", "AVX512_CORE", "AVX512_CORE_AMX"})
+    EXPECT_TRUE(has_fast_convolutions(limit)) << limit;
+  for (const char* limit : {"SSE41", "AVX2"})
+    EXPECT_EQ(has_fast_convolutions(limit), kChannels == 8) << limit;
+}
+
+#ifndef ISOLINE_PORTABLE
 
 bool is_kernel(const std::string& name, const std::string& chosen_by) {
   return library_kernel().name == name && library_kernel().chosen_by == chosen_by;

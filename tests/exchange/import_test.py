@@ -170,7 +170,7 @@ class Import(unittest.TestCase):
         for members, sentence in [
                 ({"optimizer": "gd"}, "gd is an optimizer"),
                 ({"date": "31 January"}, "date must be"), ({"date": "2026-02-31"}, "date must be"),
-                ({"problem": "sine[xi"}, "is not a specification"),
+                ({"problem": "sine[xi"}, ".json: problem: 'sine[xi' is not"),
                 ({"columns": loss}, "columns must contain"),
                 ({"columns": {**loss, "jacobian": "nfev"}}, "depends on the problem"),
                 ({"columns": {**loss, "work": 9}}, "must be in column 9"),

@@ -568,6 +568,8 @@ TEST_F(ShownFields, ThatAreDamagedGiveWayToTheNextOfTheirKind) {
   const auto all = found();
   ASSERT_TRUE(all);
   EXPECT_EQ(name(all->found[0]), "slow");
+  ASSERT_EQ(study.unreadable.size(), 1U);
+  EXPECT_TRUE(study.unreadable[0].file.ends_with(".npy"));
 }
 
 TEST_F(ShownFields, WithoutAnyAreNothing) {
