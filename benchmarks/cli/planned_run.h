@@ -37,7 +37,7 @@ struct RunArguments {
 };
 void declare_run(VerbArguments& verb, RunArguments& given);
 
-// What read() returns; its UsageError begins with the flag or the file that it is about.
+// Calls read(); its UsageError begins with the flag or the file that it is about.
 auto read_as(const std::string& origin, const auto& read) {
   try {
     return read();
