@@ -9,12 +9,12 @@
 namespace isoline::problems {
 
 struct ModelWords {
-  std::string fixed, tied, log, sigma, weights, prior;
+  std::string fixed, tied, log, sigma, weights, prior, axis;
   Index starts = 0;
 
   bool is_empty() const {
     return fixed.empty() && tied.empty() && log.empty() && sigma.empty() && weights.empty() &&
-           prior.empty() && starts == 0;
+           prior.empty() && starts == 0;  // the axis is for pictures alone
   }
 };
 inline void fields(ModelWords& o, auto& field) {
@@ -30,6 +30,10 @@ inline void fields(ModelWords& o, auto& field) {
         "factors of the residuals, of unknown scale: one number per datum, or a file");
   field("prior", o.prior, {},
         "normal distributions of unknowns, mean and standard deviation: \"k1 = 240 ± 2\"");
+  field(
+      "axis", o.axis, {},
+      "where the data were measured, for the picture of the fit: \"its name; name of the data; one number per "
+      "datum\"");
   field("starts", o.starts, between(0, 100'000),
         "starts 1 to N − 1 are a Latin hypercube over the bounds; 0: near the standard start");
 }

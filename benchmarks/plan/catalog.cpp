@@ -173,7 +173,8 @@ std::string with_digest(const std::string& problem, const std::string& given) {
 // The words of a model that accept a file.
 constexpr std::array kFileWords = {"sigma", "weights"};
 bool is_file(const std::string& given) {
-  return !given.empty() && std::filesystem::exists(named_file(given).path);
+  std::error_code is_too_long;  // a list of numbers
+  return !given.empty() && std::filesystem::exists(named_file(given).path, is_too_long);
 }
 
 // The problem's entry with the options for files, each with the digest of its content.
@@ -222,10 +223,10 @@ Problem made_with_features(const ProblemEntry& entry, const Component& problem,
   if (problem.foreign)
     declared.insert(declared.end(), problem.foreign->options.begin(),
                     problem.foreign->options.end());
-  const OptionTable table = problems::feature_table(declared);
   OptionValues own, features;
   for (const auto& [name, value] : options) {
-    const bool is_feature = std::ranges::find(table, name, &OptionField::name) != table.end();
+    const auto known = std::ranges::find(declared, name, &OptionField::name);
+    const bool is_feature = known == declared.end() || known->doc == kWordOfScript;
     (is_feature ? features : own).set(name, value);
   }
   const auto with_own_data = [&](Problem made) {

@@ -15,10 +15,13 @@
 #include "benchmarks/cli/terminal.h"
 #include "benchmarks/cli/verb.h"
 #include "benchmarks/run/isolate.h"
-#include "benchmarks/run/run_plan.h"
+#include "benchmarks/run/refit.h"
+#include "benchmarks/run/runner.h"
 #include "benchmarks/run/trained.h"
+#include "core/differences.h"
 #include "core/errors.h"
 #include "core/files.h"
+#include "core/foreign/evaluations.h"
 #include "core/json.h"
 #include "core/output.h"
 #include "core/records/naming.h"
@@ -26,6 +29,7 @@
 #include "core/results/answers.h"
 #include "core/results/profile.h"
 #include "core/results/uncertainty.h"
+#include "core/seeds.h"
 #include "core/text.h"
 #include "reports/formats/formats.h"
 #include "reports/sections/answers.h"
@@ -60,7 +64,7 @@ void declare(VerbArguments& verb, SolutionArguments& given) {
   verb.flag(
       "--profile", given.profile,
       "Add profile-likelihood intervals: at values of each unknown, all others are fitted "
-      "again from there. Its runs are kept in DIR/profile, and repeating the command goes on");
+      "again from there. Calls of 0.1 s or more are kept, so that repeating the command goes on");
   verb.flag("--trust", given.trust, kTrust);
   verb.text("--out,--output", given.out,
             "Output file, which npy and networks require (default: standard output)");
@@ -121,7 +125,15 @@ void compare_with(const Solution& other, Solution& solution) {
   solution.distance = std::max(solution.distance, apart);
 }
 
-// The run of least loss of each problem, among those that are wanted.
+// Losses on other data do not compare: that of the luckiest noise would be the least.
+bool have_one_data_set(const Record& a, const Record& b) {
+  if (a.request.problem.spec != b.request.problem.spec) return false;
+  if (a.fit && b.fit) return a.fit->target == b.fit->target;
+  return !(a.noise_level.value_or(0) > 0) ||
+         instance_of(a.request.seed) == instance_of(b.request.seed);
+}
+
+// The run of least loss of each problem and data set, among those that are wanted.
 std::vector<Solution> solutions_of(const results::Study& study, const SolutionArguments& given) {
   std::vector<Solution> all, chosen;
   for (const Record& record : study.runs)
@@ -135,7 +147,7 @@ std::vector<Solution> solutions_of(const results::Study& study, const SolutionAr
     const Request& request = each.record->request;
     if (given.optimizer != "best" && !is_named(request.optimizer, given.optimizer)) continue;
     const auto same = std::ranges::find_if(chosen, [&](const Solution& other) {
-      return other.record->request.problem.spec == request.problem.spec;
+      return have_one_data_set(*other.record, *each.record);
     });
     if (same == chosen.end())
       chosen.push_back(each);
@@ -260,8 +272,6 @@ std::string text_of(const std::vector<Solution>& solutions, const std::string& f
 
 // --- profiles
 
-struct Interrupted {};  // by the user, during a profile
-
 // A fit with the bounds of its problem; UsageError if the run has no standard deviations.
 results::ProfiledFit profiled_fit(const Solution& solution, const Problem& problem) {
   const Record& record = *solution.record;
@@ -287,55 +297,52 @@ results::ProfiledFit profiled_fit(const Solution& solution, const Problem& probl
       if (!std::isnan(upper[Index(i)])) fit.upper[i] = upper[Index(i)];
     }
   }
+  const Vector start = problem.in_own_units(problem.standard_start());
   for (std::size_t i = 0; i < x.size(); ++i) {
     fit.names.push_back(solution.answer.name(i));
     fit.is_log.push_back(x[i] > 0 && results::has_log(record, fit.names[i]));
+    constexpr Real kOfSize = 0.03;  // where a bound holds it: by which the search begins
+    if (const Real size = std::max(std::abs(x[i]), std::abs(start[Index(i)]));
+        !(fit.deviation[i] > 0) && size > 0)
+      fit.deviation[i] = kOfSize * size;
   }
   return fit;
 }
 
-// A run of that request with one more unknown fixed, kept in that folder.
-std::optional<results::Refit> refitted(Request request, const std::string& name,
-                                       std::size_t unknown, const std::vector<Real>& start,
-                                       const fs::path& folder, Session& session) {
-  const std::string bytes(reinterpret_cast<const char*>(start.data()), start.size() * sizeof(Real));
-  const fs::path file = folder / fmt::format("start-{:016x}.npy", fnv1a(bytes));
-  write_npy(file, {{static_cast<Index>(start.size())}, start});
-  OptionValues options = request.problem.options;
-  const std::string fixed = options.text("fixed");
-  options.set("fixed",
-              fmt::format("{}{}{}={}", fixed, fixed.empty() ? "" : "; ", name, start[unknown]));
-  options.set(kStartOption, file.string());
-  request.problem = complete_problem(session.catalog(), request.problem.name, options);
-  request = named(std::move(request));
-  const RunOptions run{.uncertified = true, .command = session.command()};
-  if (run_plan(session.catalog(), "profile", {request}, folder, run).is_interrupted)
-    throw Interrupted{};
-  const std::optional<Record> done = Store::find_in(folder, request);
-  if (!done || !done->answer || !done->answer->residual_norm || is_failure(done->status) ||
-      done->status == Status::failed || done->status == Status::diverged)
-    return std::nullopt;
-  const std::span<const Real> x = done->answer->point(kReturned);
-  return results::Refit{std::pow(*done->answer->residual_norm, 2), {x.begin(), x.end()}};
-}
-
-// P at a value of the only unknown, where no other is left to fit.
-std::optional<results::Refit> evaluated(const Problem& problem, std::size_t unknown, Real value,
-                                        bool is_log) {
-  const auto i = static_cast<Index>(unknown);
-  const Real at_0 = problem.in_own_units(Vector::Zero(1))[i],
-             at_1 = problem.in_own_units(Vector::Ones(1))[i];
-  const Vector theta =
-      Vector::Constant(1, is_log ? std::log(value) : (value - at_0) / (at_1 - at_0));
-  problems::Point at;
-  try {
-    problem.forward(theta, at);
-  } catch (const std::exception&) {
-    return std::nullopt;
+// θ of the methods, one component for each free unknown, and x of the user's units.
+class Units {
+ public:
+  Units(const Problem& problem, const results::ProfiledFit& fit) : fit_(fit) {
+    const Index n = problem.unknowns();
+    at_0_ = problem.in_own_units(Vector::Zero(n));
+    at_1_ = problem.in_own_units(Vector::Ones(n));
+    for (Index j = 0; j < n; ++j) {
+      const std::string name = name_of_unknown(problem.names(), j);
+      for (std::size_t i = 0; i < fit.names.size(); ++i)
+        if (name == fit.names[i] || name == "ln " + fit.names[i]) places_.push_back(i);
+    }
+    require(std::ssize(places_) == n, "the names of the unknowns do not tell them apart");
   }
-  const Vector x = problem.in_own_units(theta);
-  return results::Refit{(at.y - problem.target()).squaredNorm(), {x.begin(), x.end()}};
-}
+  std::optional<Index> component(std::size_t unknown) const {
+    const auto at = std::ranges::find(places_, unknown);
+    return at == places_.end() ? std::nullopt : std::optional<Index>(at - places_.begin());
+  }
+  Vector to_theta(const std::vector<Real>& x) const {
+    Vector theta(std::ssize(places_));
+    for (Index j = 0; j < theta.size(); ++j) {
+      const std::size_t i = places_[static_cast<std::size_t>(j)];
+      const auto k = static_cast<Index>(i);
+      const auto z = [&](Real value) { return fit_.is_log[i] ? std::log(value) : value; };
+      theta[j] = (z(x[i]) - z(at_0_[k])) / (z(at_1_[k]) - z(at_0_[k]));
+    }
+    return theta;
+  }
+
+ private:
+  const results::ProfiledFit& fit_;
+  Vector at_0_, at_1_;
+  std::vector<std::size_t> places_;  // of the components of θ in x
+};
 
 // Puts the profiles in place of earlier ones of the cell.
 void keep_profiles(const fs::path& folder, const std::string& cell,
@@ -362,31 +369,35 @@ void add_profiles(Solution& solution, const SolutionArguments& given, Session& s
   const Request request = request_again(session.catalog(), record, record.request.hard_seconds);
   const Problem problem = make_problem(session.catalog(), request.problem, request.seed);
   const results::ProfiledFit fit = profiled_fit(solution, problem);
-  const fs::path from = folder_of(given.folders, record), folder = from / "profile";
-  make_output_folder(folder);
-  if (std::error_code unknown; fs::exists(from / "evaluations", unknown))
-    fs::copy(from / "evaluations", folder / "evaluations",  // which answer its runs
-             fs::copy_options::recursive | fs::copy_options::skip_existing, unknown);
-  const auto is_profiled = [&](std::size_t i) {
-    return std::isfinite(fit.deviation[i]) || fit.best.x[i] == fit.lower[i] ||
-           fit.best.x[i] == fit.upper[i];
-  };
+  const fs::path from = folder_of(given.folders, record);
+  if (problem.is_elsewhere()) evaluations().begin({.folder = from});  // answers and keeps its calls
+  const Units units(problem, fit);
   std::vector<std::size_t> unknowns;
   for (std::size_t i = 0; i < fit.names.size(); ++i)
-    if (is_profiled(i)) unknowns.push_back(i);
-  constexpr std::size_t kFits = 8,
-                        kCalls = 12;  // of an unknown; of a fit, beside a difference each
+    if (units.component(i)) unknowns.push_back(i);
+  const auto n = static_cast<std::size_t>(problem.unknowns());
+  const std::size_t calls = 1 + 4 * n + 8 * unknowns.size() * (n > 1 ? 5 : 1);
   say(stderr, fmt::format("profile: {} unknowns, about {} forward solves; more if P is strongly "
                           "nonlinear\n",
-                          unknowns.size(), unknowns.size() * kFits * (kCalls + fit.names.size())));
+                          unknowns.size(), calls));
+  const Real t = results::student_quantile(0.975, fit.freedom);
+  Refits refits(problem, units.to_theta(fit.best.x), fit.variance, t * t);
   for (const std::size_t i : unknowns) {
-    solution.profiles.push_back(
-        results::profile_of(fit, i, [&](std::size_t unknown, const std::vector<Real>& start) {
-          return problem.unknowns() == 1
-                     ? evaluated(problem, unknown, start[unknown], fit.is_log[unknown])
-                     : refitted(request, fit.names[unknown], unknown, start, folder, session);
+    bool are_minima = true;
+    solution.profiles.push_back(results::profile_of(
+        fit, i,
+        [&](std::size_t unknown, const std::vector<Real>& start) -> std::optional<results::Refit> {
+          const auto theta = refits(*units.component(unknown), units.to_theta(start));
+          if (!theta) return std::nullopt;
+          are_minima = are_minima && refits.has_converged();
+          const Vector x = problem.in_own_units(*theta);
+          return results::Refit{refits.sum_of_squares(), {x.begin(), x.end()}};
         }));
-    const results::LikelihoodProfile& done = solution.profiles.back();
+    results::LikelihoodProfile& done = solution.profiles.back();
+    if (!are_minima)
+      done.messages.push_back(fmt::format(
+          "fits of the others did not converge at some values of {}: its interval may be too narrow",
+          done.name));
     say(stderr, fmt::format("profile: {}: {:.5g} … {:.5g}\n", done.name, done.low, done.high));
   }
   keep_profiles(from, record.cell, solution.profiles);
@@ -464,12 +475,8 @@ int run(const SolutionArguments& given, Session& session) {
         given.optimizer == "best" ? "any optimizer" : given.optimizer,
         given.problem.empty() ? "" : " on " + given.problem, reports::joined(given.folders));
   });
-  try {
-    for (Solution& solution : solutions)
-      if (given.profile) add_profiles(solution, given, session);
-  } catch (const Interrupted&) {
-    return kInterrupted;
-  }
+  for (Solution& solution : solutions)
+    if (given.profile) add_profiles(solution, given, session);
   if (given.format == "npy") {
     require(solutions.size() == 1, [&] {
       return fmt::format("--format npy writes one x, but {} problems match: choose with --problem",

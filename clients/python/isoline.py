@@ -255,6 +255,8 @@ def _introduce(line, greeting, role, said):
         options=_declared or None,
         tunable=_tunable,
     )
+    if clash := [each["name"] for each in _declared if each["name"] in (said.get("words") or ())]:
+        _refuse(line, f"the option {clash[0]} is a word of the fit, too; give one of them another name")
     _has_introduced = True
     for name, words in said.items():
         if isinstance(words, str):
@@ -430,6 +432,14 @@ def problem(
     start_scale=None,
     x_error=None,
     x_floor=None,
+    *,
+    fixed=(),
+    tied=None,
+    log=(),
+    sigma=None,
+    weights=None,
+    prior=None,
+    starts=None,
 ):
     """Serves a problem to Isoline: find x with forward(x) = target, from `start`. Never returns.
 
@@ -440,6 +450,9 @@ def problem(
       which six calls at the start measure, so y may have six digits. Their cost is counted.
     Otherwise, the problem does not offer derivatives.
 
+    target: numbers; or data as read_data() reads them, also by their path, with their sigma and x axis.
+    fixed, tied, log, sigma, weights, prior: words of a model fit, as of fit(). starts: the starts 1 to N − 1
+        are a Latin hypercube over the bounds. `process[…,sigma=0.02]` sets a word in place of these.
     inverse(y, x0) -> x, or None if it does not find a solution.
     truth: the x that produced the target.
     drawn: the starting point for this seed(), instead of one that Isoline samples around `start`.
@@ -465,6 +478,13 @@ def problem(
             names = forward.names if names is None else names
             note = " ".join(filter(None, (note, forward.note()))) or None
         names, units = _labels(names, len(start), "names"), _labels(units, len(start), "units")
+        if isinstance(target, (str, os.PathLike)) or hasattr(target, "itertuples"):
+            target = __getattr__("read_data")(target)
+        axis = None
+        if hasattr(target, "columns"):
+            axis, sigma = _axis(target), target.sigma if sigma is None and weights is None else sigma
+            target = target.y
+        words = _words(names, len(start), fixed, tied, log, sigma, weights, prior, starts, axis)
         if target is None and truth is not None:
             target = _Point(products, _vector(_column(truth, "truth"))).y
             minimum = 0.0 if minimum is None else minimum
@@ -501,9 +521,35 @@ def problem(
             "names": names,
             "units": units,
             "aim": aim,
+            "words": words,
         },
     )
     _serve(line, products, inverse, x_error, len(start), len(target))
+
+
+def _axis(data):
+    """The word `axis` of data of read_data(), for the picture of the fit."""
+    plain = lambda name: re.sub(r"[;,]", " ", str(name)).strip() or "?"
+    places = [repr(each) for each in map(float, data[data.x])] if data.x else []
+    return "; ".join([plain(data.x or "number of the datum"), plain(data.y_name), *places])
+
+
+def _words(names, count, fixed=(), tied=None, log=(), sigma=None, weights=None, prior=None, starts=None, axis=None):
+    """The words of a model fit as options of Isoline: texts, and the number of starts. Names or numbers of unknowns."""
+    names = [each or f"x{i + 1}" for i, each in enumerate(names or [""] * count)]
+    name = lambda which: names[which] if isinstance(which, int) and which < count else str(which)
+    texts = {
+        "fixed": [f"{name(each)}={float(value)!r}" for each, value in fixed.items()] if isinstance(fixed, dict)
+        else [fixed] if isinstance(fixed, str) else map(name, fixed),
+        "tied": [f"{name(each)} = {words}" for each, words in (tied or {}).items()],
+        "log": [log] if isinstance(log, str) else map(name, log),
+        "sigma": [] if sigma is None else (repr(each) for each in map(float, _column(sigma, "sigma"))),
+        "weights": [] if weights is None else (repr(each) for each in map(float, _column(weights, "weights"))),
+        "prior": [f"{name(each)} = {float(mean)!r} ± {float(sd)!r}" for each, (mean, sd) in (prior or {}).items()],
+    }
+    words = {word: "; ".join(text) for word, text in texts.items()}
+    words.update(axis=axis, starts=starts and int(starts))
+    return {word: given for word, given in words.items() if given} or None
 
 
 def _labels(given, count, what):

@@ -44,7 +44,7 @@ class Data:
     """Columns by name, data["t"] (m), of which y (m) is fitted. sigma (m) or None; x: the name of another column, or None."""
 
     def __init__(self, columns, y, sigma):
-        self.columns, self.y, self.sigma = columns, columns[y], columns.get(sigma)
+        self.columns, self.y, self.y_name, self.sigma = columns, columns[y], y, columns.get(sigma)
         self.x = next((name for name in columns if name not in (y, sigma)), None)
 
     def __getitem__(self, name):
@@ -130,7 +130,8 @@ class _Model:
                 raise Refused("weights must be positive factors of the residuals, and exclude sigma")
         for which, value in fixed.items() if isinstance(fixed, dict) else ():
             self.x0[self.index(which)] = value
-        self.tied = {self.index(which): compile(words, f"tied[{which!r}]", "eval") for which, words in (tied or {}).items()}
+        self.tied = {self.index(which): compile(words.replace("^", "**"), f"tied[{which!r}]", "eval")
+                     for which, words in (tied or {}).items()}
         self.prior = {self.index(which): (float(mean), float(sd)) for which, (mean, sd) in (prior or {}).items()}
         if self.prior and self.sigma is None:
             raise Refused("prior requires sigma: without it, the weight of the data beside the prior is unknown")
@@ -142,7 +143,11 @@ class _Model:
             if not lower[i] <= self.x0[i] <= upper[i] or i in map(self.index, log) and not self.x0[i] > 0:
                 limits = f"its bounds {lower[i]:g} and {upper[i]:g}"
                 raise Refused(f"x0 of {self.names[i]} is {self.x0[i]:g}; it must lie in {limits}, and be positive for log=")
+        self.is_free = np.isin(range(count), self.free)
+        self.bounds = np.where(self.is_free, lower, -math.inf), np.where(self.is_free, upper, math.inf)
         self.lower, self.upper, self.z0 = self.z_of(lower), self.z_of(upper), self.z_of(self.x0)
+        axis = self.table and isoline._axis(self.table)
+        self.words = isoline._words(self.names, count, fixed, tied, log, sigma, weights, prior, axis=axis)
         self.calls, self.least, self.shown, self.lock = 0, math.inf, time.monotonic(), threading.Lock()
         self.target = np.append(self.data * self.factor, [0.0] * len(self.prior))
 
@@ -161,11 +166,15 @@ class _Model:
         return math.exp(min(value, 709)) if self.is_log[j] else value  # e^709 is a double, e^710 is not
 
     def x_of(self, z):
-        x = self.x0.copy()
+        x = self.x0.copy()  # (k)
         x[self.free] = [self.outer(j, value) for j, value in enumerate(z)]
         for i, words in self.tied.items():
             x[i] = eval(words, {"__builtins__": {}}, {**vars(math), **dict(zip(self.names, x))})
         return x
+
+    def inside(self, z):
+        """x_of(z), in the bounds: the exponential of a logarithm may be a digit off."""
+        return np.clip(self.x_of(z), *self.bounds)
 
     def y(self, x):
         found = isoline._column(self.forward(x.copy()), "forward(x)")
@@ -173,20 +182,24 @@ class _Model:
             raise Refused(f"forward(x) must return a number for each of the {len(self.data)} data, got {len(found)}")
         return found
 
-    def prediction(self, z):
-        """y/σ or y times its weight, then the terms of priors: (m). Their target is self.target."""
-        x = self.x_of(z)
+    def answer(self, x):
+        """forward(x), counted."""
         with self.lock:
             self.calls += 1
-        y = self.y(x) * self.factor
-        y = np.append(y, [(x[i] - mean) / sd for i, (mean, sd) in self.prior.items()])
-        self.show(np.sum((y - self.target) ** 2) / 2)
+        y = self.y(x)
+        r = self.rows(x, y)
+        self.show(r @ r / 2)
         return y
+
+    def rows(self, x, y):
+        """r: those of the data, over σ or times their weight, then the terms of priors (m)."""
+        return np.append((y - self.data) * self.factor, [(x[i] - mean) / sd for i, (mean, sd) in self.prior.items()])
 
     def residual(self, z):
         """r (m); None where forward fails."""
+        x = self.x_of(z)
         try:
-            r = self.prediction(z) - self.target
+            r = self.rows(x, self.answer(x))
         except Exception:
             return None
         return r if np.isfinite(r @ r) else None
@@ -357,19 +370,18 @@ def fit(
     """
     model = _Model(forward, data, x0, sigma, bounds, names, units, fixed, tied, log, weights, prior, progress)
     rows = _starts(model, starts)
-    y0 = model.prediction(model.z0)
+    y0 = model.answer(model.x_of(model.z0))
     if not np.all(np.isfinite(y0)):
         raise Refused(f"forward(x0) must be finite, got {y0}")
-    sizes, numbers = (len(model.free), len(y0)), lambda values: isoline._json_numbers(values, "x0")
-    is_bounded = bool(np.any(np.isfinite([model.lower, model.upper])))
+    sizes, numbers = (len(model.x0), len(y0)), lambda values: isoline._json_numbers(values, "x0")
+    is_bounded = bool(np.any(np.isfinite(model.bounds)))
 
     def description(seed):
         return {
             "name": name, "inputs": sizes[0], "outputs": sizes[1], "oracles": ["forward"], "differences": True,
-            "start": numbers(rows[0]), "drawn": numbers(rows[seed]), "target": numbers(model.target), "start_scale": "own",
-            "bounds": [numbers(model.lower), numbers(model.upper)] if is_bounded else None, "active_bounds": is_bounded,
-            "names": [("ln " if is_log else "") + model.names[i] for i, is_log in zip(model.free, model.is_log)],
-            "units": ["" if is_log else model.units[i] for i, is_log in zip(model.free, model.is_log)],
+            "start": numbers(model.inside(rows[0])), "drawn": numbers(model.inside(rows[seed])), "target": numbers(model.data),
+            "bounds": [numbers(side) for side in model.bounds] if is_bounded else None, "active_bounds": is_bounded,
+            "names": model.names, "units": model.units, "start_scale": "own", "words": model.words,
         }
 
     bridge = os.path.join(os.path.dirname(os.path.abspath(__file__)), "bridge.py")
@@ -382,7 +394,7 @@ def fit(
         command = shlex.join([sys.executable or "python3", "-IS", bridge, f"{name}-{model.key([*y0, *rows[0]])}"])
         spec = f"process[command={json.dumps(command, ensure_ascii=False)},label={name}{more}]"
         code, printed = _run([*words, "--problem", spec, "--optimizer", ",".join(some)], workers, description,
-                             isoline._Given(model.prediction, None, None, None), sizes)
+                             isoline._Given(model.answer, None, None, None), sizes)
         new = [each for each in _records(out, command, work) if asked or each["request"]["optimizer"]["asked"] in some]
         if not any("answer" in each for each in new):
             why = "; ".join(f"{each['request']['optimizer']['spec']} is {each['status']}: {each['message']}" for each in new)
@@ -392,7 +404,7 @@ def fit(
             break
         if attempt > 0 or any(each.get("failures") for each in records):  # there, the calls of differences are others
             best = min(records, key=lambda each: float(each["summary"]["loss"]))
-            beside = np.array(best["answer"]["x"][0], float) * (1 + 3e-3 * (attempt + 1))
+            beside = model.z_of(best["answer"]["x"][0]) * (1 + 3e-3 * (attempt + 1))
             rows[0] = np.clip(beside, model.lower, model.upper)
     model.show(math.inf, is_last=True)
     return Fit(model, records, str(out))
@@ -449,7 +461,7 @@ class Fit:
 
     def __init__(self, model, records, out):
         self._model, self.names, self.units, self.out = model, model.names, model.units, out
-        ends = [(record, float(record["summary"]["loss"]), np.array(record["answer"]["x"][0], float)) for record in records]
+        ends = [(record, float(record["summary"]["loss"]), model.z_of(record["answer"]["x"][0])) for record in records]
         ends.sort(key=lambda end: (not math.isfinite(end[1]), end[1]))
         self.runs = [(record["request"]["optimizer"]["spec"], record["request"]["seed"], record["status"], loss, model.x_of(z))
                      for record, loss, z in ends]
@@ -462,7 +474,9 @@ class Fit:
         except Exception:
             self.y = np.full(len(model.data), math.nan)
         self.residuals = self.y - model.data
-        self._held = (self._z <= model.lower) | (self._z >= model.upper)
+        margin = np.where(model.is_log, 1e-12, 0)  # of a logarithm, in units of the records
+        self._held = (self._z <= model.lower + margin) | (self._z >= model.upper - margin)
+        self._z = np.clip(self._z, model.lower, model.upper)
         self.degrees_of_freedom = len(model.target) - int(np.sum(~self._held))
         self.sd = self.interval = self.correlation = self._covariance = self.p = self._profile = None
         why, messages = self._why_not(), []
@@ -491,8 +505,10 @@ class Fit:
                 return f"the residuals contradict sigma ({value})"
         known, s2 = self._record.get("uncertainty"), 2 * self.loss / self.degrees_of_freedom
         if known:
-            deviation = np.array([each or 0 for each in known["standard_deviation"]], float)
-            correlation = np.array([[each or 0 for each in row] for row in known["correlation"]], float)
+            free = self._model.free  # what a bound holds has no deviation
+            size = np.where(self._model.is_log, self.x[free], 1.0)  # ∂x/∂z
+            deviation = np.nan_to_num(np.array(known["standard_deviation"], float)[free]) / size
+            correlation = np.nan_to_num(np.array(known["correlation"], float)[np.ix_(free, free)])
             self._unheld = correlation * np.outer(deviation, deviation) * s2 / float(known["variance"])
         else:  # a call of Isoline's differences may have failed
             self._unheld = self._computed(s2)
@@ -645,7 +661,8 @@ class Profile:
         self._least = self._origin @ self._origin
         self._s2 = self._least / fit.degrees_of_freedom
         # differences: 0.3 of the standard deviation of an unknown if all others are known
-        self._steps, free = 1e-3 * np.maximum(abs(fit._z), 1e-3), ~fit._held
+        size = np.maximum(abs(fit._z), abs(model.z0))
+        self._steps, free = 1e-3 * np.where(size > 0, size, 1.0), ~fit._held
         deviation = np.sqrt(np.diag(fit._covariance)[free])
         inverse = np.linalg.inv(fit._covariance[np.ix_(free, free)] / np.outer(deviation, deviation))
         self._steps[free] = 0.3 * deviation / np.sqrt(np.diag(inverse))
@@ -662,7 +679,8 @@ class Profile:
         """z_j at the end of its interval on one side."""
         fit, t, name = self._fit, self._t, self._fit.names[self._model.free[j]]
         room = abs((self._model.upper if sign > 0 else self._model.lower)[j] - fit._z[j])
-        reach = t * math.sqrt(fit._unheld[j, j]) or abs(fit._z[j]) * 0.1 or 1.0
+        size = max(abs(fit._z[j]), abs(self._model.z0[j]))
+        reach = t * math.sqrt(fit._unheld[j, j]) or 0.1 * size or 1.0
         known = [(0.0, 0.0, fit._z, self._origin)]  # distance, u, z and r; by distance
         failed, is_hard, J = math.inf, False, self._J.copy()  # failed: the least distance at which forward fails
         distance = reach if reach < room else room / 2

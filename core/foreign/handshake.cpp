@@ -144,6 +144,13 @@ class Said {
     }
     return set;
   }
+  OptionValues values(const char* name) const {
+    const auto is_value = [](const Json& each) { return each.is_string() || each.is_number(); };
+    if (!has(name)) return {};
+    if (!json_[name].is_object() || !std::ranges::all_of(json_[name], is_value))
+      refuse(name, "an object of strings and numbers");
+    return option_values_from(json_[name]);
+  }
   std::map<std::string, std::string> texts(const char* name) const {
     std::map<std::string, std::string> all;
     if (!has(name)) return all;
@@ -270,6 +277,8 @@ Foreign foreign_of(const Said& said) {
   const auto tunable = std::ranges::find(foreign.options, foreign.tunable, &OptionField::name);
   require(foreign.tunable.empty() || tunable != foreign.options.end(),
           [&] { return "tunable must be the name of a declared option, got " + foreign.tunable; });
+  for (const auto& [word, value] : said.values("words"))
+    foreign.options.push_back({word, value, {}, {}, kWordOfScript});
   return foreign;
 }
 

@@ -94,6 +94,9 @@ class Introductions {
 
 // The description that another program sends before any computation, as JSON, validated.
 
+// The description of an option that is a word of a model fit, whose default a program has set.
+inline constexpr const char* kWordOfScript = "a word of the fit, as the script has it";
+
 // Common to all programs: of Foreign, its label, interpreter, packages, note and source.
 struct ProblemHandshake {
   Foreign foreign;

@@ -56,14 +56,28 @@ class Side {
     return fit_.is_log[unknown_] ? std::exp(z) : z;
   }
 
+  // On the line through the two fits nearby, inside the bounds.
+  std::vector<Real> along(std::vector<Tried>::const_iterator nearest, Real distance) const {
+    std::vector<Real> x = nearest->x;
+    if (tried_.size() < 2) return x;
+    const auto other = nearest == tried_.begin() ? nearest + 1 : nearest - 1;
+    const Real share = (distance - nearest->distance) / (nearest->distance - other->distance);
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      const Real moved = fit_.is_log[i] ? x[i] * std::pow(x[i] / other->x[i], share)
+                                        : x[i] + share * (x[i] - other->x[i]);
+      if (moved >= fit_.lower[i] && moved <= fit_.upper[i]) x[i] = moved;
+    }
+    return x;
+  }
   const Tried* add(Real distance, const RefitAt& refit) {
     const auto nearest = std::ranges::min_element(
         tried_, {}, [&](const Tried& each) { return std::abs(each.distance - distance); });
-    std::vector<Real> start = nearest->x;
+    std::vector<Real> start = along(nearest, distance);
     const Real value = start[unknown_] = value_at(distance);
     const std::optional<Refit> found = refit(unknown_, start);
     if (!found || !std::isfinite(found->sum_of_squares)) {
       failed_ = std::min(failed_, distance);
+      out_.messages.push_back(fmt::format("P has no value at {} = {:.6g}", out_.name, value));
       return nullptr;
     }
     const Real rise = (found->sum_of_squares - fit_.best.sum_of_squares) / fit_.variance;
@@ -93,11 +107,14 @@ class Side {
     const Tried &low = *(above - 1), &high = *above;
     return low.distance + (t_ - low.u) / (high.u - low.u) * (high.distance - low.distance);
   }
-  std::optional<Real> next_distance() const {
+  std::optional<Real> next_distance() {
     const Tried& last = tried_.back();
     if (const auto above = first_above(); above != tried_.end()) {
       const Real low = (above - 1)->distance, width = above->distance - low;
-      return std::clamp(crossing(), low + 0.02 * width, low + 0.98 * width);
+      const bool has_halved = width <= width_ / 2;  // a line alone stays on one side of a bend
+      width_ = width;
+      return has_halved ? std::clamp(crossing(), low + 0.02 * width, low + 0.98 * width)
+                        : low + width / 2;
     }
     if (failed_ < kNowhere) {
       constexpr Real kNear = 0.02;
@@ -114,7 +131,15 @@ class Side {
     if (is_beaten_) return std::numeric_limits<Real>::quiet_NaN();
     const char* const side = sign_ > 0 ? "upper" : "lower";
     const Tried& last = tried_.back();
-    if (const auto above = first_above(); above != tried_.end()) return value_at(crossing());
+    if (const auto above = first_above(); above != tried_.end()) {
+      constexpr Real kInexact = 0.02;  // of t
+      const Real miss = std::min(above->u - t_, t_ - (above - 1)->u);
+      if (miss > kInexact * t_)
+        out_.messages.push_back(
+            fmt::format("the {} limit of {} is inexact: {} values did not find it", side, out_.name,
+                        kProfilePoints));
+      return value_at(crossing());
+    }
     if (std::abs(last.u - t_) <= kExact * t_) return value_at(last.distance);
     const Real value = value_at(last.distance);
     if (last.distance >= room_) {
@@ -138,6 +163,7 @@ class Side {
   int sign_;
   LikelihoodProfile& out_;
   Real t_ = 0, reach_ = 0, room_ = 0, failed_ = kNowhere;
+  Real width_ = kNowhere;     // between the points around the end
   bool is_beaten_ = false;    // by a better fit
   std::vector<Tried> tried_;  // ascending distances
 };

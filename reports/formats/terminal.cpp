@@ -311,7 +311,10 @@ std::string terminal_table(const Document& document, const Columns& columns) {
     cells += static_cast<std::size_t>(
         std::ranges::count_if(row, [](const Cell& cell) { return cell.planned > 0; }));
   const std::vector<Table>& tables = document.section("standings").tables;
-  std::string text = wrapped(document.headline, columns.prose);
+  const auto own = std::ranges::find(document.sections, "fit", &Section::id);
+  const bool is_one_fit = own != document.sections.end() && c.problems.size() == 1;
+  std::string text = is_one_fit ? terminal_section(*own, kFewRows, columns) + "\n" : "";
+  text += wrapped(document.headline, columns.prose);
   if (!document.incomplete.empty())
     text += wrapped("INCOMPLETE: " + terminal_text(document.incomplete), columns.prose);
   if (cells <= kFewCells)
@@ -322,7 +325,7 @@ std::string terminal_table(const Document& document, const Columns& columns) {
   for (const Reading& sentence : document.section("standings").readings)
     text += wrapped(terminal_text(sentence.text), columns.prose);
   const Section& claims = document.section("claims");
-  if (!c.study->plan.suites.empty() || !document.claims.empty())
+  if (!is_one_fit && (!c.study->plan.suites.empty() || !document.claims.empty()))
     text += wrapped(claims.readings.empty() ? claims.otherwise : claims.readings[0].text,
                     columns.prose);
   if (const std::string legend = marks_legend(c); !legend.empty())

@@ -4,9 +4,12 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <span>
 
+#include "core/numbers.h"
 #include "core/results/uncertainty.h"
+#include "core/seeds.h"
 #include "reports/sections/answers.h"
 #include "reports/sections/drawings.h"
 #include "reports/sections/words.h"
@@ -21,10 +24,27 @@ bool is_fit(const Run& run) {
          std::isfinite(record.summary.loss) && !run.is_repeated;
 }
 
-std::vector<const Run*> fits_of(const Comparison& c, std::size_t problem) {
+// The fits of a problem to each of its data sets, by their least seeds: losses on other data do not
+// compare.
+std::vector<std::vector<const Run*>> data_sets_of(const Comparison& c, std::size_t problem) {
   std::vector<const Run*> fits;
   for (const Run& run : c.runs)
     if (run.problem == problem && is_fit(run)) fits.push_back(&run);
+  std::ranges::stable_sort(fits, {}, &Run::seed);
+  std::vector<std::vector<const Run*>> sets;
+  for (const Run* fit : fits) {
+    const auto same = std::ranges::find_if(sets, [&](const auto& set) {
+      return set[0]->record->fit->target == fit->record->fit->target;
+    });
+    if (same != sets.end())
+      same->push_back(fit);
+    else
+      sets.push_back({fit});
+  }
+  return sets;
+}
+
+std::vector<const Run*> by_loss(std::vector<const Run*> fits) {
   std::ranges::stable_sort(fits, {}, [](const Run* run) { return run->record->summary.loss; });
   // A confirmed minimum comes first of losses that differ by noise.
   constexpr Real kNoise = 1e-5;
@@ -158,12 +178,12 @@ Plot profiles_plot(const std::string& problem, const Record& record,
 }
 
 // Empty where none failed.
-Table failures_table(const std::string& problem, const Comparison& c, std::size_t p) {
+Table failures_table(const std::string& problem, const std::vector<const Run*>& runs) {
   constexpr std::size_t kShown = 12;
   std::map<std::string, std::size_t> counts;
-  for (const Run& run : c.runs)
-    if (run.problem == p && run.record->failures && !run.is_repeated)
-      for (const std::string& reason : run.record->failures->reasons) ++counts[reason];
+  for (const Run* run : runs)
+    if (run->record->failures)
+      for (const std::string& reason : run->record->failures->reasons) ++counts[reason];
   if (counts.empty()) return {};
   std::vector<std::pair<std::string, std::size_t>> order(counts.begin(), counts.end());
   std::ranges::stable_sort(order, std::ranges::greater{},
@@ -174,22 +194,49 @@ Table failures_table(const std::string& problem, const Comparison& c, std::size_
   return table;
 }
 
-Plot fit_plot(const std::string& problem, const FitData& fit, bool is_of_residuals) {
+// The option `axis` of a fit, as its words.
+std::vector<std::string> axis_of(const Record& record) {
+  const std::string text = record.request.problem.options.text("axis");
+  const auto cells = cells_of_line(text);
+  return {cells.begin(), cells.end()};
+}
+
+Plot fit_plot(const std::string& problem, const Record& record, bool is_of_residuals) {
+  const FitData& fit = *record.fit;
   Plot plot =
       is_of_residuals ? worded_plot("plot-residuals", problem) : worded_plot("plot-fit", problem);
   plot.kind = Plot::Kind::lines;
+  const std::vector<std::string> axis = axis_of(record);  // two names, and the places
+  const bool has_places = axis.size() == fit.target.size() + 2;
+  std::vector<Real> places;
+  for (std::size_t i = 0; i < fit.target.size(); ++i)
+    places.push_back(has_places ? number_in(axis[i + 2]).value_or(Real(i + 1)) : Real(i + 1));
+  if (has_places) plot.x_label = axis[0];
+  if (axis.size() > 1)
+    plot.y_label = is_of_residuals ? fmt::format("{0} − {0}*", axis[1]) : axis[1];
+  std::vector<std::size_t> order(fit.target.size());
+  std::iota(order.begin(), order.end(), 0);
+  const auto place = [&](std::size_t i) { return places[i]; };
+  std::ranges::stable_sort(order, {}, place);
+  const bool has_one_y = [&] {  // at each place; several sensors have no common line
+    for (std::size_t i = 1; i < order.size(); ++i)
+      if (place(order[i]) == place(order[i - 1]) && fit.y[order[i]] != fit.y[order[i - 1]])
+        return false;
+    return true;
+  }();
   PlotSeries points{.name = words(is_of_residuals ? "plot-residuals.residual" : "plot-fit.data"),
                     .are_points = true},
-      line{.name = words(is_of_residuals ? "plot-residuals.zero" : "plot-fit.fit")};
-  for (std::size_t i = 0; i < fit.target.size(); ++i) {
+      line{.name = words(is_of_residuals ? "plot-residuals.zero" : "plot-fit.fit"),
+           .are_points = !has_one_y && !is_of_residuals};
+  for (const std::size_t i : order) {
     const Real at = is_of_residuals ? fit.y[i] - fit.target[i] : fit.target[i];
-    points.x.push_back(Real(i + 1));
+    points.x.push_back(place(i));
     points.y.push_back(at);
     if (!fit.sigma.empty()) {
       points.low.push_back(at - fit.sigma[i]);
       points.high.push_back(at + fit.sigma[i]);
     }
-    line.x.push_back(Real(i + 1));
+    line.x.push_back(place(i));
     line.y.push_back(is_of_residuals ? 0 : fit.y[i]);
   }
   plot.series = {std::move(points), std::move(line)};
@@ -218,43 +265,59 @@ Plot calls_plot(const std::string& problem, const std::vector<const Run*>& fits,
   return plot;
 }
 
+// Adds the fits to one data set, the best first. `runs`: these, and runs without a fit.
+void add_data_set(Section& section, const Comparison& c, const std::vector<const Run*>& fits,
+                  const std::vector<const Run*>& runs, const std::string& problem,
+                  const std::string& suffix) {
+  const Record& record = *fits[0]->record;
+  std::string text = words("fit.summary", problem, optimizer_text(c, fits[0]->optimizer),
+                           std::string(name_of(record.status)), record.summary.loss,
+                           record.summary.work, record.fit->target.size());
+  const Doubt doubt = doubt_of(record);
+  if (doubt != Doubt::none) text += " " + doubt_text(record);
+  if (const auto test = noise_test(record); test && doubt == Doubt::none)
+    text += " " + words("fit.test", test->chi_square, test->freedom, test->p);
+  if (!record.message.empty()) text += " " + record.message;
+  section.readings.push_back({"", text});
+  std::vector<Table> tables = {parameters_table(problem, record)};
+  if (doubt == Doubt::none && record.uncertainty->x.size() > 1)
+    tables.push_back(correlation_table(problem, record));
+  const auto* const profiles = doubt == Doubt::none ? profiles_of(c, record) : nullptr;
+  if (profiles) tables.push_back(profiles_table(problem, *profiles));
+  if (fits.size() > 1) tables.push_back(basins_table(problem, fits));
+  if (Table failures = failures_table(problem, runs); !failures.rows.empty())
+    tables.push_back(std::move(failures));
+  for (Table& table : tables) {
+    table.id += suffix;
+    section.tables.push_back(std::move(table));
+  }
+  for (Plot& plot : std::vector{fit_plot(problem, record, false), fit_plot(problem, record, true),
+                                profiles ? profiles_plot(problem, record, *profiles) : Plot{},
+                                calls_plot(problem, fits, c)}) {
+    plot.id += suffix;
+    if (!plot.series.empty()) section.plots.push_back(plot);
+  }
+}
+
 }  // namespace
 
 Section fit_section(const Comparison& c) {
+  constexpr std::size_t kMostSets = 6;  // data sets of a problem
   Section section = worded_section("fit");
   for (std::size_t p = 0; p < c.problems.size(); ++p) {
-    const auto fits = fits_of(c, p);
-    if (fits.empty()) continue;
-    const Record& record = *fits[0]->record;
-    const std::string problem = problem_name(c.problems[p]);
-    std::string text = words("fit.summary", problem, optimizer_text(c, fits[0]->optimizer),
-                             std::string(name_of(record.status)), record.summary.loss,
-                             record.summary.work, record.fit->target.size());
-    const Doubt doubt = doubt_of(record);
-    if (doubt != Doubt::none) text += " " + doubt_text(record);
-    if (const auto test = noise_test(record); test && doubt == Doubt::none)
-      text += " " + words("fit.test", test->chi_square, test->freedom, test->p);
-    if (!record.message.empty()) text += " " + record.message;
-    section.readings.push_back({"", text});
-    std::vector<Table> tables = {parameters_table(problem, record)};
-    if (doubt == Doubt::none && record.uncertainty->x.size() > 1)
-      tables.push_back(correlation_table(problem, record));
-    const auto* const profiles = doubt == Doubt::none ? profiles_of(c, record) : nullptr;
-    if (profiles) tables.push_back(profiles_table(problem, *profiles));
-    if (fits.size() > 1) tables.push_back(basins_table(problem, fits));
-    if (Table failures = failures_table(problem, c, p); !failures.rows.empty())
-      tables.push_back(std::move(failures));
-    for (Table& table : tables) {
-      table.id += fmt::format("-{}", p);
-      section.tables.push_back(std::move(table));
+    const auto sets = data_sets_of(c, p);
+    std::vector<const Run*> runs;
+    for (const Run& run : c.runs)
+      if (run.problem == p && !run.is_repeated) runs.push_back(&run);
+    for (std::size_t d = 0; d < std::min(kMostSets, sets.size()); ++d) {
+      const std::string problem =
+          problem_name(c.problems[p]) +
+          (sets.size() > 1 ? words("fit.data-set", seed_text(sets[d][0]->seed)) : "");
+      add_data_set(section, c, by_loss(sets[d]), sets.size() > 1 ? sets[d] : runs, problem,
+                   sets.size() > 1 ? fmt::format("-{}-{}", p, d) : fmt::format("-{}", p));
     }
-    for (Plot& plot :
-         std::vector{fit_plot(problem, *record.fit, false), fit_plot(problem, *record.fit, true),
-                     profiles ? profiles_plot(problem, record, *profiles) : Plot{},
-                     calls_plot(problem, fits, c)}) {
-      plot.id += fmt::format("-{}", p);
-      if (!plot.series.empty()) section.plots.push_back(plot);
-    }
+    if (sets.size() > kMostSets)
+      section.readings.push_back({"", words("fit.more-sets", sets.size() - kMostSets)});
   }
   return section;
 }

@@ -374,6 +374,22 @@ TEST_F(ForeignCells, AreRunOnlyWhereTheProblemIsCertified) {
   EXPECT_EQ(complaint("is-sound"), "");
 }
 
+// The few checks of a slow program take the step of its differences.
+TEST_F(ForeignCells, OfASlowProgramThatPrintsSixDigitsAreCertified) {
+  const auto script = folder.path() / "six_digits.py";
+  write_text(script,
+             "import math, time, isoline\n"
+             "def forward(x):\n"
+             "    time.sleep(0.11)\n"
+             "    y = [x[0] * math.exp(-x[1] * t) * math.cos(3 * t) for t in range(9)]\n"
+             "    return [float(f'{each:.6g}') for each in y]\n"
+             "isoline.problem(forward, start=[2.0, 0.3], target=[1.0] * 9, differences=True)\n");
+  const Request request =
+      request_of(process_of("python3 " + script.string()), "levenberg-marquardt", {.work = 1});
+  EXPECT_EQ(refusal([&] { run_plan(catalog(), "trial", {request}, folder.path(), options, {}); }),
+            "");
+}
+
 TEST_F(ForeignCells, WaitForACertificateThatSaysHowFarItIs) {
   const auto script = folder.path() / "slow.py";
   write_text(script,

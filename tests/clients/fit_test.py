@@ -111,6 +111,11 @@ class Fits(unittest.TestCase):
     def fit(self, *arguments, **more):
         return isoline.fit(*arguments, **{"out": self.folder + "/results", "progress": False, **more})
 
+    def record(self, out=None):
+        folder = (out or self.folder + "/results") + "/runs/"
+        with open(folder + os.listdir(folder)[0]) as file:
+            return json.load(file)
+
     def assertNear(self, found, expected, relative):
         self.assertEqual(len(found), len(expected))
         for a, b in zip(found, expected):
@@ -255,6 +260,51 @@ class Fits(unittest.TestCase):
         profile = self.fit(forward, [2.5, 5.3, 7.4, 11, 13.1, 16.2], [1], names=["slope"]).profile()
         self.assertNear(profile.interval[0], [2.5668, 2.68], 1e-3)
         self.assertIn("forward fails at slope", profile.messages[0])
+
+        # b is held at 0, beside a bound at infinity: S(b) = S_min − 2 b c + b² d, by the sums below
+        t, data = [0, 1, 2, 3], [4.1, 3.6, 3.9, 3.4]
+        held = self.fit(lambda x: [x[0] + 1e6 * x[1] * s for s in t], data, [3, 1e-7], names=["a", "b"], bounds=(0, math.inf))
+        profile = held.profile(["b"])
+        mean = sum(data) / 4
+        c, d = (1e6 * sum((s - 1.5) * (y - mean) for s, y in zip(t, data)), 1e12 * 5)
+        rise = 2 * held.loss * 3.1824463**2 / 3
+        self.assertEqual(profile.interval[0][0], 0)
+        self.assertAlmostEqual(profile.interval[0][1] / ((c + math.sqrt(c * c + d * rise)) / d), 1, delta=0.01)
+
+    def test_records_have_its_words_and_the_axis_of_its_data(self):
+        path = self.folder + "/misra.csv"
+        with open(path, "w") as file:
+            file.write("t,height,e\n" + "".join(f"{x},{y},0.1\n" for x, y in zip(MISRA_X, MISRA_Y)))
+        result = self.fit(misra, isoline.read_data(path, y="height", sigma="e"), {"b1": 500, "b2": 1e-4}, log=["b2"],
+                          fixed={"b1": 240}, prior={"b2": (5e-4, 1e-4)})
+        record = self.record()
+        options = record["request"]["problem"]["options"]
+        self.assertEqual((options["log"], options["fixed"]), ("b2", "b1=240.0"))
+        self.assertTrue(options["axis"].startswith("t; height; 77.6; 114.9"), options["axis"])
+        self.assertIn("b2 = 0.0005", options["prior"])
+        self.assertNear(record["fit"]["target"], MISRA_Y, 1e-15)
+        self.assertEqual(record["fit"]["sigma"], [0.1] * 14)
+        self.assertNear(record["answer"]["x"][0], result.x, 1e-12)
+
+    def test_a_script_has_the_same_words(self):
+        path, script = self.folder + "/misra.csv", self.folder + "/script.py"
+        with open(path, "w") as file:
+            file.write("t,y\n" + "".join(f"{x},{y}\n" for x, y in zip(MISRA_X, MISRA_Y)))
+        with open(script, "w") as file:
+            file.write("import isoline, math\n"
+                       f"isoline.problem(lambda b: [b[0] * (1 - math.exp(-b[1] * x)) for x in {MISRA_X}], start=[240, 1e-4],\n"
+                       f"                target={path!r}, names=['b1', 'b2'], log=['b2'], fixed=['b1'], sigma=0.1)\n")
+        fixed = self.fit(misra, MISRA_Y, {"b1": 240, "b2": 1e-4}, log=["b2"], fixed=["b1"], sigma=0.1)
+        for sigma, loss in (("", fixed.loss), (",sigma=0.2", fixed.loss / 4)):
+            out = f"{self.folder}/script{sigma}"
+            ran = subprocess.run(
+                [os.environ["ISOLINE"], "run", "--problem", f"process[command=\"{sys.executable} {script}\"{sigma}]", "--optimizer",
+                 "levenberg-marquardt", "--uncertified", "--no-report", "--out", out], capture_output=True, text=True, timeout=60)
+            self.assertEqual(ran.returncode, 0, ran.stderr)
+            record = self.record(out)
+            self.assertAlmostEqual(record["summary"]["loss"] / loss, 1, delta=1e-6)
+            self.assertNear(record["answer"]["x"][0], fixed.x, 1e-5)
+            self.assertEqual(record["request"]["problem"]["options"]["log"], "b2")
 
     def test_makes_several_calls_at_once(self):
         running, most = [], []
