@@ -246,6 +246,13 @@ Json to_json(const Solution& solution) {
   add("returned", solution.answer.point(kReturned));
   add("best", solution.answer.point(kBest));
   add("standard_deviation", solution.deviations());
+  if (!solution.deviations().empty()) {
+    json["degrees_of_freedom"] = record.uncertainty->degrees_of_freedom;
+    for (const results::XInterval& each : results::intervals_of(record))
+      json["interval"].push_back(json_numbers(std::vector{each.low, each.high}));
+    for (const auto& row : record.uncertainty->correlation)
+      json["correlation"].push_back(json_numbers(row));
+  }
   if (!solution.answer.units.empty()) json["units"] = solution.answer.units;
   for (std::size_t i = 0; solution.answer.is_bound_active() && i < solution.point().size(); ++i)
     json["active_bounds"].push_back(solution.answer.bound(i));
@@ -475,8 +482,16 @@ int run(const SolutionArguments& given, Session& session) {
         given.optimizer == "best" ? "any optimizer" : given.optimizer,
         given.problem.empty() ? "" : " on " + given.problem, reports::joined(given.folders));
   });
-  for (Solution& solution : solutions)
-    if (given.profile) add_profiles(solution, given, session);
+  for (Solution& solution : solutions) {
+    if (!given.profile) break;
+    try {
+      add_profiles(solution, given, session);
+    } catch (const UsageError& error) {  // others may have one
+      if (solutions.size() == 1) throw;
+      say(stderr, fmt::format("{}, seed {}: {}\n", solution.record->request.problem.spec,
+                              seed_text(solution.record->request.seed), error.what()));
+    }
+  }
   if (given.format == "npy") {
     require(solutions.size() == 1, [&] {
       return fmt::format("--format npy writes one x, but {} problems match: choose with --problem",

@@ -566,6 +566,7 @@ class Fit:
         if self._covariance is None:
             raise Refused(f"a profile requires a fit, but there is {self.message}")
         self._profile = Profile(self, [j for j, i in enumerate(self._model.free) if names is None or self.names[i] in names])
+        self._profile.keep(os.path.join(self.out, "profile.json"), self._record["cell"])
         return self._profile
 
     def _rows(self):
@@ -670,6 +671,23 @@ class Profile:
         ends = [[model.outer(j, self._end(j, sign)) for sign in (-1, 1)] for j in wanted]
         self.interval, self.calls = np.array(ends), model.calls - began
         model.show(math.inf, is_last=True)
+
+    def keep(self, path, cell):
+        """Puts it where `isoline report` finds it, in place of an earlier one of the cell."""
+        try:
+            with open(path, encoding="utf-8") as file:
+                cells = [each for each in json.load(file)["cells"] if each["cell"] != cell]
+        except (OSError, ValueError, KeyError):
+            cells = []
+        profiles = []
+        for name, (low, high) in zip(self.names, self.interval):
+            least = (self._fit.x[self._fit.names.index(name)], 1.0)
+            values, rises = zip(*sorted({least, *self.points[name]}))
+            low, high, *numbers = isoline._json_numbers([low, high, *values, *((each - 1) * self._least / self._s2 for each in rises)], name)
+            profiles.append({"unknown": name, "low": low, "high": high, "value": numbers[: len(values)], "rise": numbers[len(values):],
+                             "messages": [each for each in self.messages if name in each.split()]})
+        with open(path, "w", encoding="utf-8") as file:
+            json.dump({"schema": "isoline.profile/1", "cells": [*cells, {"cell": cell, "profiles": profiles}]}, file)
 
     def _u(self, r):
         """√((S − S_min)/s²), nearly linear in the distance of the profiled unknown from the fit."""

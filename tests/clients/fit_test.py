@@ -324,7 +324,11 @@ class Fits(unittest.TestCase):
 
     def test_shows_itself_in_a_notebook(self):
         result = self.fit(misra, MISRA_Y, [500, 1e-4], names=["a<b", "c"], units=["psi", ""])
-        result.profile()
+        profile = result.profile()
+        with open(self.folder + "/results/profile.json") as file:
+            kept = json.load(file)["cells"][0]
+        self.assertEqual(kept["cell"], self.record()["cell"])
+        self.assertNear([kept["profiles"][0]["low"], kept["profiles"][0]["high"]], profile.interval[0], 1e-12)
         page = xml.etree.ElementTree.fromstring(f"<div>{result._repr_html_()}</div>")
         self.assertEqual([each.tag for each in page].count("table"), 3)
         self.assertIn("a<b", "".join(page.itertext()))
