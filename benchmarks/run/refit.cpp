@@ -32,6 +32,9 @@ Refits::Refits(const problems::Problem& problem, Vector fit, Real variance, Real
         steps_[j] = kOfDeviation * std::sqrt(variance_) / slope;
   }
   known_.emplace_back(fit, *r);
+  if (const auto better = fitted(-1, fit)) fit = *better;  // a run may have ended at its target
+  least_ = sum_;
+  known_.assign({{fit, *residual(fit)}});
 }
 
 Vector Refits::inside(const Vector& theta) const {
@@ -131,11 +134,13 @@ std::optional<Vector> Refits::operator()(Index fixed, const Vector& start, int h
 }
 
 std::optional<Vector> Refits::fitted(Index fixed, Vector theta) {
-  const Real value = theta[fixed];
+  const auto keep = [&, value = fixed < 0 ? 0 : theta[fixed]](Vector& at) {
+    if (fixed >= 0) at[fixed] = value;
+  };
   std::optional<Vector> first;
   for (const int shift : {0, 1, -1, 2}) {  // a call may fail here and not nearby
     Vector near = inside(theta + shift * steps_);
-    near[fixed] = value;
+    keep(near);
     if (!(first = residual(near))) continue;
     theta = near;
     break;
@@ -171,7 +176,7 @@ std::optional<Vector> Refits::fitted(Index fixed, Vector theta) {
       continue;
     }
     Vector trial = inside(theta + move);
-    trial[fixed] = value;
+    keep(trial);
     std::optional<Vector> there = residual(trial);
     const bool is_better = there && there->squaredNorm() < r.squaredNorm();
     if (there) {
@@ -193,7 +198,7 @@ std::optional<Vector> Refits::fitted(Index fixed, Vector theta) {
     }
   }
   sum_ = r.squaredNorm();
-  if (is_minimum_) known_.emplace_back(theta, r);
+  if (is_minimum_ && fixed >= 0) known_.emplace_back(theta, r);
   return theta;
 }
 

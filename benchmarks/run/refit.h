@@ -20,8 +20,10 @@ class Refits {
   // θ (n) of the least S with that component as it is in `start`; nothing where P has no value. By
   // way of values halfway to a known fit where the steps do not end.
   std::optional<Vector> operator()(Index fixed, const Vector& start, int halvings = 4);
-  Real sum_of_squares() const { return sum_; }        // at the last θ
-  bool has_converged() const { return is_minimum_; }  // the last time
+  const Vector& fit() const { return known_[0].first; }  // all unknowns fitted
+  Real least() const { return least_; }                  // S there
+  Real sum_of_squares() const { return sum_; }           // at the last θ
+  bool has_converged() const { return is_minimum_; }     // the last time
 
  private:
   std::optional<Vector> fitted(Index fixed, Vector theta);

@@ -375,7 +375,7 @@ void add_profiles(Solution& solution, const SolutionArguments& given, Session& s
   require_trust(given.trust, record);
   const Request request = request_again(session.catalog(), record, record.request.hard_seconds);
   const Problem problem = make_problem(session.catalog(), request.problem, request.seed);
-  const results::ProfiledFit fit = profiled_fit(solution, problem);
+  results::ProfiledFit fit = profiled_fit(solution, problem);
   const fs::path from = folder_of(given.folders, record);
   if (problem.is_elsewhere()) evaluations().begin({.folder = from});  // answers and keeps its calls
   const Units units(problem, fit);
@@ -389,6 +389,9 @@ void add_profiles(Solution& solution, const SolutionArguments& given, Session& s
                           unknowns.size(), calls));
   const Real t = results::student_quantile(0.975, fit.freedom);
   Refits refits(problem, units.to_theta(fit.best.x), fit.variance, t * t);
+  const Vector best = problem.in_own_units(refits.fit());
+  fit.best = {refits.least(), {best.begin(), best.end()}};
+  fit.variance = refits.least() / static_cast<Real>(fit.freedom);
   for (const std::size_t i : unknowns) {
     bool are_minima = true;
     solution.profiles.push_back(results::profile_of(

@@ -81,7 +81,8 @@ class Side {
       return nullptr;
     }
     const Real rise = (found->sum_of_squares - fit_.best.sum_of_squares) / fit_.variance;
-    if (found->sum_of_squares < fit_.best.sum_of_squares * (1 - 1e-6)) {
+    constexpr Real kBetter = -0.01;  // less changes t by 0.1 %
+    if (rise < kBetter) {
       is_beaten_ = true;
       out_.messages.push_back(
           fmt::format("at {} = {:.6g} the fit is better than the one that is profiled: fit again "
