@@ -4,12 +4,15 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <numeric>
 #include <system_error>
 #include <utility>
+
+#include "core/columns.h"
 
 namespace isoline {
 namespace {
@@ -119,7 +122,10 @@ std::string printable(std::string_view text) {
 }
 
 void say(std::FILE* out, std::string_view text) {
-  const std::string shown = printable(text);
+  constexpr std::size_t kFewest = 60;  // columns
+  std::string shown = printable(text);
+  if (isatty(fileno(out)) != 0)
+    shown = fitted_text(shown, std::max(kFewest, terminal_width(fileno(out))));
   if (std::fwrite(shown.data(), 1, shown.size(), out) < shown.size())
     throw std::system_error(errno, std::generic_category(), "cannot write the output");
 }

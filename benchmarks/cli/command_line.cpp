@@ -9,10 +9,9 @@
 #include <cmath>
 #include <memory>
 #include <optional>
-#include <sstream>
 
 #include "benchmarks/cli/verb.h"
-#include "benchmarks/run/progress.h"
+#include "core/columns.h"
 #include "core/errors.h"
 #include "core/records/provenance.h"
 #include "core/spec.h"
@@ -197,21 +196,6 @@ bool is_a(const CLI::ParseError& error) {
   return dynamic_cast<const Kind*>(&error) != nullptr;
 }
 
-// The line, broken at spaces behind the column `indent`.
-std::string broken(std::string line, std::size_t indent, std::size_t most) {
-  std::string text;
-  for (;;) {
-    std::size_t columns = 0, space = line.npos;
-    for (std::size_t at = 0; at < line.size() && columns <= most; ++at) {
-      if (line[at] == ' ' && columns > indent) space = at;
-      columns += (static_cast<unsigned char>(line[at]) & 0xC0U) != 0x80U;
-    }
-    if (columns <= most || space == line.npos) return text + line + '\n';
-    text += line.substr(0, space) + '\n';
-    line = std::string(indent, ' ') + line.substr(space + 1);
-  }
-}
-
 // Help text that fits the terminal, and 80 columns elsewhere. Examples stay whole, to be copied.
 struct WrappedHelp : CLI::Formatter {
   std::string make_help(const CLI::App* app, std::string name,
@@ -219,13 +203,7 @@ struct WrappedHelp : CLI::Formatter {
     constexpr std::size_t kUsual = 80, kLeast = 50;
     const std::size_t columns = terminal_width(STDOUT_FILENO);
     const std::size_t most = columns >= kLeast ? columns : kUsual;
-    std::istringstream lines(CLI::Formatter::make_help(app, std::move(name), mode));
-    std::string text;
-    for (std::string line; std::getline(lines, line);)
-      text += line.starts_with("  isoline ")
-                  ? line + '\n'
-                  : broken(line, line.starts_with(' ') ? get_column_width() : 0, most);
-    return text;
+    return fitted_text(CLI::Formatter::make_help(app, std::move(name), mode), most);
   }
 };
 

@@ -16,6 +16,7 @@
 #include "benchmarks/plan/claim_cells.h"
 #include "benchmarks/run/progress.h"
 #include "benchmarks/run/runner.h"
+#include "core/columns.h"
 #include "core/foreign/foreign.h"
 #include "core/shell.h"
 #include "core/text.h"
@@ -23,6 +24,9 @@
 #include "reports/sections/words.h"
 
 namespace isoline::benchmarks {
+
+std::string_view embedded_raw_conduct();
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -190,6 +194,47 @@ reports::Study study_of_report(const std::vector<std::string>& folders, Session&
   return study;
 }
 
+namespace {
+
+// Libraries that are called without Isoline, by a counter within the callback.
+reports::Table raw_conduct() {
+  const Json raw = parse_json(std::string(embedded_raw_conduct()), "conduct.json");
+  reports::Table table = reports::worded_table("conduct-raw");
+  const std::vector<std::string> columns = table.columns;
+  table.parts = {4, 4, 3};
+  for (const auto& [method, cells] : raw.at("methods").items()) {
+    auto& row = table.rows.emplace_back();
+    row.emplace_back(method);
+    for (std::size_t i = 1; i < columns.size(); ++i) {
+      const Json& cell = cells.at(columns[i]);
+      const std::string mark = cell.at("mark"), rule = raw.at("rules").at(columns[i]);
+      row.emplace_back(mark + " " + cell.at("figures").get<std::string>());
+      row.back().note = fmt::format("{}. {}", fmt::join(cell.at("runs"), ", "), rule);
+    }
+  }
+  return table;
+}
+
+// Where the results have no table of conduct of their own, the published one of their methods.
+void add_published_conduct(reports::Document& document) {
+  reports::Section& own = *std::ranges::find(document.sections, "conduct", &reports::Section::id);
+  if (own.is_empty()) {
+    std::vector<AuditedOptimizer> all =
+        audit_from_text(std::string(embedded_conduct()), "conduct.json");
+    std::erase_if(all, [&](const AuditedOptimizer& one) {
+      return std::ranges::none_of(document.comparison.optimizers,
+                                  [&](const auto& axis) { return axis.method == one.name; });
+    });
+    own = reports::conduct_section(all);
+    own.lead +=
+        " These figures are published with Isoline; isoline audit --conduct --out FOLDER replaces "
+        "them by your own.";
+  }
+  own.tables.push_back(raw_conduct());
+}
+
+}  // namespace
+
 reports::Document document_of_report(const reports::Study& study, Session& session,
                                      const reports::Yardstick& yardstick) {
   std::vector<reports::Judgement> claims =
@@ -197,7 +242,10 @@ reports::Document document_of_report(const reports::Study& study, Session& sessi
   std::erase_if(claims, [](const reports::Judgement& judgement) { return !judgement.is_covered; });
   reports::Yardstick own = yardstick;
   own.has_contrasts = reports::has_contrasts(study);
-  return reports::document_of(reports::compare_optimizers(study, own), std::move(claims));
+  reports::Document document =
+      reports::document_of(reports::compare_optimizers(study, own), std::move(claims));
+  add_published_conduct(document);
+  return document;
 }
 
 void write_and_print(const reports::Study& study, const std::filesystem::path& out,

@@ -2,7 +2,6 @@
 #include "benchmarks/run/progress.h"
 
 #include <fmt/format.h>
-#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -12,6 +11,7 @@
 #include <cstring>
 
 #include "core/clock.h"
+#include "core/columns.h"
 #include "core/text.h"
 
 namespace isoline::benchmarks {
@@ -43,12 +43,6 @@ std::optional<double> TimeLeft::at(double now) const {
   if (!is_known_ || done_ <= 0 || expected_ <= 0) return std::nullopt;
   const double left = std::max(0.0, expected_ - done_) * last_ / done_;
   return std::max(0.0, left - (now - last_));
-}
-
-std::size_t terminal_width(int descriptor) {
-  constexpr std::size_t kUsual = 80;
-  winsize size{};
-  return ioctl(descriptor, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : kUsual;
 }
 
 namespace {

@@ -9,9 +9,6 @@
 
 namespace isoline::benchmarks {
 
-// Columns of the terminal at an open file; 80 where there is no terminal.
-std::size_t terminal_width(int descriptor);
-
 // Cells are weighed by their predicted times, and finished cells correct the predictions of the
 // rest. Where one has no prediction nothing is said: the slowest cells of a suite take as long as
 // all others together.

@@ -63,6 +63,8 @@ int run(const FiguresArguments& given, Session& session) {
                                         reports::joined(given.formats, ","),
                                         "--width",
                                         fmt::format("{}", given.width)};
+  for (const std::string& records : given.folders)
+    arguments.insert(arguments.end(), {"--records", records});
   if (!given.only.empty()) arguments.insert(arguments.end(), {"--only", given.only});
   if (!given.methods.empty())
     arguments.insert(arguments.end(), {"--methods", reports::joined(given.methods, ",")});

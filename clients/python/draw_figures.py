@@ -143,6 +143,58 @@ def drawn(pyplot, plot, width, methods, text):
     return figure
 
 
+def field_plots(folders, plots, methods):
+    """A plot of y*, x* and the stored x of up to four methods for each problem whose records have fields: those of the
+    least seed, and of several runs of a method that of least loss."""
+    runs = {}
+    for path in sorted(path for folder in folders for path in pathlib.Path(folder, "runs").glob("*.npy")):
+        record = path.with_suffix(".json")
+        if path.name.endswith(".x.npy") or not record.is_file():
+            continue
+        record = json.loads(record.read_text(encoding="utf-8"))
+        request = record["request"]
+        key = request["seed"], record["summary"].get("best_loss") or math.inf
+        mine = runs.setdefault(request["problem"]["spec"], {})
+        name = request["optimizer"]["name"]
+        if name not in mine or key < mine[name][0]:
+            mine[name] = key, path, record["fields"]
+    for plot in [plot for plot in plots if plot["name"].startswith("curves-") and plot.get("problem") in runs]:
+        names = dict.fromkeys(name for line in shown_lines(plot, methods) for name in sorted(names_of(line), key=len)[:1])
+        found = {name: runs[plot["problem"]][name] for name in names if name in runs[plot["problem"]]}
+        if found:
+            yield {"name": plot["name"].replace("curves-", "fields-"), "title": f"stored x on {plot['problem']}",
+                   "kind": "fields", "series": [], "found": dict(list(found.items())[:4])}
+
+
+def drawn_fields(pyplot, plot, width, text):
+    """A row of pictures for y* and x*, and a row for each method, at the iterations that it stored."""
+    import numpy
+    rows = []
+    for method, (_, path, fields) in plot["found"].items():
+        try:
+            planes = numpy.load(path).reshape(fields["shape"])
+        except (OSError, ValueError):
+            sys.exit(f"{path} cannot be read as an array of the shape that its record states")
+        count, last = len(fields["iterations"]), len(planes)
+        first = 1 if last == count + 1 else 2
+        rows = rows or [[("y*", planes[0]), ("x*", planes[1])][:first]]
+        rows.append([(str(k), planes[first + i]) for i, k in enumerate(fields["iterations"])])
+    columns, heads = max(map(len, rows)), 0.3  # inches above each row
+    height = (width / columns + heads) * len(rows)
+    figure, all_axes = pyplot.subplots(len(rows), columns, squeeze=False, figsize=(width, height))
+    scale = numpy.nanmax(numpy.abs(rows[0][-1][1])) or 1
+    for axes, (label, values) in [(all_axes[r][c], one) for r, row in enumerate(rows) for c, one in enumerate(row)]:
+        most = scale if label != "y*" else numpy.nanmax(numpy.abs(values)) or 1
+        axes.imshow(values, cmap="PuOr_r", vmin=-most, vmax=most, aspect="auto")
+        axes.set_title(text(label), fontsize=7, pad=1.5)
+    for method, axes in zip(plot["found"], all_axes[1:, 0]):
+        axes.annotate(text(method), (0, 1), (0, 10), "axes fraction", textcoords="offset points", fontsize=7)
+    for axes in all_axes.flat:
+        axes.set_axis_off()
+    figure.subplots_adjust(0.01, 0.01, 0.99, 1 - heads / height, 0.05, heads * columns / width)
+    return figure
+
+
 def write_points(file, plot):
     with open(file, "w", newline="", encoding="utf-8") as out:
         rows = csv.writer(out)
@@ -211,6 +263,7 @@ def caption(plot, report, methods):
     lines = shown_lines(plot, methods)
     sentences = [f"{plot['title']}.", plot.get("reading", ""), plot.get("caption", ""),
                  "Lines are medians over seeds." if plot["kind"] == "lines" and lines and "problem" in plot else "",
+                 "The numbers are iterations; all x have one scale." if plot["kind"] == "fields" else "",
                  f"Data: {report.get('headline', '')}; seeds {', '.join(map(str, report.get('seeds', [])))}; {report.get('version', '')}."]
     return " ".join(sentence for sentence in sentences if sentence)
 
@@ -220,6 +273,7 @@ def main():
     parser.add_argument("report", help="report.json of a report")
     parser.add_argument("--format", default="svg", help="svg, pdf, pgf and csv, between commas")
     parser.add_argument("--only", default="", help="plots whose names contain this text")
+    parser.add_argument("--records", action="append", default=[], help="result folder, whose stored fields are drawn")
     parser.add_argument("--methods", default="", help="methods, by name, between commas")
     parser.add_argument("--width", type=float, default=3.2, help="width in inches")
     parser.add_argument("--out", default="figures", help="output folder")
@@ -227,11 +281,13 @@ def main():
     parser.add_argument("--quiet", action="store_true", help="print nothing")
     given = parser.parse_args()
     report = read_report(given.report)
-    plots = [plot for plot in report["plots"] if given.only in plot["name"]]
+    methods = {name for name in given.methods.split(",") if name}
+    all_plots = [*report["plots"], *field_plots(given.records, report["plots"], methods)]
+    plots = [plot for plot in all_plots if given.only in plot["name"]]
     if not report["plots"] and not given.quiet:
         sys.exit("these results have no figures")
     if not plots and report["plots"]:
-        sys.exit(f"--only {given.only}: none of the {len(report['plots'])} figure names contains this text; "
+        sys.exit(f"--only {given.only}: none of the {len(all_plots)} figure names contains this text; "
                  "--list prints their names")
     if given.list:
         for plot in plots:
@@ -241,8 +297,8 @@ def main():
     if "pgf" in formats and shutil.which("pdflatex") is None:
         sys.exit("--format pgf: matplotlib measures the texts of PGF by pdflatex, which is not installed; on Debian, "
                  "`apt-get install texlive-latex-base texlive-pictures` installs it")
-    methods = {name for name in given.methods.split(",") if name}
-    unknown = methods - {name for plot in plots for line in plot["series"] for name in names_of(line)}
+    unknown = methods - {name for plot in report["plots"] for line in plot["series"]
+                         for name in names_of(line)}
     if unknown:
         sys.exit(f"--methods {min(unknown)}: these figures have no line of this name")
     out = pathlib.Path(given.out)
@@ -258,13 +314,16 @@ def main():
             with named(given.report, plot["name"]):
                 file.write(f"{plot['name']}: {caption(plot, report, methods)}\n\n")
     for plot in plots:
-        if "csv" in formats:
+        is_of_fields = plot["kind"] == "fields"
+        if "csv" in formats and not is_of_fields:
             write_points(out / f"{plot['name']}.csv", plot)
         for name in drawings:
+            text = in_tex if name == "pgf" else lambda text: text
             plain = {"svg": {"Date": None, "Title": plot["title"]},
                      "pdf": {"CreationDate": None, "Title": plot["title"]}}
             with named(given.report, plot["name"]):
-                figure = drawn(pyplot, plot, given.width, methods, in_tex if name == "pgf" else lambda text: text)
+                figure = (drawn_fields(pyplot, plot, given.width, text) if is_of_fields else
+                          drawn(pyplot, plot, given.width, methods, text))
                 figure.savefig(out / f"{plot['name']}.{name}", metadata=plain.get(name))
                 pyplot.close(figure)
     if not given.quiet:

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "core/columns.h"
 #include "core/seeds.h"
 #include "reports/formats/formats.h"
 #include "reports/sections/words.h"
@@ -45,30 +46,8 @@ std::string label_of(const ProblemAxis& problem) {
          (problem.is_foreign ? " ‡" : "");
 }
 
-// The end of a word; a command between backticks is one.
-std::size_t word_end(const std::string& text, std::size_t at) {
-  bool is_command = false;
-  for (; at < text.size() && (is_command || text[at] != ' '); ++at)
-    if (text[at] == '`') is_command = !is_command;
-  return at;
-}
-
-// Breaks between words.
 std::string wrapped(const std::string& text, std::size_t columns) {
-  std::string out;
-  std::size_t column = 0;
-  for (std::size_t at = 0; at < text.size();) {
-    const std::size_t end = word_end(text, at);
-    const std::string word = text.substr(at, end - at);
-    if (column > 0 && column + 1 + width_of(word) > columns) {
-      out += "\n";
-      column = 0;
-    }
-    out += (column > 0 ? " " : "") + word;
-    column += width_of(word) + (column > 0 ? 1 : 0);
-    at = end + 1;
-  }
-  return out + "\n";
+  return fitted_text(text, columns) + "\n";
 }
 
 // "sine             sip † 2", two a line where they fit. Empty if no least loss is known.

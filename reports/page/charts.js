@@ -117,7 +117,7 @@ const nameOf = (group) => (group.dataset.s === undefined ? group.querySelector('
 function endOf(chart, group) {
   const ends = chart.querySelector('.ends'), there = lineIn(ends, lineOf(group));
   if (there !== undefined) return there;
-  const made = svgElement('text', {'data-s': lineOf(group)}, nameOf(group).replace(/(.{23}).{2,}/, '$1…') + (group.matches('[data-worse]') ? ' ✗' : ''));
+  const made = svgElement('text', {'data-s': lineOf(group)}, (group.matches('[data-bound]') ? '≤ ' : '') + nameOf(group).replace(/(.{23}).{2,}/, '$1…') + (group.matches('[data-worse]') ? ' ✗' : ''));
   ends.append(made);
   if (chart.matches('.marked')) group.append(svgElement('path', {class: 'points', d: pointsOf(pathOf(group)).map(([x, y]) => `M${x} ${y}h0`).join('')}));
   return made;
@@ -259,17 +259,7 @@ function completeCharts(place, p) {
   }
 }
 ON_UNPACK.push((place) => completeCharts(place, place.dataset.p));
-// Names of lines are one stop of the keyboard: arrows move among them.
-ON_UNPACK.push((place) => place.querySelectorAll('.names').forEach((names) => {
-  const buttons = [...names.querySelectorAll('button')];
-  buttons.forEach((button, i) => { button.tabIndex = i === 0 ? 0 : -1; });
-  names.addEventListener('keydown', ({key}) => {
-    const next = buttons[buttons.indexOf(document.activeElement) + (key === 'ArrowRight' ? 1 : key === 'ArrowLeft' ? -1 : NaN)];
-    if (next === undefined) return;
-    buttons.forEach((button) => { button.tabIndex = button === next ? 0 : -1; });
-    next.focus();
-  });
-}));
+ON_UNPACK.push((place) => place.querySelectorAll('.names').forEach(oneStop));
 ON_UNPACK.push((place) => {
   if (!place.matches('article'))
     place.querySelectorAll('.chart').forEach((chart) => live(chart, () => {

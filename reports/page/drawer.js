@@ -112,7 +112,9 @@ function openEvidence(cell) {
   if (claim !== undefined) return openClaim(claim);
   if (p !== undefined && s !== undefined) return openDrawer(p, s);
   if (DATA.problems[p]?.sheet !== undefined) return openPrices(DATA.problems[p]);
-  if (method !== undefined) return openCommand(method, 'audited-again', `./isoline audit ${method}`);
+  if (table === 'conduct-rules') return openCommand(cell.parentElement.cells[0].textContent, 'conduct-again', './isoline audit --conduct');
+  if (table === 'conduct-raw') return openCommand(cell.parentElement.cells[0].textContent, 'measured-raw', 'python3 clients/peers/conduct/conduct.py measure conduct.json', element('p', {}, cell.title));
+  if (method !== undefined) return openCommand(method, 'audited-again', `./isoline audit ${table === 'conduct-table' ? '--conduct ' : ''}${method}`, element('p', {}, cell.title));
   if (s === undefined) return;  // a name, or a number of the report as a whole
   const pair = table === 'leader' && s !== DATA.ranked[0] ? [DATA.ranked[0], s] : [s];
   openSettings(pair.map((one) => DATA.optimizers[one]).join(' : '), pair, settingsBehind(table, column, s), column === 'failed' ? worded('none-failed') : undefined);

@@ -201,6 +201,61 @@ std::string endings_html(const Comparison& c) {
   return "<ul class=tiles>" + html + "</ul>";
 }
 
+// --- what a browser reads
+
+constexpr std::string_view kPacks = "{{packs}}";
+
+// Compressed, in pieces between which the parser of a browser can pause for the first painting.
+std::string packed_text(std::string_view name, std::string_view text) {
+  constexpr std::size_t kPiece = 1 << 15;
+  const std::string all = radix64(compressed(text));
+  std::string html;
+  for (std::size_t at = 0; at < all.size(); at += kPiece)
+    html += fmt::format("<script type=\"application/zlib\"{} class={}>{}</script>\n",
+                        at == 0 ? fmt::format(" id={}", name) : "", name,
+                        std::string_view(all).substr(at, kPiece));
+  return html;
+}
+
+// With numbers for all letters but those of ASCII, of which a browser needs half the memory and
+// half the time.
+std::string ascii_html(std::string_view utf8) {
+  std::string out;
+  std::uint32_t letter = 0;
+  for (std::size_t i = 0; i < utf8.size(); ++i) {
+    const auto byte = static_cast<unsigned char>(utf8[i]);
+    if (byte < 0x80) {
+      out += utf8[i];
+      continue;
+    }
+    const bool continues = byte < 0xC0;
+    letter = continues ? letter << 6 | (byte & 0x3F)
+                       : byte & (byte < 0xE0   ? 0x1F
+                                 : byte < 0xF0 ? 0x0F
+                                               : 7);
+    if (i + 1 == utf8.size() || (static_cast<unsigned char>(utf8[i + 1]) & 0xC0) != 0x80)
+      out += fmt::format("&#{};", letter);
+  }
+  return out;
+}
+
+// What waits within the rest of the page goes compressed, in the order of its empty places.
+std::string sent(std::string_view page) {
+  constexpr std::string_view kOpen = "<noscript>", kClose = "</noscript>";
+  std::size_t at = page.find("<noscript class=\"rest\""), open = 0;
+  std::string out(page.substr(0, at)), packs;
+  while ((open = page.find(kOpen, at)) != std::string_view::npos) {
+    const std::size_t close = page.find(kClose, open);
+    out += page.substr(at, open - at);
+    out += "<template class=sent></template>";
+    packs += page.substr(open + kOpen.size(), close - open - kOpen.size());
+    packs += '\0';
+    at = close + kClose.size();
+  }
+  out += page.substr(at);
+  return ascii_html(out.replace(out.find(kPacks), kPacks.size(), packed_text("packs", packs)));
+}
+
 // --- kinds of methods as colours and words
 
 bool is_kind(std::string_view kind) {
@@ -253,9 +308,7 @@ std::string marks_html(const OptimizerAxis& axis) {
   return marks;
 }
 
-std::string packed_text(std::string_view text) { return radix64(compressed(text)); }
-
-std::string html_report(const Document& document) {
+std::string readable_html(const Document& document) {
   const Comparison& c = document.comparison;
   const AllFields fields = all_found_fields(c);
   Section order = document.section("standings"), apart{.id = "apart", .title = order.title};
@@ -263,9 +316,13 @@ std::string html_report(const Document& document) {
   std::ranges::copy_if(order.tables, std::back_inserter(apart.tables), is_apart);
   std::erase_if(order.tables, is_apart);
   const auto own = std::ranges::find(document.sections, "fit", &Section::id);
+  const std::string_view style = embedded_page_css();
+  const std::size_t first = style.find("/* Up to here");
   Parts parts{{"title", html_text(title_of(c))},
-              {"style", std::string(embedded_page_css()) + kind_rules(c)},
-              {"scripts", packed_text(embedded_page_js())},
+              {"style-first", std::string(style.substr(0, first))},
+              {"style", std::string(style.substr(first)) + kind_rules(c)},
+              {"program", packed_text("program", embedded_page_js())},
+              {"packs", std::string(kPacks)},
               {"tau", tau_name(c)},
               {"headline", head_html(document)},
               {"page.ranking",
@@ -289,10 +346,12 @@ std::string html_report(const Document& document) {
               {"methods", methods_html(c)},
               {"optimizers", optimizers_html(c)},
               {"legend", legend_html(c)},
-              {"data", packed_text(page_data(document, fields))}};
+              {"data", packed_text("data", page_data(document, fields))}};
   for (const Section& section : document.sections)  // but those that the scripts redraw
     if (!parts.contains(section.id)) parts.emplace(section.id, section_html(section));
   return filled(embedded_page_html(), parts);
 }
+
+std::string html_report(const Document& document) { return sent(readable_html(document)); }
 
 }  // namespace isoline::reports

@@ -52,6 +52,8 @@ std::string figures_html(const Document& document);
 // Fields. Bytes 1 to 255, of which 128 is 0 and 255 twice `scale`: colours end at ±scale, and what
 // a difference of two may need is not lost before. Beyond twice the scale a value is cut.
 std::string field_bytes(const std::vector<float>& values, Real scale);
+// The page before what waits is compressed.
+std::string readable_html(const Document& document);
 std::string radix64(std::string_view bytes);  // RFC 4648, section 4
 std::string letters_of(std::string_view bytes);
 // A byte a cell, painted by the scripts in the colours of a ramp, "grey" or "diverging"; without

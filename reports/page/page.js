@@ -82,6 +82,7 @@ makeBar(document.getElementById('view'));
 offerThemes(document.getElementById('theme'));
 document.querySelectorAll('table.sortable').forEach(makeSortable);
 document.querySelectorAll('main table:not(#standings-table, #heat)').forEach(addCopies);
+document.querySelectorAll('.first figure').forEach((place) => ON_UNPACK.forEach((made) => made(place)));
 liveOverview();
 livePair(document.getElementById('pair'));
 liveChoose(document.getElementById('means'));

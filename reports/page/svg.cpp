@@ -204,6 +204,15 @@ std::string band_of(const Frame& area, const PlotSeries& line, Join join) {
   return fmt::format("<path class=band d=\"{}Z\"/>", path_of(area, x, high, Join::straight));
 }
 
+// What lies between the parts of a path.
+std::string gaps_of(const Frame& area, const PlotSeries& line, Join join) {
+  std::string path;
+  for (std::size_t i = 1; i + 1 < line.y.size(); ++i)
+    if (std::isnan(line.y[i]) && !std::isnan(line.y[i - 1]) && !std::isnan(line.y[i + 1]))
+      path += path_of(area, {line.x[i - 1], line.x[i + 1]}, {line.y[i - 1], line.y[i + 1]}, join);
+  return path.empty() ? "" : fmt::format("<path class=gap d=\"{}\"/>", path);
+}
+
 // Which line a button is of: of an optimizer in all drawings the same.
 std::string line_attributes(const PlotSeries& line, std::size_t place, std::string classes) {
   if (!line.optimizer) classes += fmt::format("{}c{}", classes.empty() ? "" : " ", place % 8);
@@ -215,12 +224,17 @@ std::string line_attributes(const PlotSeries& line, std::size_t place, std::stri
   return tag;
 }
 
+bool is_bound(const Drawing& drawing, const PlotSeries& line) {
+  return line.optimizer && drawing.bounds.contains(*line.optimizer);
+}
+
 std::string series_svg(const Drawing& drawing, const Frame& area, std::size_t place) {
   constexpr std::size_t kFewPoints = 16;  // are marked
   const PlotSeries& line = drawing.plot.series[place];
   const bool is_off = is_hidden(drawing, line);
-  std::string svg = fmt::format("<g{}{}>", line_attributes(line, place, is_off ? "off" : ""),
-                                line.is_worse_at_end ? " data-worse" : "");
+  std::string svg = fmt::format("<g{}{}", line_attributes(line, place, is_off ? "off" : ""),
+                                line.is_worse_at_end ? " data-worse" : "") +
+                    (is_bound(drawing, line) ? " data-bound>" : ">");
   if (line.are_points) {
     std::string bars;
     for (std::size_t i = 0; i < line.low.size(); ++i)
@@ -239,6 +253,7 @@ std::string series_svg(const Drawing& drawing, const Frame& area, std::size_t pl
                      drawing.join == Join::none ? "\"line points\"" : "line", path);
   // What the scripts show later they mark and name.
   svg += is_off ? "/>" : fmt::format("><title>{}</title></path>", html_text(line.name));
+  svg += gaps_of(area, line, drawing.join);
   const bool are_few = drawing.join == Join::straight && line.x.size() <= kFewPoints;
   if (!is_off && (drawing.has_points || are_few))
     svg += fmt::format("<path class=points d=\"{}\"/>", path_of(area, line.x, line.y, Join::none));
@@ -318,6 +333,7 @@ std::string end_names(const Drawing& drawing, const Frame& frame) {
     if (last == 0 || is_hidden(drawing, line)) continue;
     std::string text = line.name;
     if (text.size() > kLongest) text = text.substr(0, kLongest - 1) + "…";
+    if (is_bound(drawing, line)) text = "≤ " + text;
     if (line.is_worse_at_end) text += " ✗";
     const Real x = drawing.plot.kind == Plot::Kind::steps ? frame.window.x_high : line.x[last - 1],
                width = kLetter * static_cast<Real>(letters_of(text));

@@ -59,6 +59,7 @@ function makeSortable(table) {
       sortTable(table, column, isDescending);
     });
   });
+  oneStop(table.tHead.rows[0]);
 }
 
 // Shows the selected rows that contain every word of the input; returns a function that repeats this.
@@ -112,12 +113,25 @@ const TABLE_TEXTS = {
   LaTeX: (grid) => `\\begin{tabular}{l${'r'.repeat(grid[0].length - 1)}}\n\\hline\n${grid.map((row, i) => `${row.map((text) => text.replaceAll(/[&%$#_{}]/g, '\\$&').replaceAll(/[\\~^](?![&%$#_{}])/g, (letter) => LATEX[letter]).replaceAll(/[^\x00-\x7f]/g, (letter) => LATEX[letter] ?? letter)).join(' & ')} \\\\${i === 0 ? ' \\hline' : ''}`).join('\n')}\n\\hline\n\\end{tabular}`,
 };
 
+// Buttons that stand together are one stop of the keyboard: arrows move among them.
+function oneStop(group) {
+  const buttons = [...group.querySelectorAll('button')];
+  buttons.forEach((button, i) => { button.tabIndex = i === 0 ? 0 : -1; });
+  group.addEventListener('keydown', ({key}) => {
+    const next = buttons[buttons.indexOf(document.activeElement) + (key === 'ArrowRight' ? 1 : key === 'ArrowLeft' ? -1 : NaN)];
+    if (next === undefined) return;
+    buttons.forEach((button) => { button.tabIndex = button === next ? 0 : -1; });
+    next.focus();
+  });
+}
+
 // Buttons that copy a table, below it.
 function addCopies(table) {
   const place = table.closest('.scroll') ?? table;
   if (table.tBodies.length === 0 || place.nextElementSibling?.matches('.tools')) return;
   const buttons = Object.entries(TABLE_TEXTS).map(([name, textOf]) => Object.assign(pressable(name, undefined, ({currentTarget}) => copyText(`${textOf(gridOf(table))}\n`, currentTarget)), {title: worded('copy-table', {format: name})}));
   place.after(element('p', {className: 'tools'}, ...buttons));
+  oneStop(place.nextElementSibling);
 }
 
 // The meaning of a term, in the head of a column or beside a switch, on demand.

@@ -95,6 +95,7 @@ function addTools(place) {
   for (const key of ['x', 'y'])
     if (axisOf(chart(), key).kind !== 'share' && axisOf(chart(), key).low > 0) tools.firstChild.after(pressable(`log ${key}`, undefined, turn(key)));
   place.querySelector('.chart:last-of-type').after(tools);
+  oneStop(tools);
 }
 
 // A drag over the area of a chart looks at that part of it.

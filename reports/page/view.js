@@ -33,7 +33,7 @@ function hiddenMethods() {
 // A hue for each of these methods, in their order.
 const huesOf = (methods, place = '') => methods.map((s, i) => `${place}[data-s="${s}"] { --series: var(--s${i}); }`).join('\n');
 
-const RULES = document.head.appendChild(document.createElement('style'));
+const RULES = document.body.appendChild(document.createElement('style'));
 
 function hideElements() {
   const selectors = ['s', 'p'].flatMap((kind) => [...view.hidden[kind]].map((index) => `[data-${kind}="${index}"]`));

@@ -60,7 +60,16 @@ MedianCurve median_curve(const Comparison& c, const Cell& cell, std::size_t poin
     all.insert(one.curve->iteration.begin(), one.curve->iteration.end());
   const std::vector<std::int64_t> iterations(all.begin(), all.end());
   const std::size_t without_curve = cell.runs.size() - curves.size();
+  constexpr Real kGap =
+      1.33;              // four times the distance of points of which 32 are stored per decade
+  std::size_t next = 1;  // stored point
   for (const std::size_t i : thinned(iterations.size(), points)) {
+    bool is_after_gap = false;
+    for (; next <= i; ++next) {
+      const auto from = static_cast<Real>(iterations[next - 1]);
+      is_after_gap |= static_cast<Real>(iterations[next]) > std::max(from + 1, kGap * from);
+    }
+    median.is_after_gap.push_back(is_after_gap);
     std::vector<std::size_t> at;
     for (const Traced& one : curves) at.push_back(point_at(one.curve->iteration, iterations[i]));
     const auto over_runs = [&](std::size_t lost, auto column) {

@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <map>
 
 #include "reports/sections/words.h"
@@ -167,6 +168,26 @@ PlotSeries stairs(const PlotSeries& kept, const std::vector<std::pair<Real, Real
   return line;
 }
 
+// Not-a-number between the points of a line that lie on both sides of stored points which the
+// medians lack: what is drawn there is dashed.
+PlotSeries with_gaps(const PlotSeries& line, const MedianCurve& curve, const Column& taken) {
+  if (std::ranges::count(curve.is_after_gap, true) == 0) return line;
+  PlotSeries out = line;
+  out.x.clear(), out.y.clear(), out.low.clear(), out.high.clear();
+  for (std::size_t i = 0; i < line.x.size(); ++i) {
+    bool is_gap = false;
+    for (std::size_t k = 1; k < taken.size() && i > 0 && !is_gap; ++k)
+      is_gap = curve.is_after_gap[k] && taken[k - 1] < line.x[i] && taken[k] > line.x[i - 1];
+    for (const auto column :
+         {&PlotSeries::x, &PlotSeries::y, &PlotSeries::low, &PlotSeries::high}) {
+      if ((line.*column).empty()) continue;
+      if (is_gap) (out.*column).push_back(std::numeric_limits<Real>::quiet_NaN());
+      (out.*column).push_back((line.*column)[i]);
+    }
+  }
+  return out;
+}
+
 class Curves {
  public:
   Curves(const Comparison& c, std::size_t p) : c_(c), p_(p), ranking_(ranking(c, p)) {
@@ -262,8 +283,11 @@ class Curves {
       line.method = c_.optimizers[s].method;
       if (is_of_error == is_x_sought() && !is_learned)
         line.is_worse_at_end = line.y.back() <= least_unmet(s, by);
+      if (is_of_error == is_x_sought() && !is_learned &&
+          std::ranges::count(c_.cell(p_, s).is_bound, true) > 0)
+        out.bounds.insert(s);
       if (are_stairs || !shown_.contains(s)) line.low.clear(), line.high.clear();
-      out.plot.series.push_back(std::move(line));
+      out.plot.series.push_back(with_gaps(line, curves_[i], taken_along(curves_[i], by)));
     }
     if (is_of_error == is_x_sought() && !is_learned)
       out.tolerance = is_of_error ? median_of(scales_) : 1;
@@ -397,8 +421,8 @@ std::vector<NamedDrawing> drawings_of(const Document& document) {
     for (Plane& plane : planes_of(c, p)) {
       plane.drawing.plot = shown_lines(plane.drawing);  // all of them would double the file
       plane.drawing.plot.reading = plane.reading;
-      add("paths-" + plane.drawing.rest + "-" + file_name_of(problem_name(c.problems[p])),
-          std::move(plane.drawing));
+      const std::string of = plane.drawing.rest.empty() ? "" : plane.drawing.rest + "-";
+      add("paths-" + of + file_name_of(problem_name(c.problems[p])), std::move(plane.drawing));
     }
   for (const Figure& one : document.figures)
     if (one.pictures.empty()) add("figure-" + file_name_of(one.title), figure_drawing(c, one));

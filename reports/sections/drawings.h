@@ -40,6 +40,7 @@ struct Drawing {
   std::optional<Real> tolerance;   // a line at τ times this, at the τ of the report
   std::vector<PlotSeries> ground;  // thin lines below all others
   std::vector<PlotSeries> ends;    // a point each: the start, and the goal
+  std::set<std::size_t> bounds;    // optimizers whose counts to a target are at most those drawn
   std::string attributes;          // of the element on the page
   std::string rest;                // the name of its hidden lines in the data of the page
 };

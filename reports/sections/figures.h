@@ -24,6 +24,7 @@ using namespace results;
 struct MedianCurve {
   std::vector<Real> iteration, work, cost, seconds, gap, x_error;
   std::vector<Real> gap_low, gap_high, x_error_low, x_error_high;  // least and greatest over seeds
+  std::vector<bool> is_after_gap;                                  // of stored points
 };
 MedianCurve median_curve(const Comparison& comparison, const Cell& cell, std::size_t points);
 

@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/clock.h"
+#include "core/columns.h"
 #include "core/files.h"
 #include "core/options.h"
 #include "core/seeds.h"
@@ -286,6 +287,18 @@ TEST(Text, IsCutBetweenCharacters) {
   EXPECT_EQ(cut(text, 100), text);
   const std::string rests(10, '\x80');
   EXPECT_LE(cut(rests, 6).size(), 6U);
+}
+
+TEST(Output, FitsATerminalBetweenWordsAndBelowTheLastColumnAndLeavesCommandsWhole) {
+  EXPECT_EQ(fitted_text("one two three\n", 20), "one two three\n");
+  EXPECT_EQ(fitted_text("one two three four five\nsix", 13), "one two three\nfour five\nsix");
+  EXPECT_EQ(fitted_text("  rate  0.1  how far a single move may go at most", 35),
+            "  rate  0.1  how far a single move\n             may go at most");
+  EXPECT_EQ(fitted_text("‖x‖ ‖y‖ ‖z‖", 7), "‖x‖ ‖y‖\n‖z‖") << "letters, not bytes";
+  EXPECT_EQ(fitted_text("say `isoline run quick` or so", 12), "say\n`isoline run quick`\nor so");
+  for (const char* whole :
+       {"  ./isoline run --problem beale --out results", "{\"a\": \"b c d e f g h\"}"})
+    EXPECT_EQ(fitted_text(whole, 10), whole);
 }
 
 TEST(Text, EscapeSequencesAndTurnedDirectionsAreMadeVisible) {

@@ -454,7 +454,7 @@ class Page(InBrowser):
 
     def test_a_colour_is_that_of_a_kind_in_every_report(self):
         # Of the first of each kind: others are of its colour, with more ink.
-        colour = ("const rule = [...document.styleSheets[0].cssRules].find((one) => one.selectorText"
+        colour = ("const rule = [...document.styleSheets].flatMap((sheet) => [...sheet.cssRules]).find((one) => one.selectorText"
                   " === `[data-s=\"${DATA.optimizers.indexOf(arguments[0])}\"]`);"
                   "return rule.style.getPropertyValue('--series').match(/var\\(--[a-z-]+\\)/)[0]")
         mine = {name: self.browser.run(colour, name)
@@ -1135,9 +1135,10 @@ class Claims(unittest.TestCase):
                 "params": {"source": "delete window.DecompressionStream"}})
             page.call("POST", "/url", {"url": self.address})
             page.wait("return document.querySelector('noscript') === null")
-            seen = page.run("return ['#detail-table tr', '.claim .chart', '.tab'].map((selector) => "
+            seen = page.run("return ['#overview > .scroll tr', '.tab', '#overview > .alert'].map((selector) => "
                             "[...document.querySelectorAll(selector)].length)")
-            self.assertTrue(all(count > 2 for count in seen), seen)
+            self.assertTrue(all(count > 0 for count in seen), seen)
+            self.assertIn("report.md", page.run("return document.querySelector('#overview > .alert').innerText"))
             self.assertEqual(page.run("return [...document.querySelectorAll('.tab')].filter((tab) => "
                                       "tab.getClientRects().length === 0).length"), 0)
             self.assertEqual(page.complaints(), [])
@@ -1172,12 +1173,13 @@ class Claims(unittest.TestCase):
             page.run("document.querySelector('.first figure').scrollIntoView()")
             hero = page.run("const hero = document.querySelector('.first figure'); return hero && "
                             "[hero.innerText, hero.querySelector('.ground') !== null, "
-                            "hero.getBoundingClientRect().left]")
+                            "hero.getBoundingClientRect().left, hero.querySelectorAll('.tools button').length]")
         finally:
             page.close()
         self.assertIsNotNone(hero)
-        text, has_interval, left = hero
+        text, has_interval, left, tools = hero
         self.assertTrue(has_interval)
+        self.assertGreaterEqual(tools, 5)
         self.assertGreater(left, 700)
         self.assertRegex(text, r"Measured: [\d.]+ \(bar: [\d.]+ to [\d.]+ ")
 

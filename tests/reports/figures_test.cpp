@@ -355,7 +355,7 @@ TEST(Plots, AreFiguresForEveryReader) {
   const Comparison& c = document.comparison;
   const Section& section = document.section("statistics");
   ASSERT_GE(section.plots.size(), 3U);
-  const std::string page = html_report(document);
+  const std::string page = readable_html(document);
   static const std::regex subject("data-s=([0-9]+)"), place("data-p=([0-9]+)"), wild("nan|inf");
   for (const Plot& plot : section.plots) {
     const std::string html = plot_html(plot);
@@ -486,4 +486,30 @@ TEST(Contour, LevelsAreThoseOfTheFigures) {
 }
 
 }  // namespace
+
+// An older record, which judged x at its stored points alone, without those of iterations 11 to 29.
+TEST(Lines, AreDashedWhereNoPointIsStoredAndSayWhereTheTableCountsAtMost) {
+  Record record = record_of({});
+  record.aim = Aim::x;
+  record.x_scale = 1;
+  const Compared whole({record});
+  for (auto* column : {&record.curve.iteration, &record.curve.work})
+    column->erase(column->begin() + 11, column->begin() + 30);
+  for (auto* column :
+       {&record.curve.wall_seconds, &record.curve.processor_seconds, &record.curve.loss,
+        &record.curve.x_error, &record.curve.gradient_norm, &record.curve.step_norm})
+    column->erase(column->begin() + 11, column->begin() + 30);
+  const Compared sparse({record});
+  const auto gaps = [](const Compared& c) {
+    return std::ranges::count_if(own_curves(c, 0)->plot.series.at(0).y,
+                                 [](Real y) { return std::isnan(y); });
+  };
+  EXPECT_EQ(gaps(whole), 0);
+  EXPECT_EQ(gaps(sparse), 1);
+  for (const char* mark : {"class=gap", "data-bound", ">≤ gd<"}) {
+    EXPECT_FALSE(has(curves_html(whole, 0), mark)) << mark;
+    EXPECT_TRUE(has(curves_html(sparse, 0), mark)) << mark;
+  }
+}
+
 }  // namespace isoline::reports

@@ -20,6 +20,7 @@
 #include "core/files.h"
 #include "core/json.h"
 #include "core/records/json_view.h"
+#include "reports/page/page.h"
 #include "reports/report.h"
 #include "reports/sections/words.h"
 #include "tests/reports/fixture.h"
@@ -96,7 +97,7 @@ TEST(Escape, EachFormatHasItsOwn) {
 
 TEST(Html, HostileNamesStayText) {
   const Study study = hostile_study();
-  const std::string page = html_report(document_of(compare_optimizers(study)));
+  const std::string page = readable_html(document_of(compare_optimizers(study)));
   EXPECT_FALSE(has(page, "<b>&|"));
   EXPECT_FALSE(has(page, "</script><!--@all"));
   EXPECT_TRUE(has(page, "&lt;b&gt;&amp;|&quot;x&quot;"));
@@ -185,7 +186,7 @@ TEST(Formats, AllPrintTheSameFigure) {
   study.runs = {record_of({.work_per_hit = 4567})};
   const Document document = document_of(compare_optimizers(study));
   for (const std::string& text :
-       {html_report(document), markdown_report(document), latex_report(document),
+       {readable_html(document), markdown_report(document), latex_report(document),
         csv_report(document), terminal_table(document)})
     EXPECT_TRUE(has(text, "137010"));
   const Json json = parse_json(json_report(document), "report");
@@ -199,7 +200,7 @@ TEST(Formats, APartialStudySaysSoInAll) {
   study.plan = plan_of({study.runs[0], record_of({.seed = 1})});
   const Document document = document_of(compare_optimizers(study));
   for (const std::string& text :
-       {html_report(document), markdown_report(document), terminal_table(document)})
+       {readable_html(document), markdown_report(document), terminal_table(document)})
     EXPECT_TRUE(has(text, "1 of 2 cells, missing"));
   EXPECT_TRUE(has(latex_report(document), "1 of 2 cells"));
   EXPECT_TRUE(has(csv_report(document), ",missing,"));
@@ -232,7 +233,7 @@ TEST(Formats, EverySectionIsInEachOfThem) {
   study.unreadable = {{"torn.json", "no JSON"}};
   study.audits = {{.name = "a", .spec = "a", .reason = "it has no step"}};
   const Document document = document_of(compare_optimizers(study), {{.sentence = "It is so."}});
-  const std::string page = html_report(document), markdown = markdown_report(document),
+  const std::string page = readable_html(document), markdown = markdown_report(document),
                     latex = latex_report(document);
   for (const Section& section : document.sections) {
     if (section.is_empty()) continue;

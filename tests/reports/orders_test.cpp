@@ -8,6 +8,7 @@
 #include "core/files.h"
 #include "core/oracle.h"
 #include "core/results/ranking.h"
+#include "reports/page/page.h"
 #include "reports/report.h"
 #include "reports/sections/sections.h"
 #include "reports/sections/words.h"
@@ -355,7 +356,7 @@ TEST(Labels, OfOtherProgramsAreTheirOwnNamesAndMarked) {
   for (std::size_t s = 0; s < c.optimizers.size(); ++s)
     EXPECT_EQ(optimizer_text(c, s).ends_with(" ‡"), c.optimizers[s].label != "gd");
   const Document document = document_of(c);
-  const std::string page = html_report(document);
+  const std::string page = readable_html(document);
   EXPECT_TRUE(has(page, words("marks.foreign")));
   for (const std::string& text : {page, markdown_report(document), terminal_table(document)})
     EXPECT_TRUE(has(text, "scipy-lm ‡"));

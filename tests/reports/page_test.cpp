@@ -1,6 +1,7 @@
 // The page: medians to targets equal those of the tables, attributes of filters, fields, size.
 #include "reports/page/page.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -73,7 +74,7 @@ TEST(Page, RowsSectionsAndCellsNameWhatTheyAreAbout) {
   for (const char* problem : {"a", "b"})
     for (const char* optimizer : {"gd", "newton"})
       study.runs.push_back(record_of({.problem = problem, .optimizer = optimizer}));
-  const std::string page = html_report(document_of(compare_optimizers(study)));
+  const std::string page = readable_html(document_of(compare_optimizers(study)));
   for (const char* part : {"<article class=\"problem one\" id=problem-1 data-p=1>",
                            "<article class=\"optimizer one\" id=optimizer-1 data-s=1>",
                            "<tr data-s=1 data-p=1><th scope=row>b", "<g data-s=1", "<tr data-s=1"})
@@ -128,7 +129,7 @@ TEST(Page, IsToldTheMethodOfEachOptimizer) {
   Study study;
   study.runs = {record_of({.optimizer = "gd[rate=0.1]"}), tuned};
   const Document document = document_of(compare_optimizers(study));
-  EXPECT_TRUE(has(html_report(document), "gd, tuned"));
+  EXPECT_TRUE(has(readable_html(document), "gd, tuned"));
   EXPECT_TRUE(has(page_data(document, AllFields(1)), "\"methods\":[\"gd\",\"gd\"]"));
   const std::filesystem::path scripts = ISOLINE_SOURCE_DIR "/reports/page";
   for (const auto& file : std::filesystem::directory_iterator(scripts)) {
@@ -147,9 +148,27 @@ TEST(Page, IsTitledByItsSuitesAndShowsFormulasAsTheyAreWritten) {
                    .spec = "square",
                    .formula = "P(x) = x₁² / ‖x̃‖, Λ^(−κ) < 1",
                    .options_text = "[]"}};
-  const std::string page = html_report(document_of(compare_optimizers(study)));
+  const std::string page = readable_html(document_of(compare_optimizers(study)));
   EXPECT_TRUE(has(page, "<title>quick"));
   EXPECT_TRUE(has(page, "<p class=formula>P(x) = x₁² / ‖x̃‖, Λ^(−κ) &lt; 1</p>"));
+}
+
+// The parser of a browser can pause between short elements, and holds ASCII in a byte a letter.
+TEST(Page, IsSentInAsciiAndWaitsInShortPieces) {
+  const Study study = uneven_study(true);
+  const Document document = document_of(compare_optimizers(study));
+  const std::string page = html_report(document), whole = readable_html(document);
+  EXPECT_TRUE(std::ranges::all_of(page, [](char letter) { return letter > 0; }));
+  EXPECT_FALSE(std::ranges::all_of(whole, [](char letter) { return letter > 0; }));
+  EXPECT_TRUE(has(page, "&#10007;"));
+  for (const char* waits : {"<h3>", "<table id=detail-table"})
+    EXPECT_FALSE(has(page.substr(page.find("<section id=\"choose\"")), waits)) << waits;
+  constexpr std::size_t kLongest = 32768;
+  for (const char* name : {"data", "packs", "program"})
+    EXPECT_TRUE(
+        has(page, fmt::format("<script type=\"application/zlib\" id={0} class={0}>", name)));
+  for (std::size_t at = 0; (at = page.find("<script", at)) != std::string::npos; ++at)
+    EXPECT_LE(page.find('<', page.find('>', at)) - page.find('>', at), kLongest + 1);
 }
 
 // A sheet names the least that a method can do with; the page names what its runs asked for.

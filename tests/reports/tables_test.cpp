@@ -639,7 +639,7 @@ TEST(AuditFile, IsReadWithTheStudyAndReportsDoWithoutIt) {
   EXPECT_EQ(audit.at("optimizers"), audit_to_json(samples()).at("optimizers"));
   EXPECT_TRUE(has(markdown_report(document_of(compare_optimizers(study))), "Measured properties"));
   EXPECT_FALSE(has(markdown_report(document_of(compare_optimizers(bare))), "Measured properties"));
-  EXPECT_TRUE(has(html_report(document_of(compare_optimizers(bare))), "no audit of"));
+  EXPECT_TRUE(has(readable_html(document_of(compare_optimizers(bare))), "no audit of"));
   ASSERT_EQ(bad.unreadable.size(), 1U);
   EXPECT_TRUE(bad.unreadable[0].file.ends_with("/audit.json"));
 }

@@ -12,6 +12,7 @@
 #include "core/files.h"
 #include "core/json.h"
 #include "core/records/json_view.h"
+#include "reports/page/page.h"
 #include "reports/report.h"
 #include "tests/reports/fixture.h"
 #include "tests/reports/synthetic.h"
@@ -147,7 +148,7 @@ class SameFigures : public testing::Test {
 };
 
 TEST_F(SameFigures, AreInEveryFormat) {
-  const std::string html = html_report(document_), markdown = markdown_report(document_),
+  const std::string html = readable_html(document_), markdown = markdown_report(document_),
                     latex = latex_report(document_), csv = statistics_csv(document_);
   std::size_t count = 0;
   for (const Json& table : tables()) {
