@@ -142,8 +142,10 @@ Real noise_of_calls(const Vector& y0, const std::function<Vector(Real t)>& y, Ve
   };
   // The third difference over steps of t, of which y(t) and y(2 t) are known.
   const auto third_over = [&](Real t, const Vector& once, const Vector& two) {
-    values.push_back(y(3 * t));
-    return (values.back() - two - once + y0 - 2 * difference(once, two)).norm();
+    const Vector thrice = y(3 * t);
+    const Real third = (thrice - two - once + y0 - 2 * difference(once, two)).norm();
+    values.push_back(thrice);
+    return third;
   };
   Vector second = difference(values[1], values[2]);
   const Vector moved = values[3] - y0;

@@ -53,7 +53,8 @@ std::string doubt_of(const LeastSquaresPoint& at) {
   const Real r = at.residual.norm();
   const Real spread = m > n ? r / std::sqrt(static_cast<Real>(m - n)) : 0;
   const Matrix root = svd.Vt.transpose() * sigma.cwiseInverse().asDiagonal();
-  // Of the entries of D⁻¹ Jᵀ r, by those of J: of the noise, and what y bends over central steps.
+  // Errors of the entries of D⁻¹ Jᵀ r by those of J: of the noise, and of the bends of y over
+  // central steps.
   Vector slope_errors(n);
   for (Index i = 0; i < n; ++i)
     slope_errors[i] = error / (step * size_for_steps(size_of(i), D[i], at.size_of_y)) * r / D[i] +

@@ -1,4 +1,4 @@
-// What JᵀJ leaves out of the Hessian of ½‖r‖², S ≈ Σ rᵢ∇²rᵢ, by what J changes between points where
+// The part of the Hessian of ½‖r‖² beside JᵀJ, S ≈ Σ rᵢ∇²rᵢ, by changes of J between points where
 // it was measured; Dennis, Gay, Welsch (1981), ACM TOMS 7 (NL2SOL), formulas 2.6 and 2.7. Where
 // residuals remain at the solution, Gauss-Newton steps shrink by a factor; with S, ever faster.
 #pragma once

@@ -574,7 +574,7 @@ Index slow_calls_of(const Problem& problem) {
   const Products has = problem.products();
   Index calls = 3;                   // at the random point, at the start, and at the point again
   if (has.has_pullback) calls += 2;  // the gradient
-  constexpr Index kNoiseCalls = 6;   // that the steps of differences follow from
+  constexpr Index kNoiseCalls = 4;   // that the steps of differences follow from
   if (has.are_differences)
     calls += has.has_pullback ? has.pullback_price + kNoiseCalls : 0;
   else if (has.has_pushforward || has.has_pullback)

@@ -184,10 +184,13 @@ std::string marked_verdict(const Judgement& judgement) {
 // source.
 std::vector<Reading> claim_notes(const Judgement& judgement) {
   std::vector<Reading> notes;
-  for (const Contrast& contrast : judgement.contrasts)
+  for (const Contrast& contrast : judgement.contrasts) {
+    const bool has_article = contrast.quantity.starts_with("the ");
     notes.push_back(
-        {"Contrast", words("claim.contrast", contrast.quantity, contrast.published,
+        {"Contrast", words("claim.contrast", (has_article ? "" : "the ") + contrast.quantity,
+                           contrast.published,
                            contrast.measured ? figure(contrast.measured->value) : kNothing)});
+  }
   if (judgement.alone)
     notes.push_back({"This reading", words("claim.alone", name_of(*judgement.alone))});
   for (const OtherReading& other : judgement.others)
