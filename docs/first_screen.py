@@ -146,10 +146,9 @@ def contest_findings(report):
     powers = re.findall(r"(a factor of [\d.]+|no factor)(?: in work| up to)", reading)
     here = re.search(r"; with ([\d.]+), that of the last contrast", reading)[1]
     lead = (f"**Findings** from the suite `contest`: eight methods, named before the runs, at their defaults, on {families} families of "
-            f"nonlinear problems with exact data ({runs} runs per method), chosen and not sampled. Four contrasts are tested in their "
-            f"order, each at 5 %, until one finds no difference, by scores per family. If differences of scores vary between families "
-            f"with a standard deviation of 0.25, {families} families can find {powers[0]} in work with a probability of 80 %; with {here}, "
-            f"as in the second contrast, {powers[-1]}.")
+            f"nonlinear problems with exact data ({runs} runs per method), chosen and not sampled. Contrasts are tested in their order, "
+            f"each at 5 %, until one finds no difference. If scores differ between families with a standard deviation of 0.25, {powers[0]} "
+            f"in work is found with a probability of 80 %; at {here}, as in the second contrast, {powers[-1]}.")
     items = []
     for row in rows:
         if row["contrast"].endswith("with noise") or "not tested" in row["decision"]:
@@ -159,13 +158,13 @@ def contest_findings(report):
         ratio, both = row["both solve"].rstrip(")").split(" (")
         none = re.search(rf"where (\S+) solves none of (\d+ settings)", reading)
         if both == "0" and none:
-            items.append(f"{row['decision']}: {none[1]} solves none of {none[2]} within its budget, so that no ratio of work is known; "
-                         f"{failures[0].split()[0]} and {failures[1]} runs do not reach 10⁻⁶.")
+            items.append(f"{row['decision']}: {none[1]} solves none of {none[2]} within its budget, so no ratio of work is known; "
+                         f"{failures[0].split()[0]} and {failures[1]} runs miss 10⁻⁶.")
             continue
         index = row["index"].replace(" (", " (95 %: ", 1)
-        items.append(f"{row['decision'].replace('the families', 'The families')}, by a rule that is stricter than 5 %: an index of work of "
-                     f"{index}; where both solve ({both} settings), {first} needs {ratio} times the work; {failures[0].split()[0]} and "
-                     f"{failures[1]} runs do not reach 10⁻⁶.")
+        items.append(f"{row['decision'].replace('the families', 'The families')}, by a rule stricter than 5 %: index of work "
+                     f"{index}; where both solve ({both} settings), {ratio} times the work; {failures[0].split()[0]} and "
+                     f"{failures[1]} runs miss 10⁻⁶.")
     return lead, items
 
 
@@ -179,9 +178,9 @@ def findings(report):
     decision = (f"{first['optimizer']} is significantly ahead of every other method" if leader["significant"] else
                 "no result could be significant" if leader["families"] < 6 else "no method is significantly ahead of all others")
     return (f"In `quick`, a sample for a first look ({len(leader['places'])} methods, {leader['settings']} settings of "
-            f"{leader['families']} families), {decision}. Networks trained to invert the map of the problem sine by adam have "
+            f"{leader['families']} families), {decision}. Networks trained to invert sine by adam have "
             f"{times} times (95 %: {low} to {high}; more on {seeds} seeds) the error in x of those by sip, given "
-            f"{sine['optimizer'].partition(', given ')[2]} (†), at published rates and equal work in physics, without the cost of training the network.")
+            f"{sine['optimizer'].partition(', given ')[2]} (†), at published rates and equal work in physics, training apart.")
 
 
 def write_findings(quick, contest):
