@@ -98,7 +98,7 @@ TEST(Features, AreOptionsOfEveryProblemAndFactorsOfASuite) {
   EXPECT_EQ(shell.expect("./isoline replay out/runs/*.json").out.find("differ"), std::string::npos);
 }
 
-TEST(Run, NamesTheFileThatHoldsAWrongValue) {
+TEST(WrongValues, NameTheirFile) {
   const Shell shell;
   write_text(shell.folder() / "s.json",
              R"({"schema": "isoline.suite/1", "name": "s", "matrix": [{"problems": ["heat[M=8]"],
@@ -113,7 +113,7 @@ TEST(Run, NamesTheFileThatHoldsAWrongValue) {
     shell.expect(run + "'bal[file=" + name + "]'", {.exit_code = 1, .err = {name}});
 }
 
-TEST(Run, OfOneMethodThatCannotTreatAllProblemsHasAReport) {
+TEST(ReportOfARun, OfOneMethodThatCannotTreatAllProblemsHasAReport) {
   const Shell shell;
   shell.expect(
       "./isoline run --problem 'heat,sine[xi=20]' --optimizer nlopt-neldermead --work 40 "
@@ -341,8 +341,8 @@ TEST_F(Exchange, AnImportedCurveStandsInTheTablesAndIsNeverVerified) {
   shell.expect("python3 " ISOLINE_SOURCE_DIR "/clients/python/import_curve.py c.csv --out results",
                {.out = {"imported, not verified"}});
   shell.expect("./isoline report results", {.out = {"theirs §", "§: imported"}});
-  for (const std::string file : {"report.md", "index.html"})
-    EXPECT_TRUE(contains(read_text(shell.folder() / "results/report" / file), "§")) << file;
+  for (const auto& [file, mark] : {std::pair{"report.md", "§"}, {"index.html", "&#167;"}})
+    EXPECT_TRUE(contains(read_text(shell.folder() / "results/report" / file), mark)) << file;
   shell.expect("./isoline validate results");
   shell("./isoline export results --out curves.csv");
   EXPECT_TRUE(contains(read_text(shell.folder() / "curves.csv"), ",true,,,,"));

@@ -356,7 +356,7 @@ TEST_F(Run, GoesOnWhereAComponentTerminatesItsParent) {
   const std::string problem = "'process[command=\"python3 kills.py\"]' ";
   shell.expect("./isoline describe " + problem);
   shell.expect("./isoline run --problem " + problem + "--optimizer gd --out out",
-               {.exit_code = 1, .err = {"cannot be checked", "signal 15"}});
+               {.exit_code = 130, .err = {"killed by signal 15", "sent by another program"}});
 }
 
 TEST_F(Run, EndsWithAMessageWhereNoFileMayGrow) {
