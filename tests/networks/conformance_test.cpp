@@ -285,8 +285,9 @@ TEST_P(EveryNetwork, GivesASampleTheSameBitsAtEachPlaceOfItsBatch) {
   for (Index b = 0; b < kSamples; ++b) {
     const Vector one = inferred.col(kPlaces[b]);
     EXPECT_LE((moved.col(b) - one).norm(), limit * one.norm()) << "inferred, at place " << b;
-    if (network->has_independent_samples())
+    if (network->has_independent_samples()) {
       EXPECT_LE((x.col(b) - at.x().col(kPlaces[b])).norm(), limit * x.col(b).norm()) << b;
+    }
   }
 }
 
