@@ -1,4 +1,5 @@
-// Confirms by J that the point at which a method stopped by its own test is a solution.
+// The end of a run: none where evaluations fail; and J confirms that the point at which a method
+// stopped by its own test is a solution.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,43 +10,57 @@
 
 namespace isoline::optimizers {
 
+void InARow::add_outcome(const FailedEvaluations& all) {
+  failed = all.total == std::exchange(known, all.total) ? 0 : failed + 1;
+  const std::int64_t most =
+      all.most_in_a_row > 0 ? all.most_in_a_row : std::max<std::int64_t>(100, 10 * x.size());
+  if (failed < most) return;
+  const bool is_kept = all.kept > 0 && all.kept == all.total;
+  throw std::runtime_error(fmt::format("{} evaluations in a row failed{}{}", failed,
+                                       is_kept ? "; the last: " : "",
+                                       is_kept ? all.reason[all.kept - 1] : ""));
+}
+
+// No run ends at a point whose evaluation failed while it has one with a value.
+void Meter::leave_failed_point(Status& verdict) {
+  if (std::isfinite(judged_.at.loss) || trace_.failures.total == 0 || !trace_.has_best) return;
+  look_at(Eigen::Map<const Vector>(trace_.best, trace_.unknowns));
+  if (verdict == Status::diverged || verdict == Status::running) verdict = Status::stalled;
+}
+
 bool Meter::knows_jacobian() const {
-  return known_theta_.size() == judged_theta_.size() && known_theta_ == judged_theta_;
+  return known_.theta.size() == judged_.theta.size() && known_.theta == judged_.theta;
 }
 
 const Matrix* Meter::jacobian_at_end() {
   const problems::Products has = problem_.products();
   const bool offers_it = problem_.offers().contains(Oracle::jacobian);
-  if (offers_it && !has.are_differences && !knows_exact_) {
-    problem_.jacobian(known_J_, judged_);
-    known_theta_ = judged_theta_;
-    known_by_ = {};
-    knows_exact_ = true;
-    return &known_J_;
+  if (offers_it && !has.are_differences && !known_.is_exact) {
+    problem_.jacobian(known_.J, judged_.at);
+    known_.theta = judged_.theta;
+    known_.by = {};
+    known_.is_exact = true;
+    return &known_.J;
   }
-  if (knows_jacobian()) return &known_J_;
+  if (knows_jacobian()) return &known_.J;
   try {
-    const std::int64_t price =
-        prices_[static_cast<std::size_t>(offers_it ? Oracle::jacobian : Oracle::forward)];
-    const std::int64_t calls = offers_it ? 1 : 2 * problem_.unknowns();
-    if (work_ + calls * price > budget_.work) return nullptr;
     if (offers_it) {
-      problem_.jacobian(known_J_, judged_);
-      counts_[static_cast<std::size_t>(Oracle::jacobian)] += calls;
-      work_ += calls * price;
-      known_theta_ = judged_theta_;
-      known_by_.noise = std::max(known_by_.noise, has.noise);
+      if (!ledger_.pay(Oracle::jacobian, 1)) return nullptr;
+      problem_.jacobian(known_.J, judged_.at);
+      known_.theta = judged_.theta;
+      known_.by.noise = std::max(known_.by.noise, has.noise);
       trace_.difference_noise = has.noise;
       trace_.difference_step = has.step;
-      return &known_J_;
+      return &known_.J;
     }
+    if (!ledger_.has_left(2 * problem_.unknowns() * ledger_.price(Oracle::forward))) return nullptr;
     Linearization at;
     DifferenceJacobian differences;
-    const Vector theta = judged_theta_;
-    if (known_J_.size() > 0) differences.know_noise(theta, known_by_.noise);
+    const Vector theta = judged_.theta;
+    if (known_.J.size() > 0) differences.know_noise(theta, known_.by.noise);
     linearize(theta, at);
     differences.renew(*this, theta, "central", at);
-    return &known_J_;
+    return &known_.J;
   } catch (const BudgetSpent&) {
     return nullptr;
   }
@@ -54,7 +69,7 @@ const Matrix* Meter::jacobian_at_end() {
 std::string Meter::doubt() {
   constexpr Index kMostUnknowns = 256;
   constexpr Real kSmall = 1e-5;  // of the gradient at the start
-  if (judged_.loss > trace_.start_loss) return "its loss is not below that of the start";
+  if (judged_.at.loss > trace_.start_loss) return "its loss is not below that of the start";
   const Index n = problem_.unknowns();
   if (!problem_.is_least_squares() || n > kMostUnknowns) {
     const bool is_bounded = problem_.bounds() != nullptr;
@@ -65,26 +80,27 @@ std::string Meter::doubt() {
   const bool was_known = knows_jacobian();
   if (!jacobian_at_end()) return "no calls were left to see whether the gradient is small";
   const bool is_by_method = !problem_.offers().contains(Oracle::jacobian);
-  const Vector r = (judged_.y - problem_.target()).reshaped(), slope = known_J_.transpose() * r;
-  LeastSquaresPoint at{.J = known_J_,
-                       .residual = r,
-                       .theta = judged_theta_,
-                       .sizes = sizes_of_unknowns(problem_.standard_start()),
-                       .is_held = std::vector<bool>(static_cast<std::size_t>(n)),
-                       .names = problem_.names(),
-                       .size_of_y = judged_.y.norm(),
-                       .noise = known_by_.noise,
-                       .has_exact_jacobian = !is_by_method && !problem_.products().are_differences,
-                       .is_central = known_by_.is_central,
-                       .enough_of_deviation = std::max(enough_of_deviation_, kEnoughOfDeviation)};
+  const Vector r = (judged_.at.y - problem_.target()).reshaped(), slope = known_.J.transpose() * r;
+  LeastSquaresPoint at{
+      .J = known_.J,
+      .residual = r,
+      .theta = judged_.theta,
+      .sizes = sizes_of_unknowns(problem_.standard_start()),
+      .is_held = std::vector<bool>(static_cast<std::size_t>(n)),
+      .names = problem_.names(),
+      .size_of_y = judged_.at.y.norm(),
+      .noise = known_.by.noise,
+      .has_exact_jacobian = !is_by_method && !problem_.products().are_differences,
+      .is_central = known_.by.is_central,
+      .enough_of_deviation = std::max(known_.enough_of_deviation, kEnoughOfDeviation)};
   for (Index i = 0; i < n; ++i) at.is_held[static_cast<std::size_t>(i)] = is_held(i, slope);
   std::string why = doubt_of(at);
   constexpr Real kRounding = 1e-12;  // with what a steep y makes of it
-  if (!why.empty() || !is_by_method || known_by_.noise > kRounding) return why;
+  if (!why.empty() || !is_by_method || known_.by.noise > kRounding) return why;
   at.forgives_noise = false;  // forward differences do not show six digits of a steep y
   why = doubt_of(at);
-  if (why.empty() || !was_known || work_ + 2 * n > budget_.work) return why;
-  known_theta_.resize(0);
+  if (why.empty() || !was_known || !ledger_.has_left(2 * n)) return why;
+  known_.theta.resize(0);
   if (!jacobian_at_end()) return "no calls were left to see whether the gradient is small";
   return doubt_of(at);
 }
@@ -92,7 +108,7 @@ std::string Meter::doubt() {
 bool Meter::is_held(Index i, VectorRef slope) const {
   const Bounds* const bounds = problem_.bounds();
   return bounds != nullptr &&
-         (bounds->is_active(judged_theta_, slope, i) || bounds->lower[i] == bounds->upper[i]);
+         (bounds->is_active(judged_.theta, slope, i) || bounds->lower[i] == bounds->upper[i]);
 }
 
 }  // namespace isoline::optimizers

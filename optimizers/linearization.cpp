@@ -7,8 +7,7 @@ namespace isoline::optimizers {
 
 const Problem& Linearization::ask(Oracle oracle) {
   meter_->charge(oracle);
-  if (meter_->are_products_at_once_)
-    meter_->share_rounds(meter_->prices_[static_cast<std::size_t>(oracle)]);
+  meter_->ledger_.share_product(oracle);
   return meter_->problem_;
 }
 

@@ -82,7 +82,8 @@ class ResidualCalls {
     }
   }
   bool is_over() const {
-    return error_ || repeats_ >= kMostRepeats || f_.is_spent() || f_.status() != Status::running;
+    return error_ || repeats_ >= InARow::kMostRepeats || f_.is_spent() ||
+           f_.status() != Status::running;
   }
 
   // After the library's loop: its point, and what it states about its own success.
@@ -95,14 +96,15 @@ class ResidualCalls {
     theta = last_;
     f_.claim(was_stopped ? "stopped" : words);
     if (f_.status() != Status::running) return f_.status();
-    if (repeats_ >= kMostRepeats) return Status::stalled;
+    if (repeats_ >= InARow::kMostRepeats) {
+      f_.remark(InARow::kOfOneX);
+      return Status::stalled;
+    }
     if (f_.is_spent()) return Status::budget;
     return lacks_columns_ && by_its_test == Status::converged ? Status::stalled : by_its_test;
   }
 
  private:
-  static constexpr int kMostRepeats = 1000;  // of one x, which another call does not change
-
   bool is_known(const double* theta) const {
     return has_point_ && theta_ == Eigen::Map<const Vector>(theta, last_.size());
   }

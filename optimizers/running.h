@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <limits>
 
+#include "core/archive.h"
 #include "core/array.h"
 #include "core/failures.h"
 
@@ -33,13 +34,24 @@ class RunningMean {
   std::int64_t count_ = 0;
 };
 
+// Over the training batches of the last steps.
+struct BatchMeans {
+  RunningMean loss, x_error;
+  bool has_this_step = false;  // among them
+
+  bool is_sound() const { return loss.is_sound() && x_error.is_sound(); }
+  void persist(Archive& archive) { archive(loss, x_error); }
+};
+
 // A method that asks for one x without end is stopped, and one whose evaluations all fail.
 struct InARow {
   static constexpr int kMostRepeats = 1000;
+  static constexpr const char* kOfOneX = "the method evaluated one x 1000 times in a row";
 
   Vector x;  // (n), the last one evaluated
   int repeats = 0;
   std::int64_t failed = 0, known = 0;  // of all failures, those before the last evaluation
+  Vector origin;                       // (n), where the last step began in which none failed
 
   bool is_of_one_x() const { return repeats >= kMostRepeats; }
   void add(VectorRef theta) {
@@ -48,6 +60,7 @@ struct InARow {
     if (!is_same) x = theta;
   }
   void add_outcome(const FailedEvaluations& all);  // std::runtime_error where too many have failed
+  void persist(Archive& archive) { archive(x, repeats, failed, known, origin); }
 };
 
 }  // namespace isoline::optimizers
