@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <ctime>
 
@@ -32,14 +33,23 @@ double calibrate() {
 
 std::int64_t monotonic_nanoseconds() { return read_clock(CLOCK_MONOTONIC); }
 
-double processor_seconds() {
-  return 1e-9 * static_cast<double>(read_clock(CLOCK_PROCESS_CPUTIME_ID)) +
-         counted_processor_seconds();
-}
-
 double seconds_per_tick() {
   static const double measured = calibrate();
   return measured;
+}
+
+// A reading is a system call, as long as an evaluation of a small problem. This thread is taken to
+// run from one reading to the end of a short interval.
+double processor_seconds() {
+  constexpr double kShort = 2e-5;
+  static thread_local double read = 0;
+  static thread_local std::uint64_t read_at = 0;
+  const std::uint64_t now = ticks();
+  const double since = static_cast<double>(now - read_at) * seconds_per_tick();
+  if (read_at != 0 && since < kShort) return read + since;
+  read_at = now;
+  return read = 1e-9 * static_cast<double>(read_clock(CLOCK_PROCESS_CPUTIME_ID)) +
+                counted_processor_seconds();
 }
 
 void Stopwatch::resume() {
@@ -50,7 +60,7 @@ void Stopwatch::resume() {
 
 void Stopwatch::pause() {
   elapsed_ += ticks() - resumed_;
-  processor_ += isoline::processor_seconds() - resumed_processor_;
+  processor_ += std::max(0.0, isoline::processor_seconds() - resumed_processor_);
   is_running_ = false;
 }
 

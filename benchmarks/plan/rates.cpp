@@ -11,6 +11,7 @@
 #include "benchmarks/plan/catalog.h"
 #include "benchmarks/plan/suite.h"
 #include "core/errors.h"
+#include "core/files.h"
 #include "core/json.h"
 #include "core/options.h"
 #include "core/records/json_view.h"
@@ -47,27 +48,31 @@ bool is_for(const OptionValues& row, const OptionValues& complete) {
 Rates Rates::builtin() {
   Rates all;
   for (const auto& [name, text] : builtin_rates())
-    all.add(from_json(parse_json(std::string(text), name), name + ".json"));
+    all.add(from_text(std::string(text), name + ".json"));
   return all;
 }
 
 Rates Rates::named(const std::string& given) {
   if (given == "builtin") return builtin();
   if (given == "none") return {};
-  const Json json = read_json(given);
-  require_valid(json, "rates", given);
-  return from_json(json, given);
+  const std::string text = read_text(given);
+  require_valid(parse_json(text, given), "rates", given);
+  return from_text(text, given);
 }
 
-Rates Rates::from_json(const Json& json, const std::string& origin) {
+Rates Rates::from_text(const std::string& text, const std::string& origin) {
   Rates rates;
+  JsonReader reader;
+  const JsonView json = reader.parse(text, origin);
   try {
-    for (const Json& row : json.at("rows")) {
-      const Spec problem = parse_spec(row.at("problem").get<std::string>());
-      rates.rows_[{problem.name, row.at("optimizer")}].push_back(
-          {options_of(problem), option_values_from(row.at("options")), row.at("problem"), origin,
-           json_text(row.value("source", Json::object())),
-           row.contains("source") && row["source"].contains("grid")});
+    for (const JsonView& row : json.at("rows").values()) {
+      const std::string setting = row.at("problem");
+      const Spec problem = parse_spec(setting);
+      const bool has_source = row.contains("source");
+      rates.rows_[{problem.name, row.at("optimizer").get<std::string>()}].push_back(
+          {options_of(problem), option_values_from(row.at("options").json()), setting, origin,
+           has_source ? row.at("source").text() : "{}",
+           has_source && row.at("source").contains("grid")});
     }
   } catch (const std::exception& error) {
     throw UsageError(fmt::format("{} is not a table of rates: {}", origin, reason_of(error)));

@@ -21,7 +21,7 @@ class Rates {
   Rates() = default;  // an empty table: every method at its defaults
   static Rates builtin();
   static Rates named(const std::string& given);  // "builtin", "none" or the path of a file
-  static Rates from_json(const Json& json, const std::string& origin);
+  static Rates from_text(const std::string& text, const std::string& origin);
 
   struct Row {
     OptionValues problem;  // the options that it is for, as text

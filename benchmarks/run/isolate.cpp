@@ -380,13 +380,19 @@ void Worker::serve(const std::function<void(const Request&, Trace&)>& work, int 
   constexpr std::int64_t kLarge = 16 << 20;  // bytes of memory that are given back
   prctl(PR_SET_CHILD_SUBREAPER, 1);
   Task task{};
+  std::int64_t limit = 0, before = 0;  // bytes: the memory in use when the limit was set
   while (recv(channel, &task, sizeof task, 0) == sizeof task) {
-    limit_memory(task.memory_bytes);
     forget_peak_memory();
-    const std::int64_t before = peak_memory_bytes();
+    if (std::exchange(limit, task.memory_bytes) != task.memory_bytes || before == 0) {
+      limit_memory(task.memory_bytes);
+      before = peak_memory_bytes();
+    }
     run([&](Trace& trace) { work(*task.request, trace); });
     const Done done{used_processor_seconds(), peak_memory_bytes(), has_children()};
-    if (done.peak_memory_bytes > before + kLarge) malloc_trim(0);
+    if (done.peak_memory_bytes > before + kLarge) {
+      malloc_trim(0);
+      before = 0;
+    }
     if (send(channel, &done, sizeof done, MSG_NOSIGNAL) != sizeof done) break;
   }
   _exit(0);
@@ -399,8 +405,8 @@ void Worker::conclude(Status status, const std::string& message) {
 
 bool Worker::poll() {
   if (!is_running()) return true;
-  output_.drain();
   if (channel_ >= 0 && has_answered()) return true;
+  output_.drain();
   if (const auto end = group_.collect()) {
     output_.drain();
     retire();

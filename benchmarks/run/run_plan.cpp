@@ -242,9 +242,12 @@ void write_used_rates(const Rates& rates, const std::vector<Request>& requests, 
       rows.clear();
       store.set_aside(file, reason_of(error));
     }
+  std::set<std::string> known;
   for (const Request& request : requests) {
-    if (request.rates.empty()) continue;
     const Component& problem = request.problem;
+    if (request.rates.empty() ||
+        !known.insert(problem.spec + request.optimizer.name + request.rates).second)
+      continue;
     const std::string& optimizer = request.optimizer.name;
     // "direct" of "direct.json": what a search in that table alone calls it.
     const std::string table = request.rates.substr(0, request.rates.rfind(".json"));

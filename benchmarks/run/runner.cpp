@@ -213,8 +213,8 @@ class Runner {
     mallopt(M_TRIM_THRESHOLD, kStays);
     mallopt(M_MMAP_THRESHOLD, kStays);
     while (asked_to_end() != Asked::stop) {
+      keep_judged();  // first: a worker that is free begins at once
       if (asked_to_end() == Asked::nothing) start_some();
-      keep_judged();
       const bool is_over = asked_to_end() == Asked::finish || pending_.queued().empty();
       if (is_over && running() == 0) break;
       if (asked_to_end() == Asked::finish) say_once_that_it_finishes();
@@ -489,7 +489,8 @@ class Runner {
     const std::int64_t now = monotonic_nanoseconds();
     const bool can_wait = tasks_[slot].is_shared && now - tasks_[slot].begun < kShort;
     if (tasks_[slot].is_shared) kept_[slot].finished.push_back(&request);
-    unwritten_.emplace_back(&request, record.status == Status::interrupted);
+    const bool lacks_state = can_wait && !store_.has_states();
+    unwritten_.emplace_back(&request, lacks_state || record.status == Status::interrupted);
     store_.keep(std::move(record), earlier);
     tasks_[slot] = {};
     if (!was_done) progress_.finished(earlier_.of(request));
@@ -502,8 +503,8 @@ class Runner {
   void flush() {
     flush_at_ = kNever;
     store_.flush();
-    for (const auto& [request, goes_on] : std::exchange(unwritten_, {})) {
-      if (!goes_on) store_.remove_checkpoint(*request);
+    for (const auto& [request, leaves_states] : std::exchange(unwritten_, {})) {
+      if (!leaves_states) store_.remove_checkpoint(*request);
       pending_.release(*request);
     }
   }
@@ -528,10 +529,11 @@ class Runner {
   std::set<std::string> seen_;
   // Cells that run again after a fault of a process, and how the cell of the fault itself ended.
   std::map<const Request*, std::optional<Status>> doubtful_;
-  std::vector<std::pair<const Request*, bool>> unwritten_;  // and whether its checkpoint stays
-  std::int64_t flush_at_ = kNever;                          // monotonic nanoseconds
-  std::int64_t look_for_remarks_at_ = 0;                    // monotonic nanoseconds
-  bool has_said_ = false;                                   // that it is finishing
+  // And whether its checkpoint stays or it cannot have one.
+  std::vector<std::pair<const Request*, bool>> unwritten_;
+  std::int64_t flush_at_ = kNever;        // monotonic nanoseconds
+  std::int64_t look_for_remarks_at_ = 0;  // monotonic nanoseconds
+  bool has_said_ = false;                 // that it is finishing
 };
 
 }  // namespace

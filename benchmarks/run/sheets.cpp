@@ -337,8 +337,6 @@ class SheetWriter {
     const auto passed = certificates_.find(component.spec);
     if (passed != certificates_.end()) sheet.certified = passed->second;
     write(sheet);
-    if (is_elsewhere(component) && asked_to_end() == Asked::nothing)
-      store_.remove_checks(component);  // logs of earlier versions
   }
 
   void write_optimizer(const Component& component) {

@@ -167,6 +167,8 @@ Store::Store(fs::path folder) : folder_(std::move(folder)) {
       if (const fs::path path = folder_ / part / name; is_abandoned(path)) {
         std::error_code error;
         fs::remove(path, error);
+      } else {
+        has_states_ |= name.ends_with(".state") || name.ends_with(".end");
       }
 }
 
@@ -194,17 +196,13 @@ void Store::set_aside(const fs::path& path, const std::string& reason) {
   }
 }
 
-void Store::clear_way(const fs::path& path) {
+bool Store::clear_way(const fs::path& path) {
   std::error_code unknown;
-  switch (fs::symlink_status(path, unknown).type()) {
-    case fs::file_type::none:
-    case fs::file_type::not_found:
-    case fs::file_type::regular:
-    case fs::file_type::symlink:
-      return;  // writing replaces it
-    default:
-      set_aside(path, "it is not a file");
-  }
+  const fs::file_type type = fs::symlink_status(path, unknown).type();
+  if (type == fs::file_type::none || type == fs::file_type::not_found) return false;
+  if (type != fs::file_type::regular && type != fs::file_type::symlink)
+    set_aside(path, "it is not a file");
+  return true;  // writing replaces what is left
 }
 
 void Store::plan(const std::string& suite, const std::vector<PlannedCell>& cells) {
@@ -287,18 +285,18 @@ void Store::keep(Record record, const std::optional<Record>& earlier) {
   if (record.answer && record.answer->is_in_file() && !record.answer->x.empty())
     waiting_.emplace_back(answer_path(path), answer_file(*record.answer));
   waiting_.emplace_back(path, file_text(record));  // after what it names
-  if (!record.fields) obsolete_.push_back(field_path(path));
+  if (!record.fields) obsolete_.insert(field_path(path));
 }
 
 void Store::flush() {
   if (waiting_.empty()) return;
   try_to_write([&] {
-    for (const auto& [path, text] : waiting_) clear_way(path);
+    for (const auto& [path, text] : waiting_)
+      if (!clear_way(path)) obsolete_.erase(field_path(path));  // no earlier record
     write_together(waiting_);
   });
-  for (const fs::path& path : obsolete_) ::unlink(path.c_str());  // if it is there
+  for (const fs::path& path : std::exchange(obsolete_, {})) ::unlink(path.c_str());
   waiting_.clear();
-  obsolete_.clear();
 }
 
 void Store::write(Record record, const std::optional<Record>& earlier) {
@@ -329,22 +327,6 @@ fs::path Store::checkpoint_path(const Request& request) const {
 void Store::remove_checkpoint(const Request& request) const {
   std::error_code missing;
   fs::remove(checkpoint_path(request), missing);
-  fs::remove(checkpoint_path(request).replace_extension(".calls"), missing);
-}
-
-namespace {
-
-std::string check_stem(const Component& problem) {
-  const Sheet sheet{.kind = "problem", .name = problem.name, .spec = problem.spec};
-  return fs::path(sheet.file_name()).stem().string() + "-seed-";
-}
-
-}  // namespace
-
-void Store::remove_checks(const Component& problem) const {
-  for (const std::string& name : names_in(folder_ / "checkpoints"))
-    if (std::error_code missing; name.starts_with(check_stem(problem)))
-      fs::remove(folder_ / "checkpoints" / name, missing);
 }
 
 fs::path Store::end_stem(const Request& request) const {
@@ -358,6 +340,7 @@ fs::path Store::end_path(const fs::path& stem, const Budget& needed) {
 }
 
 fs::path Store::end_within_budget(const Request& request) const {
+  if (!has_states_) return {};
   Budget latest{.iterations = 0};
   std::vector<std::string> names;
   try {

@@ -7,6 +7,7 @@
 #include <functional>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -57,8 +58,7 @@ class Store {
   // Where a run of this request by this build is kept while it goes.
   std::filesystem::path checkpoint_path(const Request& request) const;
   void remove_checkpoint(const Request& request) const;
-  // The calls of the checks of a problem of another program and of its metadata, at a seed.
-  void remove_checks(const Component& problem) const;
+  bool has_states() const { return has_states_; }  // when this object was made
   // States of runs of this build that differ from the request in their budget of iterations and
   // work alone: what their files' names begin with; the file of one that needs this budget; and the
   // latest one within the budget of the request, or nothing.
@@ -69,13 +69,14 @@ class Store {
  private:
   // Creates the folders again if they are removed during the run.
   void try_to_write(const std::function<void()>& write);
-  void clear_way(
-      const std::filesystem::path& path);  // where a file is to stand: of a folder, a pipe
+  // Of a folder or a pipe, where a file is to stand. Whether anything stood there.
+  bool clear_way(const std::filesystem::path& path);
 
   std::filesystem::path folder_;
   std::vector<std::string> remarks_;
   std::vector<std::pair<std::filesystem::path, std::string>> waiting_;  // texts for flush()
-  std::vector<std::filesystem::path> obsolete_;  // removed by it: what earlier runs have kept
+  std::set<std::filesystem::path> obsolete_;  // fields that earlier runs have kept: it removes them
+  bool has_states_ = false;
 };
 
 // The record of a request in a folder, of any build.

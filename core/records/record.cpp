@@ -149,9 +149,10 @@ void read_provenance(const JsonView& json, Provenance& provenance) {
 // One object of both, the run under a key of its own.
 template <>
 struct Form<Provenance> {
-  static void write(const Provenance& provenance, Json& out) {
-    Form<Build>::write(*provenance.build, out);
-    if (provenance.run != RunProvenance()) Form<RunProvenance>::write(provenance.run, out[kRunKey]);
+  static void write(const Provenance& provenance, JsonText& out) {
+    FieldWriter writer(out);
+    fields(*provenance.build, writer);
+    writer.optional(kRunKey, provenance.run);
   }
   static void read(const JsonView& json, Provenance& provenance) {
     read_provenance(json, provenance);
@@ -309,7 +310,7 @@ void fields(Like<Plan> auto& plan, auto& field) {
 // Records.
 
 Json to_json(const Record& record) { return json_of(record); }
-std::string file_text(const Record& record) { return json_text(to_json(record)) + "\n"; }
+std::string file_text(const Record& record) { return file_text_of(record); }
 Json run_schema() { return schema_of<Record>("isoline.run/1: the record of one run"); }
 
 Record record_from_text(const std::string& text, const std::string& origin) {
@@ -432,7 +433,7 @@ void add_suite(std::vector<std::string>& suites, const std::string& suite) {
 }
 
 Json to_json(const Plan& plan) { return json_of(plan); }
-std::string file_text(const Plan& plan) { return json_text(to_json(plan)) + "\n"; }
+std::string file_text(const Plan& plan) { return file_text_of(plan); }
 Plan plan_from_text(const std::string& text, const std::string& origin) {
   return from_text<Plan>(text, origin, "not a plan (isoline.plan/1)");
 }

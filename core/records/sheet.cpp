@@ -114,7 +114,7 @@ std::string Sheet::file_name() const {
 }
 
 Json to_json(const Sheet& sheet) { return json_of(sheet); }
-std::string file_text(const Sheet& sheet) { return json_text(to_json(sheet)) + "\n"; }
+std::string file_text(const Sheet& sheet) { return file_text_of(sheet); }
 Sheet sheet_from_text(const std::string& text, const std::string& origin) {
   return from_text<Sheet>(text, origin, "not a valid isoline.component/1 file");
 }

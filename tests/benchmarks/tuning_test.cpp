@@ -32,10 +32,9 @@ namespace {
 
 // What a value within another says of modes is no mode of the problem.
 TEST(Rates, AreForTheDefaultModeWhateverNestedOptionsSay) {
-  const Rates rates = Rates::from_json(
-      {{"rows",
-        {{{"problem", "sine"}, {"optimizer", "gd"}, {"options", {{"rate", 0.5}}}},
-         {{"problem", "sine[mode=learn]"}, {"optimizer", "gd"}, {"options", {{"rate", 0.25}}}}}}},
+  const Rates rates = Rates::from_text(
+      R"({"rows": [{"problem": "sine", "optimizer": "gd", "options": {"rate": 0.5}},
+                   {"problem": "sine[mode=learn]", "optimizer": "gd", "options": {"rate": 0.25}}]})",
       "here");
   const auto rate = [&](const std::string& spec) {
     const Rates::Row* row = rates.find(complete_problem(catalog(), parse_spec(spec)), "gd");
@@ -465,7 +464,7 @@ TEST(Tuning, OfFamiliesLeftOutIsATableThatRunsUse) {
   ASSERT_EQ(result.left_out_rows->size(), 4U);
   const Json table{{"schema", "isoline.rates/1"}, {"rows", *result.left_out_rows}};
   EXPECT_EQ(schema_violations(table, schema("rates")), std::vector<std::string>{});
-  const Rates rates = Rates::from_json(table, "physics.json");
+  const Rates rates = Rates::from_text(json_text(table), "physics.json");
   const Component steep = complete_problem(all, parse_spec("steep[slope=0.5]"));
   const Rates::Row* row = rates.find(steep, "gd", "physics");
   ASSERT_NE(row, nullptr);
