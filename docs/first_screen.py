@@ -179,7 +179,7 @@ def findings(report):
                 "no result could be significant" if leader["families"] < 6 else "no method is significantly ahead of all others")
     return (f"In `quick`, a sample for a first look ({len(leader['places'])} methods, {leader['settings']} settings of "
             f"{leader['families']} families), {decision}. Networks trained to invert sine by adam have "
-            f"{times} times (95 %: {low} to {high}; more on {seeds} seeds) the error in x of those by sip, given "
+            f"about {float(times):.2g} times (95 %: {low} to {high}; more on {seeds} seeds) the error in x of those by sip, given "
             f"{sine['optimizer'].partition(', given ')[2]} (†), at published rates and equal work in physics, training apart.")
 
 

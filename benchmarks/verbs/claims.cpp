@@ -157,13 +157,13 @@ void register_claims(VerbRegistry& registry) {
   isoline claims sip-better-in-x-worse-in-loss   one claim, with its evidence
   isoline claims --no-run --out results/quick    only from the runs of a suite)",
        .notes =
-           "A claim is reproduced if the measured values agree with the published one within its "
-           "uncertainty, and partly reproduced if only the direction holds, or if only one "
-           "of two readings agrees. With fewer than six seeds, a claim is consistent or at odds.\n"
+           "A claim agrees if the published value lies within the error of one more run, and is "
+           "reproduced if six or more runs show it; otherwise it differs, or the runs are too "
+           "noisy, too short or a single one. It is partly so if one of two readings agrees.\n"
            "The program contains records of runs that take hours (benchmarks/published). They are "
            "used if the result folder lacks a run, and the evidence states their numbers of "
            "iterations and seeds.\n"
-           "Exit codes: 0 success, 2 a claim is not reproduced or a run failed, 4 not comparable."},
+           "Exit codes: 0 success, 2 a claim differs or a run failed, 4 not comparable."},
       declare, run));
 }
 

@@ -22,6 +22,7 @@
 #include "core/records/json_view.h"
 #include "core/records/record.h"
 #include "core/records/request.h"
+#include "core/seeds.h"
 #include "core/text.h"
 #include "core/threads.h"
 #include "reports/sections/words.h"
@@ -48,9 +49,10 @@ const Schema* schema_of(const std::string& name) {
   return &known.try_emplace(name, parse_json(std::string(found->second), name)).first->second;
 }
 
-// The identity of a record, and its place.
+// The identity of a record, its place, and its data: their instance and noise level.
 struct RecordIdentity {
-  std::string file, cell, build;
+  std::string file, cell, build, instance = {};
+  Json noise_level = {};
 
   auto place() const {
     const std::size_t folder = file.find_last_of('/') + 1;
@@ -66,7 +68,13 @@ struct Examined {
 };
 
 Examined examined_record(const Json& record, const std::string& path) {
-  Examined examined{.violations = {}, .identity = {{path, record.at("cell"), record.at("build")}}};
+  const Json &request = record.at("request"), parts = record.value("build_parts", Json::object());
+  Examined examined{
+      .violations = {},
+      .identity = {{path, record.at("cell"), record.at("build"),
+                    fmt::format("{} {} {}", request.at("problem").at("spec").get<std::string>(),
+                                instance_of(request.at("seed")), parts.value("problem", "")),
+                    record.value("noise_level", Json())}}};
   if (std::string violation = fields_violation(record, path); !violation.empty())
     examined.violations.push_back(std::move(violation));
   if (std::string violation = answer_violation(record, path); !violation.empty())
@@ -190,6 +198,20 @@ void compare_doubles(std::vector<RecordIdentity> records, Wrong& wrong) {
   }
 }
 
+// Names a record whose noise level is not that of another one of its folder and instance.
+void compare_noise(const std::vector<RecordIdentity>& records, Wrong& wrong) {
+  std::map<std::pair<fs::path, std::string>, const RecordIdentity*> first;
+  for (const RecordIdentity& record : records) {
+    if (record.noise_level.is_null()) continue;
+    const auto key = std::pair(fs::path(record.file).parent_path(), record.instance);
+    const RecordIdentity& other = *first.try_emplace(key, &record).first->second;
+    if (record.noise_level != other.noise_level)
+      wrong[record.file].push_back(
+          fmt::format("its noise level is not that of the same instance in {}",
+                      fs::path(other.file).filename().string()));
+  }
+}
+
 int run(const ValidateArguments& given, Session&) {
   Wrong wrong;
   const std::vector<std::string> files = files_under(given.paths, wrong);
@@ -203,6 +225,7 @@ int run(const ValidateArguments& given, Session&) {
     if (!all[i].violations.empty()) wrong[files[i]] = std::move(all[i].violations);
     if (all[i].identity) records.push_back(std::move(*all[i].identity));
   }
+  compare_noise(records, wrong);
   compare_doubles(std::move(records), wrong);
   for (const auto& [file, violations] : wrong)
     for (const std::string& violation : violations)

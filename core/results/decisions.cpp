@@ -32,37 +32,7 @@ std::vector<std::vector<std::size_t>> by_family(const std::vector<std::string>& 
   return all;
 }
 
-// The sum of the scores of each family: [family][method].
-std::vector<Row> sums_of(const std::vector<Row>& scores,
-                         const std::vector<std::vector<std::size_t>>& families) {
-  std::vector<Row> sums(families.size(), Row(scores.empty() ? 0 : scores[0].size(), 0));
-  for (std::size_t g = 0; g < families.size(); ++g)
-    for (const std::size_t p : families[g])
-      for (std::size_t s = 0; s < sums[g].size(); ++s) sums[g][s] += scores[p][s];
-  return sums;
-}
-
 bool are_tied(Real a, Real b) { return std::abs(a - b) <= kRounding; }
-
-// a_{p,s} of the methods that are ranked, which alone decide what the least cost is.
-std::vector<Row> scores_of(const Costs& costs, const std::vector<std::size_t>& methods, Real end) {
-  std::vector<Row> scores;
-  for (const auto& row : costs) {
-    std::vector<std::optional<Real>> own;
-    for (const std::size_t s : methods) own.push_back(row[s]);
-    const auto ratios = cost_ratios(own);
-    scores.emplace_back();
-    for (const auto& ratio : ratios) scores.back().push_back(ratio ? score_of(*ratio, end) : 0);
-  }
-  return scores;
-}
-
-Row mean_scores(const std::vector<Row>& scores) {
-  Row means(scores.empty() ? 0 : scores[0].size(), 0);
-  for (const Row& row : scores)
-    for (std::size_t s = 0; s < row.size(); ++s) means[s] += row[s] / Real(scores.size());
-  return means;
-}
 
 // Those with the greatest score; none where all are 0.
 std::vector<std::size_t> firsts(const Row& scores) {
@@ -207,7 +177,7 @@ class Decider {
       else if (run > 0)
         unranked_.push_back(s);
     }
-    scores_ = scores_of(evidence.costs, methods_, kProfileEnd);
+    scores_ = family_scores(evidence.costs, evidence.families, methods_);
     means_ = mean_scores(scores_);
   }
 
@@ -233,20 +203,18 @@ class Decider {
     std::ranges::stable_sort(order, [&](std::size_t a, std::size_t b) {
       return means_[a] > means_[b] && !are_tied(means_[a], means_[b]);
     });
-    const std::vector<Row> sums = sums_of(scores_, families_);
-    FlipLevels levels = flip_levels(sums);
+    FlipLevels levels = flip_levels(scores_);
     const auto is_equal = [&](std::size_t s) {  // for a user
       return means_[order[0]] - means_[s] <= score_margin();
     };
     levels.is_lead = levels.is_lead && !is_equal(order[1]);
     out.is_lead = levels.is_lead;
     for (const std::size_t s : order) {
-      std::vector<FamilyScore> families;
-      for (std::size_t g = 0; g < families_.size(); ++g)
-        families.push_back({sums[g][s], Real(families_[g].size())});
+      Row own;
+      for (const Row& family : scores_) own.push_back(family[s]);
       Place place{.method = methods_[s],
                   .score = means_[s],
-                  .interval = score_interval(families),
+                  .interval = score_interval(own),
                   .p = levels.pairs[order[0]][s],
                   .adjusted = levels.leaves[s],
                   .is_in_group = levels.is_in_group(s) || is_equal(s),
@@ -263,13 +231,11 @@ class Decider {
     Row detectable;
     for (std::size_t i = 1; i < order.size(); ++i) {
       Row differences;
-      for (const Row& sum : sums)
-        differences.push_back((sum[order[0]] - sum[order[i]]) * Real(sums.size()) /
-                              Real(out.settings));
+      for (const Row& family : scores_) differences.push_back(family[order[0]] - family[order[i]]);
       detectable.push_back(detectable_mean(deviation_of(differences), differences.size()));
     }
     out.detectable = detectable.empty() ? kNever : median_of(std::move(detectable));
-    out.friedman = friedman_p(sums);
+    out.friedman = friedman_p(scores_);
   }
 
   // Families, within them instances, within these starts.
@@ -282,12 +248,15 @@ class Decider {
     for (std::size_t draw = 0; draw < kDraws; ++draw) {
       random.restart(draw);
       Costs costs;
+      std::vector<std::string> families;  // one that is drawn twice is two
       for (std::size_t g = 0; g < families_.size(); ++g)
-        for (const std::size_t p : families_[drawn_place(random, families_.size())])
+        for (const std::size_t p : families_[drawn_place(random, families_.size())]) {
           costs.push_back(crossed.empty() || evidence_.repetitions[p].size() < 2
                               ? evidence_.costs[p]
                               : drawn_costs(evidence_.costs[p], crossed[p], random));
-      const auto best = firsts(mean_scores(scores_of(costs, methods_, kProfileEnd)));
+          families.push_back(std::to_string(g));
+        }
+      const auto best = firsts(mean_scores(family_scores(costs, families, methods_)));
       for (const std::size_t s : best) first[s] += 1 / Real(best.size());
     }
     for (std::size_t s = 0; s < methods_.size(); ++s)
@@ -298,13 +267,13 @@ class Decider {
   void add_choice(Decision& out, Varied varied, std::string value, const Costs& costs,
                   const std::vector<std::string>& families, Real end = kProfileEnd) const {
     Choice choice{.varied = varied, .value = std::move(value), .first = {}};
-    const std::vector<Row> scores = scores_of(costs, methods_, end);
+    const std::vector<Row> scores = family_scores(costs, families, methods_, end);
     for (const std::size_t s : firsts(mean_scores(scores))) choice.first.push_back(methods_[s]);
     choice.is_kept = std::ranges::find(choice.first, out.places[0].method) != choice.first.end();
     if (!choice.first.empty()) {
       // The flips may be few for a size that is compared with others.
       constexpr std::size_t kExact = 12, kDrawn = 4096;
-      const FlipLevels levels = flip_levels(sums_of(scores, by_family(families)), kExact, kDrawn);
+      const FlipLevels levels = flip_levels(scores, kExact, kDrawn);
       for (std::size_t s = 0; s < methods_.size(); ++s) choice.group += levels.is_in_group(s);
     }
     out.choices.push_back(std::move(choice));
@@ -357,11 +326,34 @@ class Decider {
   const Evidence& evidence_;
   std::vector<std::vector<std::size_t>> families_;
   std::vector<std::size_t> methods_, unranked_;  // that are ranked, and that ran on some settings
-  std::vector<Row> scores_;                      // [setting][place in methods_]
+  std::vector<Row> scores_;                      // [family][place in methods_]
   Row means_;
 };
 
 }  // namespace
+
+std::vector<Row> family_scores(const Costs& costs, const std::vector<std::string>& families,
+                               const std::vector<std::size_t>& methods, Real end) {
+  std::vector<Row> scores;
+  for (const auto& settings : by_family(families)) {
+    Row& means = scores.emplace_back(methods.size(), 0);
+    for (const std::size_t p : settings) {
+      std::vector<std::optional<Real>> own;
+      for (const std::size_t s : methods) own.push_back(costs[p][s]);
+      const auto ratios = cost_ratios(own);
+      for (std::size_t i = 0; i < own.size(); ++i)
+        means[i] += ratios[i] ? score_of(*ratios[i], end) / Real(settings.size()) : 0;
+    }
+  }
+  return scores;
+}
+
+Row mean_scores(const std::vector<Row>& families) {
+  Row means(families.empty() ? 0 : families[0].size(), 0);
+  for (const Row& row : families)
+    for (std::size_t s = 0; s < row.size(); ++s) means[s] += row[s] / Real(families.size());
+  return means;
+}
 
 // All pairs and all steps in one pass over the flips: a pair that is (i, j > i) in the order of
 // leaving belongs to what remains at the steps up to i.
@@ -420,28 +412,20 @@ bool FlipLevels::is_in_group(std::size_t method) const {
   return is_lead ? method == first : leaves[method] > kSignificant;
 }
 
-// 95 % of the mean over families, of which each has the sum of its scores and its number of
-// settings: mean ± t √variance, after adding three quarters of a family that scores 0 throughout
-// and as much of one that scores 1. Agresti, Coull (1998) add such to proportions. Without them
-// scores that are all alike, as of a method that solved every problem drawn, give an interval that
-// covers in 63 % of all samples instead of 95 %.
-Interval score_interval(const std::vector<FamilyScore>& families) {
+// 95 % of the mean over families: mean ± t √variance, after adding three quarters of a family that
+// scores 0 and as much of one that scores 1. Agresti, Coull (1998) add such to proportions. Without
+// them scores that are all alike, as of a method that solved every problem drawn, give an interval
+// that covers in 63 % of all samples instead of 95 %.
+Interval score_interval(const Row& families) {
   constexpr Real kAdded = 0.75, kConfidenceLevel = 0.975;
-  Interval range{.low = 1, .high = 0};
-  Real sum = 0, settings = 0;
-  for (const auto& [score, n] : families) {
-    range = {std::min(range.low, score / n), std::max(range.high, score / n)};
-    sum += score;
-    settings += n;
-  }
-  if (families.size() < kFewestForInterval) return range;
-  const Real typical = settings / Real(families.size()), added = kAdded * typical;
-  const Real mean = (sum + added) / (settings + 2 * added);
-  Real variance = std::pow(added * mean, 2) + std::pow(added * (1 - mean), 2);
-  for (const auto& [score, n] : families) variance += std::pow(score - mean * n, 2);
-  const Real count = Real(families.size()) + 2;
+  const auto [low, high] = std::ranges::minmax(families);
+  if (families.size() < kFewestForInterval) return {low, high};
+  const Real n = Real(families.size()), all = n + 2 * kAdded;
+  const Real mean = (std::accumulate(families.begin(), families.end(), 0.0) + kAdded) / all;
+  Real variance = std::pow(kAdded * mean, 2) + std::pow(kAdded * (1 - mean), 2);
+  for (const Real score : families) variance += std::pow(score - mean, 2);
   const Real half = student_quantile(kConfidenceLevel, families.size() - 1) *
-                    std::sqrt(variance * count / (count - 1)) / (settings + 2 * added);
+                    std::sqrt(variance * (n + 2) / (n + 1)) / all;
   return {std::max(0.0, mean - half), std::min(1.0, mean + half)};
 }
 

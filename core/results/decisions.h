@@ -3,8 +3,9 @@
 //
 //   score of a method on a setting:  a = max(0, log2 e − log2 r) / log2 e, r its cost over the
 //                                    least of those compared, e the profile's end; 0 where unsolved
-//   score of a method:               A = mean of a over settings, the area of its profile
-//   difference of two methods:       D = Σ over families of d_g, d_g the sum of a_s − a_t in g
+//   in a family:                     a_g = mean of a over its settings, the area of its profile
+//   score of a method:               A = mean of a_g over families
+//   difference of two methods:       D = Σ over families of d_g, that of their a_g
 //   its size:                        u = D / √(Σ d_g²), which Student's t grows with
 //
 // Settings of one family (sizes and variants of a problem) are no independent witnesses: their
@@ -45,6 +46,14 @@ struct OtherCosts {
   Costs costs;
 };
 
+// The scores of these methods among each other in each family: [family][place in `methods`], in the
+// order in which families come first. `families` names that of each setting.
+std::vector<std::vector<Real>> family_scores(const Costs& costs,
+                                             const std::vector<std::string>& families,
+                                             const std::vector<std::size_t>& methods,
+                                             Real end = kProfileEnd);
+std::vector<Real> mean_scores(const std::vector<std::vector<Real>>& families);
+
 struct Evidence {
   Costs costs;  // [setting][method]: medians; infinite where unsolved, nothing where never run
   std::vector<std::string> families;                 // [setting]
@@ -64,7 +73,7 @@ struct WorkRatio {
 WorkRatio work_ratio(const Costs& costs, const std::vector<std::string>& families, std::size_t a,
                      std::size_t b);
 
-// The result of the flips for methods whose scores sum to sums[family][method].
+// The result of the flips for methods whose scores are sums[family][method], times any number.
 struct FlipLevels {
   std::vector<std::vector<Real>> pairs;  // [method][method] p of the pair alone, two-sided
   std::vector<Real> leaves;  // [method] the level at which it leaves the confidence set of the best
@@ -85,12 +94,8 @@ FlipLevels flip_levels(const std::vector<std::vector<Real>>& sums,
                        std::size_t exact_families = kExactFlips,
                        std::size_t drawn_flips = kDrawnFlips);
 
-// 95 % of a mean score over families, of which each has the sum of its scores and its number of
-// settings; of fewer than 6 families their range.
-struct FamilyScore {
-  Real sum = 0, settings = 0;
-};
-Interval score_interval(const std::vector<FamilyScore>& families);
+// 95 % of a mean score over families, by the score in each; of fewer than 6 families their range.
+Interval score_interval(const std::vector<Real>& families);
 
 // A ranked method: one that was run on every setting.
 struct Place {

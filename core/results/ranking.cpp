@@ -381,13 +381,20 @@ std::vector<Ranked> standings_to(const Comparison& c, Measure by, std::size_t ta
 std::vector<Ranked> standings_over(const Comparison& c, const Order& order, Measure by,
                                    std::size_t target) {
   const Costs costs = costs_to(c, order, by, target), ratios = ratios_of(costs);
+  Costs rows;
+  std::vector<std::string> families;
+  for (const std::size_t p : order.settings) {
+    rows.push_back(costs[p]);
+    families.push_back(c.problems[p].family());
+  }
+  const std::vector<Real> scores = mean_scores(family_scores(rows, families, order.methods));
   std::vector<Ranked> standings;
   for (const std::size_t s : order.methods) {
     Standing standing{.settings = order.settings.size()};
+    if (!scores.empty()) standing.score = scores[standings.size()];
     std::vector<Real> doublings;
     for (const std::size_t p : order.settings) {
       const Real ratio = *ratios[p][s];
-      standing.score += score_of(ratio, kProfileEnd);
       standing.solved += ratio < kNever;
       standing.wins += std::ranges::all_of(costs[p], [&](const std::optional<Real>& other) {
         return ratio < kNever && (!other || *costs[p][s] <= *other);
@@ -399,7 +406,6 @@ std::vector<Ranked> standings_over(const Comparison& c, const Order& order, Meas
       standing.runs += cell.runs.size();
       standing.reached += c.where(cell.runs, has_met).size();
     }
-    standing.score /= Real(standing.settings);
     standing.typical = std::exp2(median_of(std::move(doublings)));
     standings.push_back({s, standing});
   }

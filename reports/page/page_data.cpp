@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <ranges>
 #include <set>
@@ -304,11 +305,13 @@ std::string pinned_json(const Comparison& c) {
 // The nominal cost of a Jacobian on each common setting and, for each ranked method, the calls of
 // its runs until they reached the tolerance: [work without pullbacks and Jacobians, pullbacks,
 // Jacobians, the first in rounds of 8 workers, of 64] of each run, one after the other; null of a
-// run that did not, and of one that is missing.
+// run that did not, and of one that is missing. Last, the weight of the setting in a score.
 std::string calls_json(const Comparison& c) {
   if (is_large(c)) return "[]";
   constexpr auto kPullback = static_cast<std::size_t>(Oracle::pullback),
                  kJacobian = static_cast<std::size_t>(Oracle::jacobian);
+  std::map<std::string, std::size_t> families;  // settings
+  for (const std::size_t p : c.order.settings) ++families[c.problems[p].family()];
   return json_list(c.order.settings, [&](std::size_t p) {
     std::uint64_t declared = 0;
     const std::string methods = json_list(c.order.methods, [&](std::size_t s) {
@@ -335,7 +338,8 @@ std::string calls_json(const Comparison& c) {
       }
       return "[" + joined(texts, ",") + "]";
     });
-    return fmt::format("[{},{}]", declared, methods);
+    return fmt::format("[{},{},{}]", declared, methods,
+                       1 / Real(families.size() * families[c.problems[p].family()]));
   });
 }
 

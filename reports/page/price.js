@@ -16,11 +16,11 @@ function costOf(flat, gradient, jacobian, crew = 0) {
 // Best first; a Jacobian without a price has its nominal cost.
 function standingsAtPrices(gradient, jacobian, crew = 0) {
   const all = DATA.ranked.map((s) => ({s, score: 0, solved: 0})), end = 64;
-  for (const [declared, methods] of DATA.calls) {
+  for (const [declared, methods, weight] of DATA.calls) {
     const costs = methods.map((flat) => costOf(flat, gradient, jacobian ?? declared, crew)), least = Math.max(1, Math.min(...costs));
     costs.forEach((cost, i) => {
       if (cost === Infinity) return;
-      all[i].score += Math.max(0, Math.log2(end) - Math.log2(Math.max(1, cost) / least)) / Math.log2(end) / DATA.calls.length;
+      all[i].score += Math.max(0, Math.log2(end) - Math.log2(Math.max(1, cost) / least)) / Math.log2(end) * weight;
       ++all[i].solved;
     });
   }

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <numeric>
 
 #include "core/json.h"
 #include "core/results/contrasts.h"
@@ -46,41 +47,26 @@ std::vector<std::size_t> settings_of(const Comparison& c, bool is_noisy) {
   return all;
 }
 
-// Scores of these methods among each other, per family: [family][method], means over settings.
-std::vector<std::vector<Real>> family_scores(const Comparison& c,
-                                             const std::vector<std::size_t>& settings,
-                                             const std::vector<std::size_t>& methods) {
-  std::map<std::string, std::pair<std::vector<Real>, Real>> families;  // sums, settings
-  for (const std::size_t p : settings) {
-    std::vector<std::optional<Real>> costs;
-    for (const std::size_t s : methods)
-      costs.emplace_back(c.cell(p, s).median(Measure::work, c.yardstick.tightest().rung));
-    auto& [sums, count] = families[c.problems[p].family()];
-    sums.resize(methods.size(), 0);
-    count += 1;
-    const auto ratios = cost_ratios(costs);
-    for (std::size_t i = 0; i < methods.size(); ++i) sums[i] += score_of(*ratios[i], kProfileEnd);
-  }
-  std::vector<std::vector<Real>> scores;
-  for (auto& [family, sum] : families) {
-    for (Real& each : sum.first) each /= sum.second;
-    scores.push_back(std::move(sum.first));
-  }
-  return scores;
-}
-
-std::string failures_text(const Comparison& c, const std::vector<std::size_t>& settings,
-                          std::size_t method) {
+// "78/316 (in 9 of 16 families: 30–80 %)": runs of one family are no independent witnesses, so the
+// bounds are of the share of families in which any fails.
+TableCell failures_cell(const Comparison& c, const std::vector<std::size_t>& settings,
+                        std::size_t method) {
   std::size_t runs = 0, failed = 0;
+  std::map<std::string, bool> families;  // whether a run fails
   const std::size_t rung = c.yardstick.tightest().rung;
   for (const std::size_t p : settings)
     for (const std::size_t row : c.cell(p, method).runs) {
+      const bool is_failed = c.runs[row].taken(Measure::work, rung) == kNever;
       ++runs;
-      failed += c.runs[row].taken(Measure::work, rung) == kNever;
+      failed += is_failed;
+      families[c.problems[p].family()] |= is_failed;
     }
-  if (runs == 0) return "";
-  const Interval bounds = exact_share(failed, runs);
-  return fmt::format("{}/{} ({}–{})", failed, runs, percent(bounds.low), percent(bounds.high));
+  const auto with = static_cast<std::size_t>(
+      std::ranges::count_if(families, [](const auto& family) { return family.second; }));
+  const Interval bounds = exact_share(with, families.size());
+  return {words("contrasts.failures", failed, runs, with, families.size(), percent(bounds.low),
+                percent(bounds.high)),
+          {{"failed", Real(failed)}, {"runs", Real(runs)}, {"families", Real(with)}}};
 }
 
 // Work of the first over that of the second: 64^(−difference). More digits where two do not show on
@@ -89,14 +75,6 @@ std::string factor_text(Real difference) {
   const Real factor = std::pow(kProfileEnd, -difference);
   const std::string text = fmt::format("{:.2g}", factor);
   return text == "1" ? fmt::format("{:.3g}", factor) : text;
-}
-
-std::size_t solved_by(const Comparison& c, const std::vector<std::size_t>& settings,
-                      std::size_t method) {
-  return static_cast<std::size_t>(std::ranges::count_if(settings, [&](std::size_t p) {
-    const Real cost = c.cell(p, method).median(Measure::work, c.yardstick.tightest().rung);
-    return cost < kNever;
-  }));
 }
 
 // The contrasts on some settings: their rows, or how many runs are missing.
@@ -109,21 +87,6 @@ struct Sequence {
 
   bool is_whole() const { return missing == 0 && absent.empty(); }
 };
-
-// "0.705 (28)": the median ratio of work where both solve, and on how many settings.
-std::string both_text(const Comparison& c, const std::vector<std::size_t>& settings,
-                      std::size_t first, std::size_t second) {
-  Costs costs;
-  std::vector<std::string> families;
-  for (const std::size_t p : settings) {
-    costs.emplace_back();
-    for (const std::size_t s : {first, second})
-      costs.back().emplace_back(c.cell(p, s).median(Measure::work, c.yardstick.tightest().rung));
-    families.push_back(c.problems[p].family());
-  }
-  const WorkRatio ratio = work_ratio(costs, families, 0, 1);
-  return ratio.both == 0 ? "– (0)" : fmt::format("{:.2g} ({})", ratio.median, ratio.both);
-}
 
 Sequence add_sequence(Table& table, const Comparison& c, const std::vector<Pair>& pairs,
                       const std::vector<std::size_t>& settings, bool is_noisy) {
@@ -155,7 +118,17 @@ Sequence add_sequence(Table& table, const Comparison& c, const std::vector<Pair>
     table.rows.push_back({words("contrasts.incomplete-row") + on, "", "", "", "", "", "", ""});
     return out;
   }
-  const auto scores = family_scores(c, settings, methods);
+  Costs costs;  // medians: [setting][place in `methods`]
+  std::vector<std::string> families;
+  for (const std::size_t p : settings) {
+    costs.emplace_back();
+    for (const std::size_t s : methods)
+      costs.back().emplace_back(c.cell(p, s).median(Measure::work, c.yardstick.tightest().rung));
+    families.push_back(c.problems[p].family());
+  }
+  Places all(methods.size());
+  std::iota(all.begin(), all.end(), 0);
+  const auto scores = family_scores(costs, families, all);
   out.families = scores.size();
   std::vector<std::vector<Real>> differences;
   for (const auto& [first, second] : places) {
@@ -173,8 +146,9 @@ Sequence add_sequence(Table& table, const Comparison& c, const std::vector<Pair>
     const std::string decision = is_noisy             ? words("contrasts.estimate")
                                  : contrast.is_tested ? out.outcomes.back()
                                                       : words("contrasts.untested");
+    const WorkRatio ratio = work_ratio(costs, families, places[i][0], places[i][1]);
     for (const std::size_t side : {0, 1})
-      if (solved_by(c, settings, methods[places[i][side]]) == 0)
+      if (ratio.both + (side == 0 ? ratio.only_a : ratio.only_b) == 0)
         out.outcomes.back() += words("contrasts.solves-none", pairs[i][side], settings.size());
     table.rows.push_back(
         {fmt::format("{} against {}{}", pairs[i][0], pairs[i][1], on),
@@ -186,9 +160,9 @@ Sequence add_sequence(Table& table, const Comparison& c, const std::vector<Pair>
          {fmt::format("{:.2f}", contrast.deviation), {{"deviation", contrast.deviation}}},
          fmt::format("{} ({} to {})", factor_text(contrast.mean),
                      factor_text(contrast.interval.high), factor_text(contrast.interval.low)),
-         both_text(c, settings, methods[places[i][0]], methods[places[i][1]]),
-         failures_text(c, settings, methods[places[i][0]]),
-         failures_text(c, settings, methods[places[i][1]]),
+         ratio.both == 0 ? "– (0)" : fmt::format("{:.2g} ({})", ratio.median, ratio.both),
+         failures_cell(c, settings, methods[places[i][0]]),
+         failures_cell(c, settings, methods[places[i][1]]),
          decision});
   }
   return out;

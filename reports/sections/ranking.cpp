@@ -23,13 +23,25 @@ std::string names_text(const Comparison& c, const std::vector<std::size_t>& meth
   return first_of(std::move(names), most);
 }
 
-// Seeds of the runs on ranked settings; all where there are none.
-std::vector<std::uint64_t> ranked_seeds(const Comparison& c) {
-  if (c.order.settings.empty()) return c.seeds;
-  std::set<std::uint64_t> seeds;
+// The least and the greatest number of different parts of its seeds that a setting of the ranking
+// has, or any setting where there is no ranking.
+std::pair<std::size_t, std::size_t> numbers_of(const Comparison& c,
+                                               std::uint64_t (*part)(std::uint64_t)) {
+  std::map<std::size_t, std::vector<std::uint64_t>> seeds;
   for (const Run& run : c.runs)
-    if (c.order.has_setting(run.problem)) seeds.insert(run.seed);
-  return {seeds.begin(), seeds.end()};
+    if (c.order.settings.empty() || c.order.has_setting(run.problem))
+      seeds[run.problem].push_back(run.seed);
+  std::pair<std::size_t, std::size_t> ends{seeds.empty() ? 0 : c.runs.size(), 0};
+  for (const auto& [setting, own] : seeds) {
+    const std::size_t number = distinct(own, part);
+    ends = {std::min(ends.first, number), std::max(ends.second, number)};
+  }
+  return ends;
+}
+
+// "22 to 36", or one number.
+std::string range_text(std::size_t low, std::size_t high) {
+  return low == high ? std::to_string(low) : fmt::format("{} to {}", low, high);
 }
 
 // "19 test problems (5 from physics, at most 64 unknowns; 3 starting points per problem)"
@@ -45,19 +57,21 @@ std::string settings_text(const Comparison& c) {
   if (physics == settings)
     parts.push_back(words("ranking.all-physics"));
   else if (physics > 0)
-    parts.push_back(words("ranking.physics", physics));
+    parts.push_back(words("ranking.physics", counted(physics, common_noun(c))));
   if (const std::size_t families = families_of(c, c.order); families < names)
     parts.push_back(words("ranking.families", families));
   if (unknowns > 0) parts.push_back(words("ranking.unknowns", unknowns));
   std::string about = joined(parts);
-  const std::vector<std::uint64_t> seeds = ranked_seeds(c);
-  const std::size_t instances = distinct(seeds, instance_of), starts = distinct(seeds, start_of);
-  const bool is_crossed = seeds.size() > std::max(instances, starts);
-  if (seeds.size() > 1)
+  const auto instances = numbers_of(c, instance_of), starts = numbers_of(c, start_of),
+             all = numbers_of(c, [](std::uint64_t seed) { return seed; });
+  const bool is_crossed = all.second > std::max(instances.second, starts.second);
+  const auto& own = instances.second > 1 ? instances : starts;
+  if (all.second > 1)
     about += (about.empty() ? "" : "; ") +
-             (is_crossed ? words("ranking.crossed", instances, starts, common_noun(c))
-                         : words(instances > 1 ? "ranking.instances" : "ranking.starts",
-                                 std::max(instances, starts), common_noun(c)));
+             (is_crossed ? words("ranking.crossed", range_text(instances.first, instances.second),
+                                 range_text(starts.first, starts.second), common_noun(c))
+                         : words(instances.second > 1 ? "ranking.instances" : "ranking.starts",
+                                 range_text(own.first, own.second), common_noun(c)));
   return words(names < settings ? "ranking.settings" : "ranking.problems", settings, names,
                about.empty() ? "" : " (" + about + ")");
 }
@@ -112,11 +126,6 @@ std::string first_sentence(const Comparison& c, const Decision& decision) {
   return words("ranking.first-open", needed_text(decision), name, first.score);
 }
 
-// "22 to 36", or one number.
-std::string range_text(std::size_t low, std::size_t high) {
-  return low == high ? std::to_string(low) : fmt::format("{} to {}", low, high);
-}
-
 std::string variation_text(const Decision& decision) {
   const auto [least, most] = decision.group_sizes();
   return words("ranking.variation", range_text(least, most), most, decision.places.size(),
@@ -169,9 +178,13 @@ std::string linear_text(const Comparison& c, const Decision& decision) {
   const std::size_t linear = part_of_order(c, true).settings.size();
   const auto apart = std::ranges::find(decision.choices, Varied::linear, &Choice::varied);
   if (linear == 0 || apart == decision.choices.end()) return "";
-  return words("ranking.linear", linear, decision.settings, decision.settings - linear,
-               apart->first.empty() ? words("ranking.no-method") : names_text(c, apart->first, 3),
-               apart->group, decision.places.size());
+  const std::string others = apart->group == decision.places.size()
+                                 ? words("ranking.linear-open")
+                                 : words("ranking.linear-first",
+                                         apart->first.empty() ? words("ranking.no-method")
+                                                              : names_text(c, apart->first, 3),
+                                         apart->group, decision.places.size());
+  return words("ranking.linear", linear, decision.settings, decision.settings - linear, others);
 }
 
 std::string solved_runs_text(const Comparison& c, std::size_t method) {
@@ -646,7 +659,7 @@ Table leader_table(const Comparison& c) {
       "leader", words(c.decision && c.decision->is_range ? "leader.range" : "leader.interval"),
       setting_noun(c), counted_name(c));
   table.reading = words("leader.none");
-  if (!c.decision) return table;
+  if (!has_order(c) || !c.decision) return table;
   for (const results::Place& place : c.decision->places) {
     if (table.rows.size() >= kMostTableRows) break;
     const WorkRatio& ratio = place.ratio;
@@ -668,7 +681,7 @@ Table leader_table(const Comparison& c) {
 Table choices_table(const Comparison& c) {
   Table table = worded_table("choices");
   table.reading = words("leader.none");
-  if (!c.decision) return table;
+  if (!has_order(c) || !c.decision) return table;
   for (const Choice& choice : c.decision->choices)
     table.rows.push_back({choice_text(choice), names_text(c, choice.first, 3)});
   table.reading = robustness_text(c, *c.decision);
@@ -680,16 +693,17 @@ std::vector<std::string> limits_of_evidence(const Comparison& c) {
   if (c.decision && c.decision->places.size() > 1) {
     const Decision& decision = *c.decision;
     const std::string families = counted_families(decision.families);
-    all.push_back(words(
-        decision.friedman <= kSignificant ? "limits.friedman-differs" : "limits.friedman-equal",
-        counted(decision.places.size(), "method"), families, decision.friedman));
+    if (decision.fewest_wins())
+      all.push_back(words(
+          decision.friedman <= kSignificant ? "limits.friedman-differs" : "limits.friedman-equal",
+          counted(decision.places.size(), "method"), families, decision.friedman));
     all.push_back(words("limits.least-p", families, decision.least_p));
     all.push_back(decision.detectable < kNever && decision.detectable > 0
                       ? words("limits.detectable", decision.detectable)
                       : words("limits.undetectable", families));
   }
-  const std::vector<std::uint64_t> seeds = ranked_seeds(c);
-  const auto independent = std::max(distinct(seeds, instance_of), distinct(seeds, start_of));
+  const auto independent =
+      std::max(numbers_of(c, instance_of).second, numbers_of(c, start_of).second);
   if (independent < kFewestForInterval)
     all.push_back(words("limits.seeds", counted(independent, "independent seed")));
   return all;

@@ -213,6 +213,25 @@ TEST(Contrasts, LeadTheFirstScreenAndEachGroupStandsApart) {
   EXPECT_TRUE(has(text, words("noise-level.never", words("noise-level.never-in", "hig", 1, 1))));
 }
 
+// Seven families have two runs, one of them a run alone: the sentence says so, and bounds are of
+// families.
+TEST(Contrasts, NumbersOfSeedsAndBoundsOfFailuresAreThoseOfTheSettings) {
+  Study study = contest_of(8);
+  const std::size_t count = study.runs.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    Record again = study.runs[i];
+    again.request.seed = seed_of(1, 0);
+    again.cell += "b";
+    if (again.request.problem.name != "f0") study.runs.push_back(std::move(again));
+  }
+  study.plan.cells = plan_of(study.runs).cells;
+  const Compared c(std::move(study), kWithContrasts);
+  EXPECT_TRUE(has(joined(verdict(c)), words("ranking.instances", "1 to 2", "problem")))
+      << joined(verdict(c));
+  EXPECT_EQ(at(contrast_table(c), "adam against nlopt-lbfgs", "failures of the first"),
+            words("contrasts.failures", 15, 15, 8, 8, "63 %", "100 %"));
+}
+
 TEST(Contrasts, OfOneOrTwoFamiliesDecideNothingAndOfNoneSayNothing) {
   for (const std::size_t families : {1U, 2U, 5U}) {
     const Compared c(contest_of(families), kWithContrasts);

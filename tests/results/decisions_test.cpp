@@ -48,6 +48,17 @@ TEST(Decision, ScoresAreAreasOfProfiles) {
   EXPECT_EQ(decision->places[0].method, 0U);
 }
 
+// Of three settings the second is ahead on two, which share a family: each is ahead on one family.
+TEST(Decision, ScoresAreMeansOverFamilies) {
+  const auto decision =
+      decide({.costs = {{20, 10}, {20, 10}, {10, 20}}, .families = {"a", "a", "b"}});
+  ASSERT_TRUE(decision);
+  EXPECT_NEAR(decision->place_of(0)->score, (5 / 6.0 + 1) / 2, kRounding);
+  EXPECT_NEAR(decision->place_of(1)->score, (5 / 6.0 + 1) / 2, kRounding);
+  EXPECT_EQ(decision->tied, 2U);
+  EXPECT_NEAR(decision->places[0].share_first, 0.5, 0.064) << "so do samples of families";
+}
+
 // Eight problems, ten methods, one first on all: 2 of 2⁸ flips are as far out as the data, for each
 // rival alone.
 TEST(Decision, AFirstPlaceOnAllProblemsLeadsAndIsTheWholeGroup) {
@@ -297,18 +308,17 @@ TEST(FlipLevels, OfManyFamiliesAreDrawnAndAgree) {
 
 // --- intervals
 
-// Six families, two settings each, all scores 1/2: 3/4 of a family (1.5 settings) of each end are
-// added. The mean stays 1/2; (2 (1.5 / 2)²) 8 / 7 under the root, over 15 settings; t(5)
-// = 2.570582.
+// Six families, all scores 1/2: 3/4 of a family of each end are added. The mean stays 1/2;
+// (2 (0.75 / 2)²) 8 / 7 under the root, over 7.5 families; t(5) = 2.570582.
 TEST(ScoreInterval, AddsThreeQuartersOfAFamilyAtEachEnd) {
-  const Interval interval = score_interval(std::vector<FamilyScore>(6, {.sum = 1, .settings = 2}));
-  const Real half = 2.570582 * std::sqrt(2 * 0.75 * 0.75 * 8 / 7) / 15;
+  const Interval interval = score_interval(std::vector<Real>(6, 0.5));
+  const Real half = 2.570582 * std::sqrt(2 * 0.375 * 0.375 * 8 / 7) / 7.5;
   EXPECT_NEAR(interval.low, 0.5 - half, 1e-6);
   EXPECT_NEAR(interval.high, 0.5 + half, 1e-6);
 }
 
 TEST(ScoreInterval, OfFiveFamiliesIsTheirRange) {
-  const Interval interval = score_interval({{1, 1}, {1, 2}, {0, 1}, {3, 4}, {1, 1}});
+  const Interval interval = score_interval({1, 0.5, 0, 0.75, 1});
   EXPECT_EQ(interval.low, 0);
   EXPECT_EQ(interval.high, 1);
 }

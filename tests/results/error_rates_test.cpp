@@ -241,12 +241,11 @@ TEST(ErrorRates, IntervalsOfScoresCoverTheirStatedShare) {
         Real width = 0;
         for (int sample = 0; sample < samples; ++sample) {
           random.restart(static_cast<std::uint64_t>(sample) + 1);
-          std::vector<FamilyScore> scores;
-          for (std::size_t g = 0; g < families; ++g) {
+          std::vector<Real> scores(families, 0);
+          for (Real& score : scores) {
             const Real family = random.normal();
-            scores.push_back({.settings = Real(settings)});
             for (std::size_t i = 0; i < settings; ++i)
-              scores.back().sum += drawn_score(kind, family, random);
+              score += drawn_score(kind, family, random) / Real(settings);
           }
           const Interval interval = score_interval(scores);
           covered += interval.low <= truth && truth <= interval.high;
