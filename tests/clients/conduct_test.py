@@ -138,6 +138,9 @@ def row(run):
 
 
 class Conduct(unittest.TestCase):
+    def setUp(self):
+        conduct.FEW = conduct.MANY = 2  # for the time that they take
+
     def test_a_method_that_is_right_has_no_cross(self):
         self.assertEqual({name: cell for name, cell in row(right).items() if cell["mark"] == "✗"}, {})
 
@@ -208,6 +211,21 @@ class Conduct(unittest.TestCase):
     def test_the_page_shows_the_published_table_of_our_own_methods(self):
         own = json.loads(conduct.PUBLISHED.read_text())["optimizers"]
         self.assertIn("\n".join(conduct.own_lines(own)) + "\n<!-- end of own conduct -->", PAGE.read_text())
+
+    def test_programs_in_cpp_name_their_libraries(self):
+        for source in FOLDER.glob("*.cpp"):
+            self.assertRegex(source.read_text(), r"(?m)^// flags: -", source.name)
+
+    def test_a_mark_that_last_bits_decide_is_open(self):
+        def other_with_other_bits(p, limit, _=None):
+            found = right(p, limit)
+            if p.r.__name__ == "other":  # the residuals with other bits
+                found.x = found.x * (1 + 1e-9)
+            return found
+
+        cell = row(other_with_other_bits)["returned point"]
+        self.assertEqual(cell["mark"], "–", cell)
+        self.assertIn("with other last bits", cell["figures"])
 
     def test_the_table_is_as_large_as_promised(self):
         table = json.loads(TABLE.read_text())

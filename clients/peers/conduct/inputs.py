@@ -27,7 +27,7 @@ class Input:
     def __init__(self, start, residual, jacobian, bounds=None, factor=1.0, loss=None, slope=None, bits=0):
         self.start, self.bounds, self.factor = numpy.array(start, float), bounds, factor
         self.r = with_other_bits(residual, bits) if bits else residual
-        self.J, self.own_loss, self.own_slope = jacobian, loss, slope
+        self.J, self.own_loss, self.own_slope = jacobian, with_other_bits(loss, bits) if loss and bits else loss, slope
         self.calls = []  # (bits of x, loss)
         self.n, self.m = len(self.start), len(residual(self.start))
 
@@ -65,12 +65,13 @@ class Input:
         return [numpy.frombuffer(bits) for bits, _ in self.calls]
 
 
-def with_other_bits(residual, which):
-    """r with other last bits, of numbers near 1, as another library of mathematics would have: fixed by x and `which`."""
+def with_other_bits(values, which):
+    """The values, but for exact zeros, with other last bits, of numbers near 1, as another library of mathematics would
+    have: fixed by x and `which`."""
     def other(x):
-        r = residual(x)
+        r = values(x)
         digest = zlib.crc32(numpy.array(x, float).tobytes() + bytes([which]))
-        return r + 2.0**-53 * numpy.random.RandomState(digest).randint(-1, 2, len(r))
+        return r + 2.0**-53 * (r != 0) * numpy.random.RandomState(digest).randint(-1, 2, numpy.shape(r))
 
     return other
 
@@ -103,8 +104,8 @@ def valley(**more):
                  lambda x: numpy.array([[-20 * x[0], 10], [-1, 0]]), **more)
 
 
-def bounded_valley():
-    return valley(bounds=(numpy.array([-2.0, -2]), numpy.array([0.5, 2])))
+def bounded_valley(**more):
+    return valley(bounds=(numpy.array([-2.0, -2]), numpy.array([0.5, 2])), **more)
 
 
 def solved():
@@ -112,11 +113,11 @@ def solved():
     return Input([1, 1, 1], lambda x: weights * (x - 1), lambda _: numpy.diag(weights))
 
 
-def missing(of_residuals):
+def missing(of_residuals, **more):
     if of_residuals:
         nothing = numpy.array([math.nan, math.nan])
         return Input([10], lambda x: numpy.array([math.log(x[0]), 0.1 * (x[0] - 1)]) if x[0] > 0 else nothing,
-                     lambda x: numpy.array([[1 / x[0] if x[0] > 0 else math.nan], [0.1]]))
+                     lambda x: numpy.array([[1 / x[0] if x[0] > 0 else math.nan], [0.1]]), **more)
     return Input([10], lambda x: x, lambda x: numpy.ones((1, 1)),
                  loss=lambda x: float(x[0] - math.log(x[0])) if x[0] > 0 else math.nan,
-                 slope=lambda x: numpy.array([1 - 1 / x[0]]) if x[0] > 0 else numpy.array([math.nan]))
+                 slope=lambda x: numpy.array([1 - 1 / x[0]]) if x[0] > 0 else numpy.array([math.nan]), **more)

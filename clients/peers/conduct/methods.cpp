@@ -1,5 +1,6 @@
+// flags: -ldlib -lblas -lalglib
 // Methods of dlib and ALGLIB by their defaults. Values come by lines on standard input; each is one
-// call of the callback. flags: -ldlib -lblas -lalglib
+// call of the callback.
 #include "methods.h"
 
 #include <dlib/optimization.h>
@@ -56,9 +57,7 @@ void run_alglib(const std::string& method) {
 
 void run_dlib(const std::string& method) {
   const long n = static_cast<long>(given.n);
-  Point x(n), lower(n), upper(n);
-  for (long i = 0; i < n; ++i)
-    x(i) = given.x[i], lower(i) = given.lower[i], upper(i) = given.upper[i];
+  Point x = dlib::mat(given.x);
   const auto value = [](const Point& at) { return ask("value", &at(0))[0]; };
   const auto gradient = [](const Point& at) {
     const Vector found = ask("gradient", &at(0));
@@ -69,10 +68,10 @@ void run_dlib(const std::string& method) {
       dlib::find_min(dlib::lbfgs_search_strategy(10), dlib::objective_delta_stop_strategy(1e-9),
                      value, gradient, x, -1e300);
     } else {
-      constexpr double kFar = 1e3;  // it takes finite bounds alone
-      if (!given.has_bounds) lower = x - kFar, upper = x + kFar;
+      const auto [lower, upper] = finite_bounds();
       const long most = given.limit > 0 ? static_cast<long>(given.limit) : 100000;
-      dlib::find_min_bobyqa(value, x, 2 * n + 1, lower, upper, 0.1, 1e-8, most);
+      dlib::find_min_bobyqa(value, x, 2 * n + 1, Point(dlib::mat(lower)), Point(dlib::mat(upper)),
+                            0.1, 1e-8, most);
     }
     finish(true, "none", "returned", &x(0));
   } catch (const dlib::bobyqa_failure&) {

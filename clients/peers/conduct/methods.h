@@ -2,11 +2,14 @@
 // call of the callback and its answer.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <iostream>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 using Vector = std::vector<double>;
@@ -53,6 +56,16 @@ inline void begin() {
     return Vector(&begun[5 + i * given.n], &begun[5 + i * given.n] + given.n);
   };
   given.x = part(0), given.lower = part(1), given.upper = part(2);
+}
+
+// Those that are given, or so far that none binds, for methods that take finite bounds alone.
+inline std::pair<Vector, Vector> finite_bounds() {
+  Vector lower = given.lower, upper = given.upper;
+  for (std::size_t i = 0; !given.has_bounds && i < given.n; ++i) {
+    const double far = 1e3 * std::max(1.0, std::abs(given.x[i]));
+    lower[i] = given.x[i] - far, upper[i] = given.x[i] + far;
+  }
+  return {lower, upper};
 }
 
 // Runs a method as often as asked, each time from the start.

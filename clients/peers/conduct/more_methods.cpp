@@ -93,10 +93,7 @@ struct Loss {
     return {ask("value", x.data())[0]};
   }
   std::pair<pagmo::vector_double, pagmo::vector_double> get_bounds() const {
-    constexpr double kFar = 1e3;  // it takes finite bounds alone
-    Vector lower = given.lower, upper = given.upper;
-    for (std::size_t i = 0; !given.has_bounds && i < given.n; ++i)
-      lower[i] = given.x[i] - kFar, upper[i] = given.x[i] + kFar;
+    const auto [lower, upper] = finite_bounds();
     return {lower, upper};
   }
 };
