@@ -327,6 +327,18 @@ TEST_F(Exchange, AFileThatTheManifestLacksOrThatIsMissingIsNamed) {
                         "is missing, but SHA256SUMS"}});
 }
 
+TEST_F(Exchange, ANoiseLevelUnlikeThatOfItsInstanceIsNamed) {
+  shell.expect(
+      "./isoline run --problem 'exponential[n=4,noise=0.01]' --optimizer gd,gauss-newton "
+      "--iterations 5 --quiet --no-report --out noisy");
+  shell.expect("./isoline validate noisy");
+  shell(
+      "sed -i -E 's/\"noise_level\": ?[0-9.e-]+/\"noise_level\": 9/' \"$(ls noisy/runs/*.json | "
+      "head -n 1)\"");
+  shell.expect("./isoline validate noisy",
+               {.exit_code = 2, .out = {"its noise level is not that of the same instance"}});
+}
+
 TEST_F(Exchange, AnArchiveIsNoResultFolder) {
   shell("tar -czf results.tar.gz results");
   shell.expect("./isoline report results.tar.gz", {.exit_code = 1, .err = {"tar -xf"}});

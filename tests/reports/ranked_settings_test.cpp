@@ -7,6 +7,7 @@
 
 #include "core/oracle.h"
 #include "core/results/ranking.h"
+#include "core/seeds.h"
 #include "reports/sections/contrasts.h"
 #include "reports/sections/sections.h"
 #include "reports/sections/words.h"
