@@ -335,8 +335,7 @@ TEST_F(Exchange, ANoiseLevelUnlikeThatOfItsInstanceIsNamed) {
   shell(
       "sed -i -E 's/\"noise_level\": ?[0-9.e-]+/\"noise_level\": 9/' \"$(ls noisy/runs/*.json | "
       "head -n 1)\"");
-  shell.expect("./isoline validate noisy",
-               {.exit_code = 2, .out = {"its noise level is not that of the same instance"}});
+  shell.expect("./isoline validate noisy", {.exit_code = 2, .out = {"its noise level is"}});
 }
 
 TEST_F(Exchange, AnArchiveIsNoResultFolder) {
