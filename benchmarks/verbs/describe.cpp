@@ -124,10 +124,7 @@ Described described(const Catalog& catalog, const Spec& spec) {
   std::vector<std::string> known = catalog.problems.names();
   for (const auto& names : {catalog.optimizers.names(), network_registry().names()})
     known.insert(known.end(), names.begin(), names.end());
-  const std::string nearest = nearest_name(spec.name, known);
-  throw UsageError(fmt::format("no problem, optimizer or network '{}'; {}", spec.name,
-                               nearest.empty() ? "`isoline describe` prints all names"
-                                               : fmt::format("did you mean '{}'?", nearest)));
+  throw UsageError(unknown_name("problem, optimizer or network", spec.name, known));
 }
 
 std::string allowed_values(const OptionField& field) {

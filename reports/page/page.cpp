@@ -239,18 +239,29 @@ std::string ascii_html(std::string_view utf8) {
   return out;
 }
 
-// What waits within the rest of the page goes compressed, in the order of its empty places.
+// The largest tables go compressed, in the order of their empty places. What else a tab shows later
+// is a part of its own beside the rest of the page, since elements that wait hold no others.
 std::string sent(std::string_view page) {
-  constexpr std::string_view kOpen = "<noscript>", kClose = "</noscript>";
+  constexpr std::string_view kOpen = "<noscript", kClose = "</noscript>";
   std::size_t at = page.find("<noscript class=\"rest\""), open = 0;
+  at = page.find('>', at);
   std::string out(page.substr(0, at)), packs;
   while ((open = page.find(kOpen, at)) != std::string_view::npos) {
-    const std::size_t close = page.find(kClose, open);
+    const std::size_t begin = page.find('>', open) + 1, close = page.find(kClose, begin);
+    const std::string_view tag = page.substr(open, begin - open),
+                           text = page.substr(begin, close - begin);
     out += page.substr(at, open - at);
-    out += "<template class=sent></template>";
-    packs += page.substr(open + kOpen.size(), close - open - kOpen.size());
-    packs += '\0';
     at = close + kClose.size();
+    if (tag.find("rest") != std::string_view::npos) {
+      out += tag;
+      at = begin;
+    } else if (tag.find("sent") != std::string_view::npos) {
+      out += "<template class=sent></template>";
+      packs.append(text) += '\0';
+    } else {
+      out += fmt::format(
+          "</noscript><noscript class=\"rest tab-text\">{}</noscript><noscript class=rest>", text);
+    }
   }
   out += page.substr(at);
   return ascii_html(out.replace(out.find(kPacks), kPacks.size(), packed_text("packs", packs)));

@@ -91,10 +91,17 @@ TEST_P(Page, EveryCommandRunsInTheOrderOfThePage) {
   const Shell shell;
   std::filesystem::create_directory_symlink(kTree / "clients", shell.folder() / "clients");
   for (const auto& [name, text] : scripts(GetParam())) write_text(shell.folder() / name, text);
+  std::string printed;
   for (const std::string& command : commands(GetParam())) {
     if (std::ranges::find(kMainCommands, command) != kMainCommands.end()) continue;
-    EXPECT_NE(shell.expect(command).out, "") << command;
+    const std::string out = shell.expect(command).out;
+    EXPECT_NE(out, "") << command;
+    printed += out;
   }
+  // The blocks of output have the shape of what was printed; numbers differ between processors.
+  write_text(shell.folder() / "printed", printed);
+  shell.expect(fmt::format("python3 {} printed --printed --shape {}",
+                           (kTree / "docs/outputs.py").string(), GetParam()));
 }
 
 // The row of a name in what `score` prints: runs of 4 digits, of 6, the mean digits, the calls.
