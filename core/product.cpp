@@ -38,6 +38,13 @@ int stride(const Array& array) {  // BLAS requires at least one, also for an emp
   return std::max(1, as_int(array.outerStride()));
 }
 
+// By sizes alone, so one number of threads gives one result. With fewer multiply-adds, half a
+// millisecond on one core, waking and awaiting other threads costs more than it saves.
+bool is_worth_sharing(Index m, Index n, Index k) {
+  constexpr Real kLeast = 2e7;
+  return static_cast<Real>(m) * static_cast<Real>(n) * static_cast<Real>(k) >= kLeast;
+}
+
 template <class Scalar>
 void multiply(Form form, typename Gemm<Scalar>::In A, typename Gemm<Scalar>::In B,
               typename Gemm<Scalar>::Out C, Scalar keep) {
@@ -46,8 +53,12 @@ void multiply(Form form, typename Gemm<Scalar>::In A, typename Gemm<Scalar>::In 
   const Index m = left ? A.cols() : A.rows(), k = left ? A.rows() : A.cols();
   const Index n = right ? B.rows() : B.cols();
   require_fit(C.rows() == m && C.cols() == n && k == (right ? B.cols() : B.rows()));
+  const int threads = openblas_get_num_threads();
+  const bool is_alone = threads > 1 && !is_worth_sharing(m, n, k);
+  if (is_alone) openblas_set_num_threads(1);
   gemm(flag(left), flag(right), as_int(m), as_int(n), as_int(k), A.data(), stride(A), B.data(),
        stride(B), keep, C.data(), stride(C));
+  if (is_alone) openblas_set_num_threads(threads);
 }
 
 // Vectors of the compiler, as they lie in memory: at any address of a number.
@@ -154,21 +165,37 @@ void multiply_by_rows(Form form, typename Gemm<Scalar>::In A, typename Gemm<Scal
   const bool is_across = form == Form::A_BH;
   const Index rows = A.rows(), depth = A.cols(), width = is_across ? B.rows() : B.cols();
   if (form == Form::AH_B || C.rows() != rows || C.cols() != width ||
-      depth != (is_across ? B.cols() : B.rows()) || rows % kLanes<Scalar> != 0)
+      depth != (is_across ? B.cols() : B.rows()))
     throw UsageError("the shapes of the matrices of a product by rows do not match");
   const Panel<Scalar> right{B.data(), is_across ? B.outerStride() : 1,
                             is_across ? 1 : B.outerStride()};
-  const auto some_rows = [&](Index first, Index count) {
-    all_columns<Scalar>({A.data() + first, A.outerStride(), 1}, right, count, width, depth,
+  const Index rest = rows % kLanes<Scalar>, whole = rows - rest;
+  if (rest > 0) {  // in copies that fill a register
+    constexpr Index kLane = kLanes<Scalar>, kWide = 64;
+    typename Gemm<Scalar>::Array last(kLane, depth);
+    Eigen::Matrix<Scalar, kLane, kWide> sums = Eigen::Matrix<Scalar, kLane, kWide>::Zero();
+    last.setZero();
+    last.topRows(rest) = A.bottomRows(rest);
+    for (Index c = 0; c < width; c += kWide) {
+      const Index wide = std::min(kWide, width - c);
+      sums.topLeftCorner(rest, wide) = C.block(whole, c, rest, wide);
+      all_columns<Scalar>({last.data(), kLane, 1},
+                          {right.numbers + c * right.across, right.along, right.across}, kLane,
+                          wide, depth, {sums.data(), kLane, keep});
+      C.block(whole, c, rest, wide) = sums.topLeftCorner(rest, wide);
+    }
+  }
+  constexpr Index kShare = 16 * kLanes<Scalar>;  // rows whose part of A stays in a cache
+  const Index tasks = (whole + kShare - 1) / kShare;
+  const auto share = [&](Index task, int) {
+    const Index first = task * kShare;
+    all_columns<Scalar>({A.data() + first, A.outerStride(), 1}, right,
+                        std::min(kShare, whole - first), width, depth,
                         {C.data() + first, C.outerStride(), keep});
   };
-  constexpr Real kWorthSharing = 4e6;  // multiply-adds: 50 µs, against 5 µs to wake a thread
-  constexpr Index kShare = 16 * kLanes<Scalar>;
-  if (library_threads() == 1 || static_cast<Real>(rows * width) * Real(depth) < kWorthSharing)
-    return some_rows(0, rows);
-  for_each_task((rows + kShare - 1) / kShare, [&](Index task, int) {
-    some_rows(task * kShare, std::min(kShare, rows - task * kShare));
-  });
+  if (library_threads() > 1 && is_worth_sharing(rows, width, depth))
+    return for_each_task(tasks, share);
+  for (Index task = 0; task < tasks; ++task) share(task, 0);
 }
 
 }  // namespace

@@ -31,7 +31,8 @@ void product(Form form, Gemm<Complex>::In A, Gemm<Complex>::In B, Gemm<Complex>:
 
 // The same for A_B and A_BH, each number of C summed in the order of the inner index, one
 // multiply-add a term, whatever its place: equal rows of A give equal rows of C, bit for bit, in
-// any batch, whichever kernels a library picks. The rows of A must fill whole vector registers.
+// any batch, whichever kernels a library picks. Rows that fill whole vector registers need no
+// copies.
 void product_by_rows(Form form, Gemm<float>::In A, Gemm<float>::In B, Gemm<float>::Out C,
                      float keep = 0);
 void product_by_rows(Form form, Gemm<double>::In A, Gemm<double>::In B, Gemm<double>::Out C,

@@ -22,30 +22,34 @@ ComplexMap half_of(Gemm<float>::Array& half, Index grid, Index size) {
           size};  // pairs, as the standard has it
 }
 
+// Complex numbers as the rows of pairs that they are.
+Eigen::Map<Gemm<float>::Array> pairs(Gemm<Complex>::Array& numbers) {
+  return {reinterpret_cast<float*>(numbers.data()), 2 * numbers.rows(), numbers.cols()};
+}
+
 }  // namespace
 
 TruncatedFourier::TruncatedFourier(Index size, Index modes)
-    : size_(size),
-      modes_(modes),
-      plain_(2 * modes, size),
-      weighted_(2 * modes, size),
-      along_columns_(size, 2 * modes) {
+    : size_(size), modes_(modes), along_columns_(size, 2 * modes) {
+  auto& [plain, weighted] = along_rows_;
+  for (auto& each : along_rows_) each.resize(2 * modes, size);
   const Real turn = 2 * std::numbers::pi / Real(size);
   const auto angle = [&](Index i, Index k) { return turn * Real(i * k % size); };
   for (Index i = 0; i < size; ++i) {
     for (Index k = 0; k < modes; ++k) {
       const Real weight = (k == 0 ? 1 : 2) / Real(size * size);
       const Real cosine = std::cos(angle(i, k)), sine = -std::sin(angle(i, k));
-      plain_(2 * k, i) = float(cosine);
-      plain_(2 * k + 1, i) = float(sine);
-      weighted_(2 * k, i) = float(weight * cosine);
-      weighted_(2 * k + 1, i) = float(weight * sine);
+      plain(2 * k, i) = float(cosine);
+      plain(2 * k + 1, i) = float(sine);
+      weighted(2 * k, i) = float(weight * cosine);
+      weighted(2 * k + 1, i) = float(weight * sine);
       const Index negative = modes - k;  // the frequency −M + k, of the second half
       along_columns_(i, k) = {float(cosine), float(sine)};
       along_columns_(i, modes + k) = {float(std::cos(angle(i, negative))),
                                       float(std::sin(angle(i, negative)))};
     }
   }
+  for (std::size_t i = 0; i < 2; ++i) back_[i] = along_rows_[i].transpose();
 }
 
 void TruncatedFourier::analyze(Weights weights, Gemm<float>::In grids, Spectra& S,
@@ -53,24 +57,25 @@ void TruncatedFourier::analyze(Weights weights, Gemm<float>::In grids, Spectra& 
   const Index count = grids.cols() / size_;
   room.half.resize(2 * modes_, grids.cols());
   room.modes.resize(modes(), count);
-  product(Form::A_B, weights == Weights::none ? plain_ : weighted_, grids, room.half);
+  product_by_rows(Form::A_B, along_rows_[weights == Weights::inverse], grids, room.half);
   for (Index grid = 0; grid < count; ++grid) {
     ComplexMap out(room.modes.col(grid).data(), modes_, 2 * modes_);
     product(Form::A_B, half_of(room.half, grid, size_), along_columns_, out);
   }
-  S = room.modes.transpose();
+  S = pairs(room.modes).transpose();
 }
 
 void TruncatedFourier::synthesize(Weights weights, const Spectra& S, Gemm<float>::Out grids,
                                   Room& room) const {
   const Index count = S.rows();
   room.half.resize(2 * modes_, grids.cols());
-  room.modes = S.transpose();
+  room.modes.resize(modes(), count);
+  pairs(room.modes) = S.transpose();
   for (Index grid = 0; grid < count; ++grid) {
     const ComplexMap in(room.modes.col(grid).data(), modes_, 2 * modes_);
     product(Form::A_BH, in, along_columns_, half_of(room.half, grid, size_));
   }
-  product(Form::AH_B, weights == Weights::none ? plain_ : weighted_, room.half, grids, 1);
+  product_by_rows(Form::A_B, back_[weights == Weights::inverse], room.half, grids, 1);
 }
 
 namespace {
@@ -80,7 +85,8 @@ namespace {
 //   C -> 128, gelu | 128 -> 1;   K a = F⁻¹ R F a on the lowest modes, R (C, C) for each
 // A batch is a matrix (cells·B, C), one channel per column. Pointwise layers are products with [W
 // b]ᵀ and a column of ones, as in the perceptron, and all grids stand side by side for the
-// transform.
+// transform. Forward, each number is summed in one order, so the bits of a sample do not depend on
+// its place in the batch.
 
 // Columns with one of ones behind them, in whole vector registers.
 class Field {
@@ -119,8 +125,8 @@ constexpr auto kGelu = Activation::gelu;
 constexpr auto kNone = TruncatedFourier::Weights::none;
 constexpr auto kInverse = TruncatedFourier::Weights::inverse;
 
-auto mode_of(Gemm<Complex>::Array& S, Index m, Index samples) {  // (B, C)
-  return Eigen::Map<Gemm<Complex>::Array>(S.col(m).data(), samples, S.rows() / samples);
+auto mode_of(Gemm<float>::Array& S, Index m, Index samples) {  // (B, 2C): real, imaginary parts
+  return Eigen::Map<Gemm<float>::Array>(S.col(2 * m).data(), samples, 2 * S.rows() / samples);
 }
 
 // Calls treat(begin, count) for one chunk after another, well within a cache. The last may end in
@@ -300,6 +306,7 @@ class FourierOperator final : public Network {
     Index samples = 0;
     std::vector<Pass> passes;
     Spectra made;
+    Array R;  // of one mode, by real numbers
     TruncatedFourier::Room room;
     Flat<float> chunk;
     Parameters theta, v, gradient;
@@ -314,13 +321,20 @@ class FourierOperator final : public Network {
     float* begin = theta.data() + layer.modes + 2 * m * layer.in * layer.out;
     return {reinterpret_cast<Complex*>(begin), layer.in, layer.out};
   }
+  // The same for real rows: [zᵣ zᵢ] = [aᵣ aᵢ] [Rᵣ Rᵢ; −Rᵢ Rᵣ].
+  const Array& real_mode(Parameters& theta, const Layer& layer, Index m, Own& own) const {
+    const ComplexMap R = mode(theta, layer, m);
+    own.R.resize(2 * layer.in, 2 * layer.out);
+    own.R << R.real(), R.imag(), -R.imag(), R.real();
+    return own.R;
+  }
 
   Own& sized(Workspace& w, Index samples) const {
     auto& own = w.as<Own>();
     if (own.samples == samples) return own;
     own.samples = samples;
     own.passes.resize(layers_.size());
-    own.made.resize(samples * width_, fourier_.modes());
+    own.made.resize(samples * width_, 2 * fourier_.modes());
     own.gradient.resize(parameters_);
     for (Index l = 0; l <= last(); ++l) {
       const Index edge = layer(l).edge;
@@ -343,13 +357,13 @@ class FourierOperator final : public Network {
   void apply(Parameters& theta, const Layer& layer, Field& a, Spectra& S, bool ones, float keep,
              Field& z, Own& own) const {
     if (ones)
-      product(Form::A_BH, a.with_ones(), with_bias(theta, layer), z.all(), keep);
+      product_by_rows(Form::A_BH, a.with_ones(), with_bias(theta, layer), z.all(), keep);
     else
-      product(Form::A_BH, a.all(), weights(theta, layer), z.all(), keep);
+      product_by_rows(Form::A_BH, a.all(), weights(theta, layer), z.all(), keep);
     if (!layer.has_modes) return;
     for (Index m = 0; m < fourier_.modes(); ++m)
-      product(Form::A_B, mode_of(S, m, own.samples), mode(theta, layer, m),
-              mode_of(own.made, m, own.samples));
+      product_by_rows(Form::A_B, mode_of(S, m, own.samples), real_mode(theta, layer, m, own),
+                      mode_of(own.made, m, own.samples));
     fourier_.synthesize(kInverse, own.made, z.grids(layer.edge), own.room);
   }
   // a = Wᵀ g + Kᵀ g + keep a
@@ -358,7 +372,7 @@ class FourierOperator final : public Network {
     product(Form::A_B, g.all(), weights(theta, layer), a.all(), keep);
     if (!layer.has_modes) return;
     for (Index m = 0; m < fourier_.modes(); ++m)
-      product(Form::A_BH, mode_of(gS, m, own.samples), mode(theta, layer, m),
+      product(Form::A_BH, mode_of(gS, m, own.samples), real_mode(theta, layer, m, own),
               mode_of(own.made, m, own.samples));
     fourier_.synthesize(kNone, own.made, a.grids(layer.edge), own.room);
   }
@@ -369,9 +383,15 @@ class FourierOperator final : public Network {
       product(Form::AH_B, g.all(), a.with_ones(), with_bias(own.gradient, layer), keep);
     else
       product(Form::AH_B, g.all(), a.all(), weights(own.gradient, layer), keep);
-    for (Index m = 0; layer.has_modes && m < fourier_.modes(); ++m)
-      product(Form::AH_B, mode_of(S, m, own.samples), mode_of(gS, m, own.samples),
-              mode(own.gradient, layer, m), keep);
+    const Index in = layer.in, out = layer.out;
+    for (Index m = 0; layer.has_modes && m < fourier_.modes(); ++m) {
+      ComplexMap R = mode(own.gradient, layer, m);
+      own.R.resize(2 * in, 2 * out);
+      product(Form::AH_B, mode_of(S, m, own.samples), mode_of(gS, m, own.samples), own.R);
+      if (keep == 0) R.setZero();
+      R.real() += own.R.topLeftCorner(in, out) + own.R.bottomRightCorner(in, out);
+      R.imag() += own.R.topRightCorner(in, out) - own.R.bottomLeftCorner(in, out);
+    }
   }
   // Grids of one layer's edge in those of another's: the near corner, and zeros around it.
   void copy_corners(Field& from, Index from_edge, Field& to, Index to_edge, const Own& own) const {

@@ -4,18 +4,21 @@
 // work: twelve modes by products cost less than its half spectrum alone.
 #pragma once
 
+#include <array>
+
 #include "core/product.h"
 
 namespace isoline::networks {
 
 class TruncatedFourier {
  public:
-  using Spectra = Gemm<Complex>::Array;  // (grids, 2M²): one grid per row, mode k + M q per column
+  // (grids, 4M²): a grid per row; of mode m = k + M q, real parts in column 2m, imaginary in 2m + 1
+  using Spectra = Gemm<float>::Array;
 
   // Transforms share scratch arrays, which the caller owns.
   struct Room {
-    Gemm<float>::Array half;  // (2M, P·grids), transformed along rows; complex numbers by pairs
-    Spectra modes;            // (2M², grids)
+    Gemm<float>::Array half;     // (2M, P·grids), transformed along rows; complex numbers by pairs
+    Gemm<Complex>::Array modes;  // (2M², grids)
   };
 
   TruncatedFourier(Index size, Index modes);
@@ -32,8 +35,9 @@ class TruncatedFourier {
 
  private:
   Index size_, modes_;
-  Gemm<float>::Array plain_, weighted_;  // (2M, P), rows w cos and −w sin by turns
-  Gemm<Complex>::Array along_columns_;   // (P, 2M)
+  // By Weights: (2M, P), rows w cos and −w sin by turns; and the transposes.
+  std::array<Gemm<float>::Array, 2> along_rows_, back_;
+  Gemm<Complex>::Array along_columns_;  // (P, 2M)
 };
 
 }  // namespace isoline::networks

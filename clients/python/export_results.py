@@ -165,6 +165,8 @@ def write_coco(results, report, out):
         number, dimension = unknowns[cell["problem"]]
         by_target, by_evaluation, instances = "", "", ""
         for key, (_, minimum, scale, _) in chosen_runs([cell]).items():
+            if key not in seeds:
+                continue
             points = curve_points(curves[key], minimum) if key in curves else []
             seed = int(seeds[key])
             if not points:
@@ -203,6 +205,8 @@ def main():
     report = json.loads(pathlib.Path(given.runs).read_text(encoding="utf-8"))
     chosen = chosen_runs(report["cells"])
     results = isoline.load(*given.folders, only=set(chosen))
+    for key in sorted(chosen.keys() - set(results.runs[isoline.KEYS].itertuples(index=False, name=None))):
+        say(f"{'-'.join(key)}.json: a column of its curve or of its hits has values that are not numbers")
     if given.format == "csv":
         write_csv(results, chosen, given.out)
     elif given.format == "runs":

@@ -16,15 +16,16 @@ import argparse
 import array
 import ast
 import atexit
-import collections
+import contextlib
 import ctypes
 import http.client
-import http.server
 import ipaddress
 import json
 import math
 import os
+import queue
 import re
+import selectors
 import signal
 import socket
 import subprocess
@@ -240,28 +241,6 @@ class Refusal(Exception):
         self.kind, self.status = kind, status
 
 
-class Turns:
-    """A lock that serves requests in the order in which they came."""
-
-    def __init__(self):
-        self.own, self.waiting, self.is_taken = threading.Lock(), collections.deque(), False
-
-    def __enter__(self):
-        with self.own:
-            gate = threading.Lock()
-            if self.is_taken:
-                gate.acquire()
-                self.waiting.append(gate)
-            self.is_taken = True
-        gate.acquire()
-
-    def __exit__(self, *_):
-        with self.own:
-            self.is_taken = bool(self.waiting)
-            if self.waiting:
-                self.waiting.popleft().release()
-
-
 class Served:
     """The models loss (x ↦ L), residual (x ↦ r = y − y*) and start (no input, x0) of one run."""
 
@@ -272,8 +251,7 @@ class Served:
         self.run, self.offers = run, offers
         self.sizes = {"loss": ([run.n], [1]), "residual": ([run.n], [run.residuals]), "start": ([], [run.n])}
         self.best, self.best_loss = run.x0, math.inf
-        self.lock, self.called = Turns(), time.monotonic()
-        self.is_over = threading.Event()
+        self.called, self.is_over = time.monotonic(), False
 
     def support(self, name):
         return {verb: need is None or name != "start" and need in self.offers
@@ -281,6 +259,7 @@ class Served:
                 for verb, need in self.VERBS.items()}
 
     def answer(self, path, text):
+        """The answer, or for what the run computes a function that returns it."""
         if path == "Info":
             return {"protocolVersion": 1.0, "models": list(self.sizes)}
         try:
@@ -299,9 +278,7 @@ class Served:
         if not isinstance(asked.get("config", {}), dict):
             raise Refusal("InvalidInput", "config must be an object")
         x = self.vectors(asked.get("input"), self.sizes[name][0], "input")
-        with self.lock:
-            self.called = time.monotonic()
-            return {"output": self.computed(path, name, asked, x[0] if x else None)}
+        return lambda: {"output": self.computed(path, name, asked, x[0] if x else None)}
 
     @staticmethod
     def vectors(values, sizes, what):
@@ -340,83 +317,149 @@ class Served:
         return list(map(float, run.jvp(x, vec)))
 
 
-class Handler(http.server.BaseHTTPRequestHandler):
+class Door:
+    """One thread takes requests whole; another computes, in the order in which they came."""
+
     patience = 60  # seconds for a whole request to arrive
-    served = None
-    host = "127.0.0.1"
-    most_bytes = 1 << 20
-    disable_nagle_algorithm = True  # head and body are two packets
+    most_head = 1 << 16  # bytes before the body
 
-    def setup(self):
-        super().setup()
-        self.limit = threading.Timer(self.patience, self.stop_reading)
-        self.limit.daemon = True
-        self.limit.start()
+    def __init__(self, served, host, port):
+        self.served, self.host = served, host
+        self.most_bytes = (1 << 20) + 64 * (2 * served.run.n + served.run.residuals)
+        self.listening = socket.create_server((host, port), backlog=1024)  # clients that the system does not make wait
+        self.listening.setblocking(False)
+        self.events, self.arriving = selectors.DefaultSelector(), {}
+        self.events.register(self.listening, selectors.EVENT_READ)
+        self.calls, self.begun, self.done = queue.SimpleQueue(), 0, 0
+        self.worker = threading.Thread(target=self.compute, daemon=True)
+        self.worker.start()
 
-    def stop_reading(self):
+    def compute(self):
+        while call := self.calls.get():
+            self.served.called = time.monotonic()
+            self.handle(*call)
+            self.served.called = time.monotonic()
+            self.done += 1
+
+    def listen(self, seconds):
+        """Takes what arrives within so many seconds."""
+        for key, _ in self.events.select(seconds):
+            self.read(key.fileobj) if key.fileobj is not self.listening else self.accept()
+        for connection, (data, deadline) in list(self.arriving.items()):
+            if time.monotonic() > deadline:
+                self.take(connection, data, True)
+
+    def accept(self):
+        """Takes all that wait to be connected."""
+        while True:
+            try:
+                connection = self.listening.accept()[0]
+            except BlockingIOError:
+                return
+            except OSError:  # it is gone again, or there are too many
+                time.sleep(0.01)
+                return
+            connection.setblocking(False)
+            self.arriving[connection] = bytearray(), time.monotonic() + self.patience
+            self.events.register(connection, selectors.EVENT_READ)
+            self.read(connection)
+
+    def read(self, connection):
+        data = self.arriving[connection][0]
         try:
-            self.connection.shutdown(socket.SHUT_RD)  # the answer can still be written
+            part = connection.recv(1 << 20)
+        except BlockingIOError:
+            return
         except OSError:
-            pass
+            part = b""
+        data += part
+        self.take(connection, data, not part)
 
-    def finish(self):
-        self.limit.cancel()
-        super().finish()
-
-    def body(self):
-        length = self.headers.get("Content-Length", "0")
-        is_whole = re.fullmatch("[0-9]{1,15}", length) and int(length) <= self.most_bytes
-        if not is_whole or "chunked" in str(self.headers.get("Transfer-Encoding")):
-            raise Refusal("InvalidInput", f"the body must have a Content-Length of at most {self.most_bytes} bytes", 413)
-        body = self.rfile.read(int(length))
-        if len(body) < int(length):
-            raise Refusal("InvalidInput", f"{len(body)} of {length} bytes arrived within {self.patience} s", 408)
-        self.limit.cancel()
-        return body
-
-    def has_own_host(self):
-        """Whether the request names an address. A page of another site would name its own domain."""
-        name = urllib.parse.urlsplit("//" + self.headers.get("Host", "")).hostname or ""
+    def take(self, connection, data, is_over):
+        """Handles the request in the data, if it is whole or no more of it comes."""
+        request = None
         try:
-            ipaddress.ip_address(name)
+            request = self.request_in(data, is_over)
+            make = request and (lambda: self.served.answer(*request))
+        except Refusal as refusal:
+            make = lambda error=refusal: self.refuse(error)
+        if make or is_over:
+            self.events.unregister(connection)
+            del self.arriving[connection]
+            self.handle(connection, make) if make else connection.close()
+
+    @staticmethod
+    def refuse(error):
+        raise error
+
+    def request_in(self, data, is_over):
+        """The path and the body, or None where they have not arrived."""
+        end = re.search(rb"\r?\n\r?\n", data[: self.most_head])
+        if not end:
+            if len(data) > self.most_head:
+                raise Refusal("InvalidInput", f"the head has more than {self.most_head} bytes", 431)
+            return None
+        first, *lines = data[: end.start()].decode("latin-1").split("\n")
+        method, path, *_ = [*first.split(), "", ""]
+        verbs = {"GET": ("Info",), "POST": ("InputSizes", "OutputSizes", "ModelInfo", *Served.VERBS)}
+        if path[:1] != "/" or path[1:] not in verbs.get(method, ()):
+            raise Refusal("InvalidInput", "UM-Bridge has no such path with this HTTP method", 404)
+        heads = {name.strip().lower(): value.strip() for name, _, value in (line.partition(":") for line in lines)}
+        if not self.is_own_host(heads.get("host", "")):
+            raise Refusal("InvalidInput", "Host must be the address of this server", 403)
+        length = heads.get("content-length", "0")
+        is_known = re.fullmatch("[0-9]{1,15}", length) and int(length) <= self.most_bytes
+        if not is_known or "chunked" in heads.get("transfer-encoding", ""):
+            raise Refusal("InvalidInput", f"the body must have a Content-Length of at most {self.most_bytes} bytes", 413)
+        arrived = len(data) - end.end()
+        if arrived >= int(length):
+            return path[1:], bytes(data[end.end() : end.end() + int(length)])
+        if is_over:
+            raise Refusal("InvalidInput", f"{arrived} of {length} bytes arrived within {self.patience} s", 408)
+        return None
+
+    def is_own_host(self, host):
+        """Whether it is an address. A page of another site would name its own domain."""
+        name = host
+        try:
+            name = urllib.parse.urlsplit("//" + host).hostname or ""
+            return bool(ipaddress.ip_address(name))
         except ValueError:
             return name in ("localhost", self.host)
-        return True
 
-    def do_GET(self):
-        self.handle_call("Info" if self.path == "/Info" else None)
-
-    def do_POST(self):
-        verbs = ("InputSizes", "OutputSizes", "ModelInfo", *Served.VERBS)
-        self.handle_call(self.path[1:] if self.path[:1] == "/" and self.path[1:] in verbs else None)
-
-    do_PUT = do_DELETE = do_PATCH = do_OPTIONS = do_TRACE = lambda self: self.handle_call(None)
-
-    def handle_call(self, path):
+    def handle(self, connection, make):
+        """Sends what make() returns, or why it returns nothing."""
         status = 200
         try:
-            if path is None:
-                raise Refusal("InvalidInput", "UM-Bridge has no such path with this HTTP method", 404)
-            if not self.has_own_host():
-                raise Refusal("InvalidInput", "Host must be the address of this server", 403)
-            answer = self.served.answer(path, self.body())
+            answer = make()
         except Refusal as refusal:
             status, answer = refusal.status, {"error": {"type": refusal.kind, "message": str(refusal)}}
         except isoline.Stop:
             status, answer = 400, {"error": {"type": "InvalidInput", "message": "the run is over: its "
                                              "target is reached or its budget is spent"}}
-            self.served.is_over.set()
+            self.served.is_over = True
         except (isoline.Refused, OverflowError, ValueError, TypeError) as error:
             status, answer = 400, {"error": {"type": "InvalidInput", "message": str(error)[:500]}}
-        text = json.dumps(answer).encode()
-        self.send_response(status)
-        self.send_header("Content-Type", "application/json")
-        self.send_header("Content-Length", str(len(text)))
-        self.end_headers()
-        self.wfile.write(text)
+        if callable(answer):
+            self.begun += 1
+            self.calls.put((connection, answer))
+            return
+        body = json.dumps(answer).encode()
+        text = (f"HTTP/1.0 {status} {http.client.responses[status]}\r\nContent-Type: application/json\r\n"
+                f"Content-Length: {len(body)}\r\n\r\n").encode() + body
+        try:
+            sent = connection.send(text)
+        except OSError:  # the client is gone
+            sent = len(text)
+        if sent < len(text):  # others do not wait for a client that reads slowly
+            threading.Thread(target=self.send, args=(connection, text[sent:]), daemon=True).start()
+        else:
+            connection.close()
 
-    def log_message(self, *_):
-        pass
+    def send(self, connection, text):
+        with connection, contextlib.suppress(OSError):
+            connection.settimeout(self.patience)
+            connection.sendall(text)
 
 
 def serve(given):
@@ -425,21 +468,15 @@ def serve(given):
                             note="A method in another program, over UM-Bridge.",
                             source="Seelinger et al. (2023), protocol 1.0")
     served = Served(run, offers)
-    Handler.served, Handler.host = served, given.host
-    Handler.most_bytes = (1 << 20) + 64 * (2 * run.n + run.residuals)
-    http.server.ThreadingHTTPServer.request_queue_size = 1024  # clients that the system does not make wait
-    server = http.server.ThreadingHTTPServer((given.host, given.port), Handler)
-    server.daemon_threads = True
-    threading.Thread(target=server.serve_forever, daemon=True).start()
-    has_begun = False
-    while not served.is_over.wait(0.05):
-        with served.lock:
-            silent = time.monotonic() - served.called
-            has_begun = has_begun or served.best_loss < math.inf
-        if silent > (given.idle if has_begun else given.startup):
+    door = Door(served, given.host, given.port)
+    while not served.is_over:
+        door.listen(0.05)
+        patience = given.idle if served.best_loss < math.inf else given.startup
+        if door.done == door.begun and time.monotonic() - served.called > patience:
             break
-    server.shutdown()
-    if served.is_over.is_set():
+    if served.is_over:
+        door.calls.put(None)
+        door.worker.join(1)  # others wait for their answers, too
         raise isoline.Stop
     run.finish(served.best, f"no call arrived for {given.idle:g} s")
 

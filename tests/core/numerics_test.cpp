@@ -82,7 +82,7 @@ TYPED_TEST(ProductByRows, IsTheProduct) {
   for (const Index rows : {1, 3, 5})
     for (const Index depth : {0, 1, 33, 256, 600})
       for (const Index width : {1, 2, 7, 8, 13}) {
-        const Index whole = whole_registers<TypeParam>(16 * rows);
+        const Index whole = whole_registers<TypeParam>(16 * rows) + rows % 5;
         const Array<TypeParam> A = random_array<TypeParam>(whole, depth, "A");
         const Array<TypeParam> B = random_array<TypeParam>(depth, width, "B");
         const Array<TypeParam> before = random_array<TypeParam>(whole, width, "C");
@@ -107,12 +107,11 @@ TYPED_TEST(ProductByRows, EqualRowsGetEqualBits) {
   const Array<TypeParam> B = random_array<TypeParam>(300, 37, "B");
   Array<TypeParam> reference;
   for (const Index rows : {1, 2, 3, 16, 17, 100}) {
-    const Index whole = whole_registers<TypeParam>(rows);
-    const Array<TypeParam> A = row.replicate(whole, 1);
-    Array<TypeParam> C(whole, 37);
+    const Array<TypeParam> A = row.replicate(rows, 1);
+    Array<TypeParam> C(rows, 37);
     product_by_rows(Form::A_B, A, B, C);
     if (reference.size() == 0) reference = C.row(0);
-    for (Index i = 0; i < whole; ++i) EXPECT_EQ(C.row(i), reference) << rows << ", " << i;
+    for (Index i = 0; i < rows; ++i) EXPECT_EQ(C.row(i), reference) << rows << ", " << i;
   }
 }
 
@@ -133,10 +132,6 @@ TYPED_TEST(ProductByRows, WhatDoesNotFitIsAUsageError) {
   Array<TypeParam> C(16, 4);
   EXPECT_THROW(product_by_rows(Form::A_B, A, A, C), UsageError);
   EXPECT_THROW(product_by_rows(Form::AH_B, A, A, C), UsageError);
-  const Array<TypeParam> few = random_array<TypeParam>(1, 4, "A"),
-                         square = random_array<TypeParam>(4, 4, "B");
-  Array<TypeParam> out(1, 4);
-  EXPECT_THROW(product_by_rows(Form::A_B, few, square, out), UsageError);  // no whole register
 }
 
 // The previous contents are overwritten: a factorization refuses a matrix with NaN.

@@ -78,6 +78,19 @@ TEST(Record, SurvivesTheRoundTrip) {
   EXPECT_EQ(to_json(record_from_text(json_text(written), "it")), written);
 }
 
+// jq and Node write large numbers without their exponent.
+TEST(Record, ReadsAnIntegerThatIsTooLargeForAnIntegerAsANumber) {
+  Json json = to_json(sample());
+  for (const auto& [value, digits] : {std::pair{1e+25, "10000000000000000000000000"},
+                                      std::pair{-1e+22, "-10000000000000000000000"}}) {
+    json["summary"]["loss"] = value;
+    std::string text = json_text(json);
+    const std::string written = json_text(value);
+    text.replace(text.find(written), written.size(), digits);
+    EXPECT_EQ(record_from_text(text, "it").summary.loss, value);
+  }
+}
+
 // Earlier versions wrote neither names and units nor the list of failed evaluations.
 TEST(Record, OfAnEarlierVersionHasUnknownsWithoutNames) {
   Json json = to_json(sample());

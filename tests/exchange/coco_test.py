@@ -89,6 +89,20 @@ class Coco(unittest.TestCase):
             for tau, work in zip(("1e-1", "1e-3", "1e-6"), met):
                 self.assertEqual(judged.get(tau) is True, work < math.inf, row)
 
+    def test_pandas_reads_the_same_bits_with_its_option(self):
+        """As docs/exchanging-results.md says."""
+        try:
+            import pandas
+        except ImportError:
+            self.skipTest("pandas is not installed")
+        read = pandas.read_csv(self.curves, float_precision="round_trip")["loss"].dropna().tolist()
+        with open(self.curves, newline="", encoding="utf-8") as file:
+            written = [row["loss"] for row in csv.DictReader(file)]
+        self.assertEqual(read, [float(loss) for loss in written if loss not in ("", "nan")])
+        kept = {float(loss) for record in self.records for loss in record["curve"]["loss"]}
+        self.assertGreater(len(read), 1000)
+        self.assertLessEqual(set(read), kept)
+
     def indices(self):
         found = sorted(self.data.glob("*/*.info"))
         self.assertGreaterEqual(len(found), 10)

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "benchmarks/plan/catalog.h"
@@ -265,6 +266,12 @@ TEST(PluginLaws, WhatIsNoLibraryIsNamed) {
   EXPECT_NE(told(kPlugins).find("is a folder"), std::string::npos) << told(kPlugins);
   EXPECT_NE(told(kPlugins + "/empty.so").find("does not export isoline_plugin()"),
             std::string::npos);
+}
+
+TEST(PluginLaws, ALibraryThatFlushesSubnormalNumbersChangesNoneOfOurs) {
+  const volatile double least = std::numeric_limits<double>::min();
+  load_plugin(kPlugins + "/fast.so");
+  EXPECT_GT(least / 2, 0);
 }
 
 // --plugin and `isoline new` as a user meets them.
