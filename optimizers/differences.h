@@ -97,6 +97,16 @@ class DifferenceJacobian {
     given_ = given_steps(text);
     own_scales_ = f.problem().own_units().scales;
   }
+  void take_steps(const Vector& absolute) {  // in the units of θ
+    given_ = {.steps = {absolute.begin(), absolute.end()}, .are_absolute = true};
+    own_scales_.resize(0);
+  }
+  // As they were near θ.
+  void know(const Vector& theta, const Vector& y, const Matrix& J) {
+    theta_ = theta;
+    y_ = y;
+    J_ = J;
+  }
   // As another one has measured it near θ.
   void know_noise(const Vector& theta, Real noise) {
     sizes_ = sizes_of_unknowns(theta);

@@ -162,6 +162,7 @@ NamedFile named_file(const std::string& given) {
 // The path with the digest of its content, if it has none, or one that is the same.
 std::string with_digest(const std::string& problem, const std::string& given) {
   const NamedFile file = named_file(given);
+  read_numbers(file.path);  // what it cannot read is refused before any run
   const std::string now = digest(read_text(file.path));
   require(file.digest.empty() || file.digest == now, [&] {
     return fmt::format("{}: the content of {} has changed: its digest is {}, and was {}", problem,

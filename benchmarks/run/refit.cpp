@@ -1,7 +1,6 @@
 // Fits of all unknowns but one, by few calls.
 #include "benchmarks/run/refit.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -10,195 +9,151 @@
 
 namespace isoline::benchmarks {
 
+using optimizers::Linearization;
+
 namespace {
 
-constexpr Real kOfDeviation = 0.3, kNearEnd = 0.005;  // of t, as profiles have it
+// Whether J predicted a change of y to a third.
+bool predicts(const Matrix& J, const Vector& moved, const Vector& change) {
+  return (change - J * moved).squaredNorm() <= change.squaredNorm() / 9;
+}
 
 }  // namespace
 
-Refits::Refits(const problems::Problem& problem, Vector fit, Real variance, Real rise_at_end)
-    : problem_(problem), variance_(variance), rise_at_end_(rise_at_end) {
-  fit = inside(fit);
-  const std::optional<Vector> r = residual(fit);
-  require(r.has_value(), "P has no value at the fit, where it had one before");
-  least_ = r->squaredNorm();
-  constexpr Real kFirst = 1e-3, kLeastSize = 1e-3;
+Refits::Refits(problems::Problem& problem, Vector fit, Real variance, Real rise_at_end)
+    : problem_(problem),
+      start_(problem.start(), problem.standard_start()),
+      f_(problem, {}, {Oracle::forward, Oracle::jacobian}, *trace_),
+      variance_(variance),
+      rise_at_end_(rise_at_end),
+      is_exact_(problem.offers().contains(Oracle::jacobian) &&
+                !problem.products().are_differences) {
+  constexpr Real kInfinity = std::numeric_limits<Real>::infinity();
+  const Vector none = Vector::Constant(fit.size(), kInfinity);
+  bounds_ = problem.bounds() ? *problem.bounds() : problems::Bounds{-none, none};
+  hold(-1, fit);
+  fit = bounds_.nearest(fit);
+  Linearization at;
+  require(evaluate(fit, at), "P has no value at the fit, where it had one before");
+  least_ = residual(at).squaredNorm();
+  constexpr Real kFirst = 1e-3, kLeastSize = 1e-3, kOfDeviation = 0.3;
   steps_ = kFirst * fit.cwiseAbs().cwiseMax(kLeastSize);
-  J_ = Matrix::Zero(r->size(), fit.size());
-  for (int i = 0; i < 2; ++i) {
-    compute(J_, fit, *r, -1);
+  differences_.know_noise(fit, std::numeric_limits<Real>::epsilon());
+  for (const char* kind : {"differences", "central"}) {
+    differences_.take_steps(steps_);
+    if (!is_exact_) differences_.renew(f_, fit, kind, at);
+    const Vector slopes = at.jacobian().colwise().norm();
     for (Index j = 0; j < fit.size(); ++j)
-      if (const Real slope = J_.col(j).norm(); slope > 0)
-        steps_[j] = kOfDeviation * std::sqrt(variance_) / slope;
+      if (slopes[j] > 0) steps_[j] = kOfDeviation * std::sqrt(variance_) / slopes[j];
   }
-  known_.emplace_back(fit, *r);
-  if (const auto better = fitted(-1, fit)) fit = *better;  // a run may have ended at its target
+  known_.push_back(known_at(fit, at));
+  (*this)(-1, fit);  // a run may have ended at its target
+  if (!is_minimum_) return;
   least_ = sum_;
-  known_.assign({{fit, *residual(fit)}});
+  known_.erase(known_.begin());
 }
 
-Vector Refits::inside(const Vector& theta) const {
-  return problem_.bounds() ? problem_.bounds()->nearest(theta) : theta;
+void Refits::hold(Index fixed, const Vector& theta) {
+  problems::ProblemParts parts = std::move(problem_).parts();
+  parts.bounds = bounds_;
+  parts.start = start_;
+  if (fixed >= 0) parts.bounds->lower[fixed] = parts.bounds->upper[fixed] = theta[fixed];
+  problem_ = problems::Problem(std::move(parts));
 }
 
-std::optional<Vector> Refits::residual(const Vector& theta) {
-  try {
-    problem_.forward(theta, at_);
-  } catch (const std::exception&) {
-    return std::nullopt;
-  }
-  Vector r = (at_.y - problem_.target()).reshaped();
-  return std::isfinite(r.squaredNorm()) ? std::optional(std::move(r)) : std::nullopt;
+bool Refits::evaluate(const Vector& theta, Linearization& at) {
+  f_.linearize(theta, at);
+  return at.y().allFinite();
 }
 
-// By central differences inside the bounds, of one side where the other fails.
-Vector Refits::column(const Vector& theta, Index j, Real step, const Vector& r) {
-  for (const Real size : {step, step / 2, 2 * step}) {
-    std::vector<std::pair<Real, Vector>> ends;
-    for (const int sign : {1, -1}) {
-      Vector moved = theta;
-      moved[j] += sign * size;
-      moved = inside(moved);
-      if (moved[j] == theta[j]) continue;
-      if (auto there = residual(moved)) ends.emplace_back(moved[j], *std::move(there));
-    }
-    if (ends.size() == 1) ends.emplace_back(theta[j], r);
-    if (ends.size() == 2)
-      return (ends[0].second - ends[1].second) / (ends[0].first - ends[1].first);
-  }
-  return Vector::Zero(r.size());
+Vector Refits::residual(const Linearization& at) const {
+  return (at.y() - problem_.target()).reshaped();
 }
 
-void Refits::compute(Matrix& J, const Vector& theta, const Vector& r, Index fixed) {
-  const problems::Products has = problem_.products();
-  if ((has.has_pullback || has.has_pushforward) && !has.are_differences) {
-    if (residual(theta)) problem_.jacobian(J, at_);
-    return;
-  }
-  for (Index j = 0; j < theta.size(); ++j)
-    if (j != fixed) J.col(j) = column(theta, j, steps_[j], r);
+Refits::Known Refits::known_at(const Vector& theta, Linearization& at) {
+  return {theta, at.y().reshaped(), at.jacobian()};
 }
 
-bool Refits::update(Matrix& J, const Vector& moved, const Vector& change) const {
-  const Vector miss = change - J * moved, scaled = moved.cwiseQuotient(steps_);
-  if (scaled.squaredNorm() > 0)
-    J += miss * scaled.cwiseQuotient(steps_).transpose() / scaled.squaredNorm();
-  return miss.squaredNorm() <= change.squaredNorm() / 9;
-}
-
-bool Refits::is_at(const Vector& theta, Index j, bool upper) const {
-  const problems::Bounds* const box = problem_.bounds();
-  return box && (upper ? theta[j] >= box->upper[j] : theta[j] <= box->lower[j]);
-}
-
-std::pair<Vector, Real> Refits::step(const Vector& theta, const Vector& r, Index fixed,
-                                     const Matrix& J, Real damping) const {
-  const Vector gradient = J.transpose() * r, size = J.colwise().norm();
-  std::vector<Index> free;
-  for (Index j = 0; j < theta.size(); ++j)
-    if (j != fixed && size[j] > 0 && !is_at(theta, j, gradient[j] < 0)) free.push_back(j);
-  Vector moved = Vector::Zero(theta.size());
-  if (free.empty()) return {moved, 0};
-  const Vector of_free = size(free), b = -Vector(gradient(free)).cwiseQuotient(of_free);
-  const Matrix A = J(Eigen::all, free) * of_free.cwiseInverse().asDiagonal();
-  const auto solved = [&](Real more) -> Vector {
-    Matrix normal = A.transpose() * A;
-    normal.diagonal().array() += more;
-    return normal.ldlt().solve(b);
-  };
-  moved(free) = solved(damping).cwiseQuotient(of_free);
-  constexpr Real kRounding = 1e-12;
-  return {moved, solved(kRounding).dot(b)};
-}
-
-const std::pair<Vector, Vector>& Refits::nearest_to(const Vector& theta) const {
-  return *std::ranges::min_element(known_, {}, [&](const auto& known) {
-    return (known.first - theta).cwiseQuotient(steps_).squaredNorm();
+const Refits::Known& Refits::nearest_to(const Vector& theta) const {
+  return *std::ranges::min_element(known_, {}, [&](const Known& known) {
+    return (known.theta - theta).cwiseQuotient(steps_).squaredNorm();
   });
 }
 
-std::optional<Vector> Refits::operator()(Index fixed, const Vector& start, int halvings) {
-  std::optional<Vector> found = fitted(fixed, start);
-  if (!found || is_minimum_ || halvings == 0) return found;
-  const Real value = start[fixed];
-  const auto& near = *std::ranges::min_element(
-      known_, {}, [&](const auto& known) { return std::abs(known.first[fixed] - value); });
-  const Vector from = near.first;
-  Vector between = from;
-  between[fixed] = (from[fixed] + value) / 2;
-  const std::optional<Vector> halfway = (*this)(fixed, between, halvings - 1);
-  if (!halfway || !is_minimum_) return found;
-  Vector again = inside(2 * *halfway - from);
-  again[fixed] = value;
-  return (*this)(fixed, again, halvings - 1);
-}
-
-std::optional<Vector> Refits::fitted(Index fixed, Vector theta) {
-  const auto keep = [&, value = fixed < 0 ? 0 : theta[fixed]](Vector& at) {
-    if (fixed >= 0) at[fixed] = value;
-  };
-  std::optional<Vector> first;
-  for (const int shift : {0, 1, -1, 2}) {  // a call may fail here and not nearby
-    Vector near = inside(theta + shift * steps_);
-    keep(near);
-    if (!(first = residual(near))) continue;
-    theta = near;
-    break;
+std::optional<Vector> Refits::operator()(Index fixed, Vector theta) {
+  constexpr int kSteps = 50;
+  constexpr Real kNone = 1e-24, kEnough = 5e-3;  // of s²: changes u = √(rise) by 0.1 %
+  constexpr Real kNearEnd = 0.005;               // of t, as profiles have it
+  hold(fixed, theta);
+  const problems::Bounds bounds = *problem_.bounds();
+  Linearization at, trial;
+  optimizers::DampedLeastSquares squares;
+  Vector first, step, change;
+  const Known& nearest = nearest_to(theta);
+  const Vector apart = theta - nearest.theta;
+  if (fixed >= 0 && apart.lpNorm<1>() == std::abs(apart[fixed])) {  // others follow by J
+    at.set_jacobian(nearest.J);
+    const Vector r = nearest.y - problem_.target().reshaped() + nearest.J * apart;
+    squares.set(f_, at, theta, -r, "jacobian");
+    if (squares.solve(kNone, "orthogonal", step, change)) theta = bounds.nearest(theta + step);
   }
-  if (!first) return std::nullopt;
-  Vector r = *std::move(first);
-  const Real enough = 5e-3 * variance_;  // of S: changes u = √(rise) by 0.1 %
-  const auto is_at_end = [&] {           // to be sure of
-    const Real u = std::sqrt(std::max<Real>(r.squaredNorm() - least_, 0) / variance_),
-               t = std::sqrt(rise_at_end_);
-    return std::abs(u - t) <= kNearEnd * t;
-  };
-  Matrix J = J_;
+  for (const int shift : {0, 1, -1, 2}) {  // a call may fail here and not nearby
+    first = bounds.nearest(theta + shift * steps_);
+    if (evaluate(first, at)) break;
+    if (shift == 2) return std::nullopt;
+  }
+  theta = first;
+  const Vector D = steps_.cwiseInverse();
+  bool is_fresh = is_exact_, is_trusted = true;
+  if (!is_exact_) {
+    is_trusted = predicts(nearest.J, theta - nearest.theta, at.y().reshaped() - nearest.y);
+    differences_.know(nearest.theta, nearest.y, nearest.J);
+    differences_.update(theta, D, at);
+  }
+  Vector r = residual(at);
   Real damping = 1e-6;
   int rejected = 0;
-  const auto& [nearest, r_there] = nearest_to(theta);
-  Matrix across = J;
-  bool is_fresh = false, is_trusted = update(across, theta - nearest, r - r_there);
-  constexpr int kSteps = 50;
   is_minimum_ = false;
   for (int i = 0; i < kSteps; ++i) {
-    const auto [move, promised] = step(theta, r, fixed, J, damping);
-    const bool is_near = promised <= 10 * enough;
-    if ((promised <= enough && (is_fresh || (is_trusted && !is_at_end()))) ||
+    squares.set(f_, at, theta, -r, "jacobian");
+    if (!squares.solve(kNone, "orthogonal", step, change)) break;
+    const Real promised = change.squaredNorm() / variance_;
+    const Real u = std::sqrt(std::max<Real>(r.squaredNorm() - least_, 0) / variance_),
+               t = std::sqrt(rise_at_end_);
+    const bool is_at_end = std::abs(u - t) <= kNearEnd * t,  // to be sure of
+        is_near = promised <= 10 * kEnough;
+    if ((promised <= kEnough && (is_fresh || (is_trusted && !is_at_end))) ||
         rejected > (is_near ? 3 : 12)) {
       is_minimum_ = is_near;
       break;
     }
-    if (!is_fresh && (promised <= enough || (!is_trusted && rejected != 1))) {
-      compute(J, theta, r, fixed);
+    if (!is_fresh && (promised <= kEnough || (!is_trusted && rejected != 1))) {
+      differences_.renew(f_, theta, "central", at);
       is_fresh = true;
       damping = std::min<Real>(damping, 1e-3);
       continue;
     }
-    Vector trial = inside(theta + move);
-    keep(trial);
-    std::optional<Vector> there = residual(trial);
-    const bool is_better = there && there->squaredNorm() < r.squaredNorm();
-    if (there) {
-      Matrix updated = J;
-      is_trusted = update(updated, trial - theta, *there - r);
-      if (is_better || !is_fresh) J = updated;
-    } else {
-      is_trusted = false;
-    }
+    squares.solve(damping, "orthogonal", step, change);
+    const Vector to = bounds.nearest(theta + step);
+    const bool has_value = evaluate(to, trial);
+    const bool is_better = has_value && residual(trial).squaredNorm() < r.squaredNorm();
+    is_trusted = has_value && predicts(at.jacobian(), to - theta, residual(trial) - r);
     if (is_better) {
-      theta = trial;
-      r = *std::move(there);
+      theta = to;
+      std::swap(at, trial);
+      r = residual(at);
+      if (!is_exact_) differences_.update(theta, D, at);
       rejected = 0;
       damping /= 5;
-      is_fresh = false;
+      is_fresh = is_exact_;
     } else {
+      if (has_value && !is_fresh) differences_.learn(to, trial.y().reshaped(), D, at);
       ++rejected;
       damping = std::max<Real>(10 * damping, 1e-3);
     }
   }
   sum_ = r.squaredNorm();
-  if (is_minimum_ && fixed >= 0) known_.emplace_back(theta, r);
+  if (is_minimum_) known_.push_back(known_at(theta, at));
   return theta;
 }
 

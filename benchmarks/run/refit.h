@@ -1,50 +1,54 @@
 // Fits of all unknowns but one, from a fit nearby, as profiles of the likelihood need them.
 #pragma once
 
+#include <memory>
 #include <optional>
-#include <utility>
 #include <vector>
 
-#include "problems/problem.h"
+#include "optimizers/damped_least_squares.h"
+#include "optimizers/differences.h"
+#include "optimizers/meter.h"
 
 namespace isoline::benchmarks {
 
-// Levenberg-Marquardt steps, whose J begins with that of the fit and follows by Broyden's formula
-// (1965). Where it does not predict r, it is computed again, by differences where the problem has
-// no derivatives of its own.
+// Levenberg-Marquardt steps, whose J begins with that of the nearest fit and follows by Broyden's
+// formula (1965). Where it does not predict y, it is computed again, by differences where the
+// problem has no derivatives of its own. Bounds that are equal hold the unknown.
 class Refits {
  public:
   // θ of the fit, s², and the rise (S − S_min)/s² of the sum of squares S at an end of an interval.
-  Refits(const problems::Problem& problem, Vector fit, Real variance, Real rise_at_end);
+  // The bounds of `problem` change with each fit.
+  Refits(problems::Problem& problem, Vector fit, Real variance, Real rise_at_end);
 
-  // θ (n) of the least S with that component as it is in `start`; nothing where P has no value. By
-  // way of values halfway to a known fit where the steps do not end.
-  std::optional<Vector> operator()(Index fixed, const Vector& start, int halvings = 4);
-  const Vector& fit() const { return known_[0].first; }  // all unknowns fitted
+  // θ (n) of the least S with that component as it is in `start`, −1: with none; nothing where P
+  // has no value.
+  std::optional<Vector> operator()(Index fixed, Vector theta);
+  const Vector& fit() const { return known_[0].theta; }  // all unknowns fitted
   Real least() const { return least_; }                  // S there
-  Real sum_of_squares() const { return sum_; }           // at the last θ
-  bool has_converged() const { return is_minimum_; }     // the last time
+  Real sum_of_squares() const { return sum_; }           // of the last fit
+  bool has_converged() const { return is_minimum_; }
 
  private:
-  std::optional<Vector> fitted(Index fixed, Vector theta);
-  const std::pair<Vector, Vector>& nearest_to(const Vector& theta) const;
-  std::optional<Vector> residual(const Vector& theta);
-  Vector column(const Vector& theta, Index j, Real step, const Vector& r);
-  void compute(Matrix& J, const Vector& theta, const Vector& r, Index fixed);
-  // The step over the unknowns that no bound holds, and the decrease of S that it has undamped.
-  std::pair<Vector, Real> step(const Vector& theta, const Vector& r, Index fixed, const Matrix& J,
-                               Real damping) const;
-  // J after a step; whether it predicted r to a third.
-  bool update(Matrix& J, const Vector& moved, const Vector& change) const;
-  Vector inside(const Vector& theta) const;
-  bool is_at(const Vector& theta, Index j, bool upper) const;
+  struct Known {
+    Vector theta, y;
+    Matrix J;
+  };
 
-  const problems::Problem& problem_;
-  problems::Point at_;
+  const Known& nearest_to(const Vector& theta) const;
+  void hold(Index fixed, const Vector& theta);  // nothing: −1
+  bool evaluate(const Vector& theta, optimizers::Linearization& at);
+  Vector residual(const optimizers::Linearization& at) const;
+  Known known_at(const Vector& theta, optimizers::Linearization& at);
+
+  problems::Problem& problem_;
+  problems::Bounds bounds_;  // its own; infinite where it has none
+  problems::Start start_;
+  std::unique_ptr<Trace> trace_ = std::make_unique<Trace>();
+  optimizers::Meter f_;
+  optimizers::DifferenceJacobian differences_;
   Real variance_, least_ = 0, rise_at_end_, sum_ = 0;
-  bool is_minimum_ = true;
-  Matrix J_;                                      // at the fit, (m, n)
-  std::vector<std::pair<Vector, Vector>> known_;  // θ and r of the fits so far
+  bool is_exact_, is_minimum_ = true;
+  std::vector<Known> known_;
   Vector steps_;  // of differences, (n): 0.3 standard deviations if all others are known
 };
 

@@ -46,6 +46,7 @@ struct SolutionArguments {
   std::string input, training_data;  // of a trained network, whose file then is the only folder
   std::int64_t memory_bytes = 0;     // 0: as a cell's
   double seconds = 600;
+  std::vector<std::string> unknowns;
   bool profile = false, trust = false;
 };
 
@@ -65,7 +66,10 @@ void declare(VerbArguments& verb, SolutionArguments& given) {
       "--profile", given.profile,
       "Add profile-likelihood intervals: at values of each unknown, all others are fitted "
       "again from there. Calls of 0.1 s or more are kept, so that repeating the command goes on");
+  verb.texts("--unknown", given.unknowns, "Profile this unknown (default: all); repeatable")
+      .one_each();
   verb.flag("--trust", given.trust, kTrust);
+  verb.plugins();
   verb.text("--out,--output", given.out,
             "Output file, which npy and networks require (default: standard output)");
   verb.text(
@@ -139,9 +143,12 @@ std::vector<Solution> solutions_of(const results::Study& study, const SolutionAr
   for (const Record& record : study.runs)
     if (record.answer && (given.problem.empty() || is_named(record.request.problem, given.problem)))
       all.push_back({.record = &record, .answer = answer_in(given.folders, record)});
-  const auto loss_or_worst = [](const Solution& solution) {
-    const Real loss = solution.loss();
-    return std::isnan(loss) ? std::numeric_limits<Real>::infinity() : loss;
+  const auto is_better = [](const Solution& a, const Solution& b) {
+    constexpr Real kNear = 1 + 1e-5;  // of losses that differ by noise, that of a confirmed point
+    const bool a_is_near = a.loss() <= kNear * b.loss(), b_is_near = b.loss() <= kNear * a.loss();
+    const bool a_is_fit = !a.deviations().empty(), b_is_fit = !b.deviations().empty();
+    if (a_is_near && b_is_near && a_is_fit != b_is_fit) return a_is_fit;
+    return a.loss() < b.loss() || std::isnan(b.loss());
   };
   for (const Solution& each : all) {
     const Request& request = each.record->request;
@@ -151,7 +158,7 @@ std::vector<Solution> solutions_of(const results::Study& study, const SolutionAr
     });
     if (same == chosen.end())
       chosen.push_back(each);
-    else if (loss_or_worst(each) < loss_or_worst(*same))
+    else if (is_better(each, *same))
       *same = each;
   }
   for (Solution& solution : chosen) {
@@ -246,8 +253,12 @@ Json to_json(const Solution& solution) {
   add("returned", solution.answer.point(kReturned));
   add("best", solution.answer.point(kBest));
   add("standard_deviation", solution.deviations());
+  if (const auto test = results::noise_test(record)) json["p"] = json_number(test->p);
+  if (const std::string doubt = reports::doubt_text(record); !doubt.empty()) json["doubt"] = doubt;
   if (!solution.deviations().empty()) {
-    json["degrees_of_freedom"] = record.uncertainty->degrees_of_freedom;
+    const std::int64_t freedom = record.uncertainty->degrees_of_freedom;
+    json["degrees_of_freedom"] = freedom;
+    json["t"] = results::student_quantile(0.975, static_cast<std::size_t>(freedom));
     for (const results::XInterval& each : results::intervals_of(record))
       json["interval"].push_back(json_numbers(std::vector{each.low, each.high}));
     for (const auto& row : record.uncertainty->correlation)
@@ -374,40 +385,40 @@ void add_profiles(Solution& solution, const SolutionArguments& given, Session& s
   const Record& record = *solution.record;
   require_trust(given.trust, record);
   const Request request = request_again(session.catalog(), record, record.request.hard_seconds);
-  const Problem problem = make_problem(session.catalog(), request.problem, request.seed);
+  Problem problem = make_problem(session.catalog(), request.problem, request.seed);
   results::ProfiledFit fit = profiled_fit(solution, problem);
   const fs::path from = folder_of(given.folders, record);
   if (problem.is_elsewhere()) evaluations().begin({.folder = from});  // answers and keeps its calls
   const Units units(problem, fit);
   std::vector<std::size_t> unknowns;
   for (std::size_t i = 0; i < fit.names.size(); ++i)
-    if (units.component(i)) unknowns.push_back(i);
+    if (units.component(i) &&
+        (given.unknowns.empty() ||
+         std::ranges::find(given.unknowns, fit.names[i]) != given.unknowns.end()))
+      unknowns.push_back(i);
+  require(!unknowns.empty(), "--unknown names no free unknown of the fit");
   const auto n = static_cast<std::size_t>(problem.unknowns());
-  const std::size_t calls = 1 + 4 * n + 8 * unknowns.size() * (n > 1 ? 5 : 1);
-  say(stderr, fmt::format("profile: {} unknowns, about {} forward solves; more if P is strongly "
-                          "nonlinear\n",
-                          unknowns.size(), calls));
+  const std::size_t ends = 2 * unknowns.size(), first = 2 + 3 * n;  // measured on calibrations
+  say(stderr, fmt::format("profile: {}, {} to {} forward solves; up to ten times as many "
+                          "where the data hardly determine an unknown\n",
+                          reports::counted(unknowns.size(), "unknown"),
+                          first + ends * (n > 1 ? n + 2 : 3), first + ends * (9 * n - 3)));
   const Real t = results::student_quantile(0.975, fit.freedom);
   Refits refits(problem, units.to_theta(fit.best.x), fit.variance, t * t);
   const Vector best = problem.in_own_units(refits.fit());
   fit.best = {refits.least(), {best.begin(), best.end()}};
   fit.variance = refits.least() / static_cast<Real>(fit.freedom);
   for (const std::size_t i : unknowns) {
-    bool are_minima = true;
     solution.profiles.push_back(results::profile_of(
         fit, i,
         [&](std::size_t unknown, const std::vector<Real>& start) -> std::optional<results::Refit> {
           const auto theta = refits(*units.component(unknown), units.to_theta(start));
           if (!theta) return std::nullopt;
-          are_minima = are_minima && refits.has_converged();
           const Vector x = problem.in_own_units(*theta);
-          return results::Refit{refits.sum_of_squares(), {x.begin(), x.end()}};
+          return results::Refit{refits.has_converged() ? refits.sum_of_squares() : std::nan(""),
+                                {x.begin(), x.end()}};
         }));
-    results::LikelihoodProfile& done = solution.profiles.back();
-    if (!are_minima)
-      done.messages.push_back(fmt::format(
-          "fits of the others did not converge at some values of {}: its interval may be too narrow",
-          done.name));
+    const results::LikelihoodProfile& done = solution.profiles.back();
     say(stderr, fmt::format("profile: {}: {:.5g} … {:.5g}\n", done.name, done.low, done.high));
   }
   keep_profiles(from, record.cell, solution.profiles);

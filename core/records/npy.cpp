@@ -233,9 +233,10 @@ void write_csv(const std::filesystem::path& path, const NumberArray& array) {
   write_text(path, text);
 }
 
-void require_known(const std::filesystem::path& path) {
-  require(path.extension() == ".npy" || path.extension() == ".csv", [&] {
-    return fmt::format("{}: the name of a data file must end with .npy or .csv", path.string());
+void require_ending(const std::filesystem::path& path, const std::vector<std::string>& known) {
+  require(std::ranges::find(known, path.extension().string()) != known.end(), [&] {
+    return fmt::format("{}: the name of a data file must end with one of {}", path.string(),
+                       fmt::join(known, ", "));
   });
 }
 
@@ -288,12 +289,12 @@ void write_npy(const std::filesystem::path& path, const NumberArray& array) {
 // Numbers as text, and the choice of the format by the file's ending.
 
 NumberArray read_numbers(const std::filesystem::path& path) {
-  require_known(path);
+  require_ending(path, {".npy", ".csv", ".txt", ".dat"});
   return path.extension() == ".npy" ? read_npy(path) : read_csv(path);
 }
 
 void write_numbers(const std::filesystem::path& path, const NumberArray& array) {
-  require_known(path);
+  require_ending(path, {".npy", ".csv"});
   path.extension() == ".npy" ? write_npy(path, array) : write_csv(path, array);
 }
 

@@ -36,7 +36,7 @@ std::string npy_bytes(const std::vector<Index>& shape, const std::vector<float>&
 std::string npy_bytes(const NumberArray& array);
 void write_npy(const std::filesystem::path& path, const NumberArray& array);
 
-// Arrays of numbers in a user's file: `.npy`, or `.csv` with one row per line.
+// Arrays of numbers in a user's file: `.npy`; or `.csv`, `.txt` or `.dat` with one row per line.
 
 // UsageError, with file and line, if it cannot be read or holds a number that is not finite.
 // Numbers and their separators are those of core/numbers.h. If the first line of a CSV file holds

@@ -40,10 +40,11 @@ class Side {
 
   Real end(const RefitAt& refit) {
     Real distance = reach_ < room_ ? reach_ : room_ / 2;
-    for (std::size_t i = 0; i < kProfilePoints && room_ > 0; ++i) {
+    for (std::size_t i = 0; i < 2 * kProfilePoints && tried_.size() <= kProfilePoints && room_ > 0;
+         ++i) {
       if (is_at_end(add(distance, refit)) || is_beaten_) break;
-      const std::optional<Real> next = next_distance();
-      if (!next) break;
+      const std::optional<Real> next = is_hard_ ? nearer_than(distance) : next_distance();
+      if (!next || std::ranges::find(tried_, *next, &Tried::distance) != tried_.end()) break;
       distance = *next;
     }
     return concluded();
@@ -75,6 +76,8 @@ class Side {
     std::vector<Real> start = along(nearest, distance);
     const Real value = start[unknown_] = value_at(distance);
     const std::optional<Refit> found = refit(unknown_, start);
+    is_hard_ = found && std::isnan(found->sum_of_squares);
+    if (is_hard_) return nullptr;
     if (!found || !std::isfinite(found->sum_of_squares)) {
       failed_ = std::min(failed_, distance);
       out_.messages.push_back(fmt::format("P has no value at {} = {:.6g}", out_.name, value));
@@ -99,49 +102,86 @@ class Side {
            (std::abs(last->u - t_) <= kExact * t_ || (last->distance == room_ && last->u < t_));
   }
 
-  auto first_above() const {
-    return std::ranges::find_if(tried_, [&](const Tried& each) { return each.u >= t_; });
-  }
-  // Where a line through the points around the end meets t.
-  Real crossing() const {
-    const auto above = first_above();
-    const Tried &low = *(above - 1), &high = *above;
-    return low.distance + (t_ - low.u) / (high.u - low.u) * (high.distance - low.distance);
-  }
-  std::optional<Real> next_distance() {
-    const Tried& last = tried_.back();
-    if (const auto above = first_above(); above != tried_.end()) {
-      const Real low = (above - 1)->distance, width = above->distance - low;
-      const bool has_halved = width <= width_ / 2;  // a line alone stays on one side of a bend
-      width_ = width;
-      return has_halved ? std::clamp(crossing(), low + 0.02 * width, low + 0.98 * width)
-                        : low + width / 2;
+  // Where u = t: by u's inverse parabola or line through the nearest points; between points far
+  // from t with a margin, a share of what is between them.
+  Real crossing(Real margin) const {
+    std::vector<Tried> near = tried_;
+    std::ranges::sort(near, {}, [&](const Tried& each) { return std::abs(each.u - t_); });
+    Real low = 0, high = kNowhere;
+    for (const Tried& each : tried_)
+      each.u <= t_ ? low = each.distance : high = std::min(high, each.distance);
+    if (high < low) high = kNowhere;  // it falls again
+    constexpr Real kFar = 0.2;
+    const bool is_far = high < kNowhere && std::abs(near[0].u - t_) > kFar * t_;
+    margin *= is_far ? high - low : 0;
+    for (const std::size_t count : {3U, 2U}) {
+      if (near.size() < count) continue;
+      Real distance = 0;  // Lagrange's formula
+      for (std::size_t i = 0; i < count; ++i) {
+        Real share = near[i].distance;
+        for (std::size_t j = 0; j < count; ++j)
+          if (j != i) share *= (t_ - near[j].u) / (near[i].u - near[j].u);
+        distance += share;
+      }
+      if (low <= distance && distance <= high)
+        return std::clamp(distance, low + margin, high - margin);
     }
+    constexpr Real kLonger = 2.5;
+    return high < kNowhere ? (low + high) / 2 : kLonger * low;
+  }
+  bool has_above() const {
+    return std::ranges::any_of(tried_, [&](const Tried& each) { return each.u >= t_; });
+  }
+  // Where the others may converge, with a fit nearer by.
+  std::optional<Real> nearer_than(Real distance) const {
+    constexpr Real kNear = 0.01;
+    Real below = 0;
+    for (const Tried& each : tried_)
+      if (each.distance < distance) below = each.distance;
+    if (distance - below <= kNear * distance) return std::nullopt;
+    return (below + distance) / 2;
+  }
+  std::optional<Real> next_distance() const {
+    constexpr Real kMargin = 0.1, kNear = 0.02, kFlat = 100;
+    const Tried& last = tried_.back();
+    if (has_above()) return crossing(kMargin);
     if (failed_ < kNowhere) {
-      constexpr Real kNear = 0.02;
       if (failed_ - last.distance <= kNear * failed_) return std::nullopt;
       return (last.distance + failed_) / 2;
     }
-    constexpr Real kFlat = 100;
     if (last.distance > kFlat * reach_) return std::nullopt;
-    const Real longer = last.u > 0 ? std::clamp(1.05 * t_ / last.u, 1.2, 2.5) : 2.5;
-    return std::min(last.distance > 0 ? longer * last.distance : reach_ / 2, room_);
+    if (last.distance == 0) return std::min(reach_ / 2, room_);
+    const Real most = (last.u > 0.8 * t_ ? 1.3 : 2.5) * last.distance;  // of what is not known
+    return std::min({crossing(0), most, room_});
   }
 
+  // Another unknown that a bound holds there, and not at the fit.
+  std::string held_at(const std::vector<Real>& x) const {
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      const auto is_at_bound = [&](Real at) { return at <= fit_.lower[i] || at >= fit_.upper[i]; };
+      if (i != unknown_ && is_at_bound(x[i]) && !is_at_bound(fit_.best.x[i])) return fit_.names[i];
+    }
+    return "";
+  }
   Real concluded() const {
     if (is_beaten_) return std::numeric_limits<Real>::quiet_NaN();
     const char* const side = sign_ > 0 ? "upper" : "lower";
     const Tried& last = tried_.back();
-    if (const auto above = first_above(); above != tried_.end()) {
+    const Tried& nearest = *std::ranges::min_element(
+        tried_, {}, [&](const Tried& each) { return std::abs(each.u - t_); });
+    const Real miss = std::abs(nearest.u - t_);
+    if (has_above() || miss <= kExact * t_) {
       constexpr Real kInexact = 0.02;  // of t
-      const Real miss = std::min(above->u - t_, t_ - (above - 1)->u);
+      if (const std::string held = held_at(nearest.x); !held.empty())
+        out_.messages.push_back(
+            fmt::format("the {} limit of {} holds with {} at a bound; without it, it lies beyond",
+                        side, out_.name, held));
       if (miss > kInexact * t_)
         out_.messages.push_back(
             fmt::format("the {} limit of {} is inexact: {} values did not find it", side, out_.name,
                         kProfilePoints));
-      return value_at(crossing());
+      return value_at(std::min(crossing(0), room_));
     }
-    if (std::abs(last.u - t_) <= kExact * t_) return value_at(last.distance);
     const Real value = value_at(last.distance);
     if (last.distance >= room_) {
       out_.messages.push_back(fmt::format(
@@ -154,6 +194,13 @@ class Side {
           out_.name, value));
       return value;
     }
+    if (is_hard_) {
+      out_.messages.push_back(
+          fmt::format("the {} limit of {} was not found: fits of the others beyond {:.6g} do not "
+                      "converge",
+                      side, out_.name, value));
+      return std::numeric_limits<Real>::quiet_NaN();
+    }
     out_.messages.push_back(fmt::format("{} is not identifiable {} {:.6g}: the profile is flat",
                                         out_.name, sign_ > 0 ? "above" : "below", value));
     return sign_ * kNowhere;
@@ -164,8 +211,8 @@ class Side {
   int sign_;
   LikelihoodProfile& out_;
   Real t_ = 0, reach_ = 0, room_ = 0, failed_ = kNowhere;
-  Real width_ = kNowhere;     // between the points around the end
   bool is_beaten_ = false;    // by a better fit
+  bool is_hard_ = false;      // the last fit of the others did not converge
   std::vector<Tried> tried_;  // ascending distances
 };
 

@@ -13,7 +13,7 @@ namespace isoline::results {
 
 // The other unknowns fitted again at a value of one of them.
 struct Refit {
-  Real sum_of_squares = 0;
+  Real sum_of_squares = 0;   // not-a-number where the fit of the others did not converge
   std::vector<Real> x = {};  // all unknowns
 };
 // `start` is the x of a fit nearby, in which that unknown has the value. Nothing where P has no
