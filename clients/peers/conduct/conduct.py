@@ -299,7 +299,7 @@ def claims_success(runs, bits):
         if run.outcome.success and not step_of(run) <= 1e-6:
             wrong.append(name)
             clearly += not step_of(run) <= 1e-4
-    return not wrong, f"{claimed} claims" + (f", not so on {', '.join(wrong)}" if wrong else ""), CLEAR if clearly > 1 else FEW
+    return not wrong, f"{claimed} claims" + (f", not so on {', '.join(wrong)}" if wrong else ""), CLEAR if clearly > 1 or not claimed else FEW
 
 
 @over_bits
