@@ -174,10 +174,11 @@ std::string table_text(const Solution& solution) {
   std::string text =
       fmt::format("{} × {}, seed {}: {}, loss {:.6g}", reports::terminal_text(request.problem.spec),
                   reports::terminal_text(request.optimizer.spec), request.seed,
-                  name_of(record.status), solution.loss());
+                  name_of(record.status), record.summary.loss);
   if (solution.answer.residual_norm)
     text += fmt::format(", ‖y − y*‖ {:.6g}", *solution.answer.residual_norm);
-  text += "\n";
+  const std::string best = fmt::format("; best: loss {:.6g}\n", solution.loss());
+  text += solution.loss() < record.summary.loss ? best : "\n";
   if (!record.message.empty())
     text += fmt::format("  {}\n", reports::terminal_text(record.message));
   if (const std::string doubt = reports::doubt_text(record); record.uncertainty && !doubt.empty())
@@ -241,7 +242,8 @@ Json to_json(const Solution& solution) {
             {"seed", record.request.seed},
             {"status", name_of(record.status)},
             {"message", record.message},
-            {"loss", json_number(solution.loss())},
+            {"loss", json_number(record.summary.loss)},
+            {"best_loss", json_number(solution.loss())},
             {"runs_at_another_point", solution.others},
             {"command", reports::rerun_command(record.request)},
             {"record", record.file_name()}};
