@@ -40,8 +40,7 @@ class Side {
 
   Real end(const RefitAt& refit) {
     Real distance = reach_ < room_ ? reach_ : room_ / 2;
-    for (std::size_t i = 0; i < 2 * kProfilePoints && tried_.size() <= kProfilePoints && room_ > 0;
-         ++i) {
+    for (std::size_t i = 0; i < kProfilePoints && room_ > 0; ++i) {
       if (is_at_end(add(distance, refit)) || is_beaten_) break;
       const std::optional<Real> next = is_hard_ ? nearer_than(distance) : next_distance();
       if (!next || std::ranges::find(tried_, *next, &Tried::distance) != tried_.end()) break;

@@ -40,7 +40,7 @@ struct LikelihoodProfile {
   std::vector<std::string> messages = {};  // that limit the interval
 };
 
-inline constexpr std::size_t kProfilePoints = 15;  // at most, on each side
+inline constexpr std::size_t kProfilePoints = 40;  // at most, on each side
 
 // The values for which S ≤ S_min + t² s², t Student's for 95 % and ν degrees of freedom, as those
 // of lmfit's conf_interval; √((S − S_min)/s²) is nearly linear in the value. Each end is exact to
