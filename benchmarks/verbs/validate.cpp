@@ -49,7 +49,7 @@ const Schema* schema_of(const std::string& name) {
   return &known.try_emplace(name, parse_json(std::string(found->second), name)).first->second;
 }
 
-// The identity of a record, its place, and its data: their instance and noise level.
+// The identity of a record, its place, and its data: their folder and instance, and noise level.
 struct RecordIdentity {
   std::string file, cell, build, instance = {};
   Json noise_level = {};
@@ -69,16 +69,15 @@ struct Examined {
 
 Examined examined_record(const Json& record, const std::string& path) {
   const Json &request = record.at("request"), parts = record.value("build_parts", Json::object());
-  Examined examined{
-      .violations = {},
-      .identity = {{path, record.at("cell"), record.at("build"),
-                    fmt::format("{} {} {}", request.at("problem").at("spec").get<std::string>(),
-                                instance_of(request.at("seed")), parts.value("problem", "")),
-                    record.value("noise_level", Json())}}};
-  if (std::string violation = fields_violation(record, path); !violation.empty())
-    examined.violations.push_back(std::move(violation));
-  if (std::string violation = answer_violation(record, path); !violation.empty())
-    examined.violations.push_back(std::move(violation));
+  const std::string instance =
+      fmt::format("{} {} {} {}", fs::path(path).parent_path().string(),
+                  request.at("problem").at("spec").get<std::string>(),
+                  instance_of(request.at("seed")), parts.value("problem", ""));
+  Examined examined{.violations = {},
+                    .identity = {{path, record.at("cell"), record.at("build"), instance,
+                                  record.value("noise_level", Json())}}};
+  for (const std::string& each : {fields_violation(record, path), answer_violation(record, path)})
+    if (!each.empty()) examined.violations.push_back(each);
   return examined;
 }
 
@@ -198,17 +197,14 @@ void compare_doubles(std::vector<RecordIdentity> records, Wrong& wrong) {
   }
 }
 
-// Names a record whose noise level is not that of another one of its folder and instance.
+// Names a record whose noise level is not that of another one of its instance.
 void compare_noise(const std::vector<RecordIdentity>& records, Wrong& wrong) {
-  std::map<std::pair<fs::path, std::string>, const RecordIdentity*> first;
+  std::map<std::string, const RecordIdentity*> first;
   for (const RecordIdentity& record : records) {
-    if (record.noise_level.is_null()) continue;
-    const auto key = std::pair(fs::path(record.file).parent_path(), record.instance);
-    const RecordIdentity& other = *first.try_emplace(key, &record).first->second;
-    if (record.noise_level != other.noise_level)
-      wrong[record.file].push_back(
-          fmt::format("its noise level is not that of the same instance in {}",
-                      fs::path(other.file).filename().string()));
+    const RecordIdentity& other = *first.try_emplace(record.instance, &record).first->second;
+    if (record.noise_level == other.noise_level) continue;
+    wrong[record.file].push_back("its noise level is not that of the same instance in " +
+                                 other.file);
   }
 }
 

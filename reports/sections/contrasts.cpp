@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <numeric>
 
 #include "core/json.h"
 #include "core/results/contrasts.h"
@@ -118,17 +117,14 @@ Sequence add_sequence(Table& table, const Comparison& c, const std::vector<Pair>
     table.rows.push_back({words("contrasts.incomplete-row") + on, "", "", "", "", "", "", ""});
     return out;
   }
-  Costs costs;  // medians: [setting][place in `methods`]
+  const Costs all = median_costs(c, kTightest, Measure::work);
+  Costs costs;
   std::vector<std::string> families;
   for (const std::size_t p : settings) {
-    costs.emplace_back();
-    for (const std::size_t s : methods)
-      costs.back().emplace_back(c.cell(p, s).median(Measure::work, c.yardstick.tightest().rung));
+    costs.push_back(all[p]);
     families.push_back(c.problems[p].family());
   }
-  Places all(methods.size());
-  std::iota(all.begin(), all.end(), 0);
-  const auto scores = family_scores(costs, families, all);
+  const auto scores = family_scores(costs, families, methods);
   out.families = scores.size();
   std::vector<std::vector<Real>> differences;
   for (const auto& [first, second] : places) {
@@ -146,7 +142,8 @@ Sequence add_sequence(Table& table, const Comparison& c, const std::vector<Pair>
     const std::string decision = is_noisy             ? words("contrasts.estimate")
                                  : contrast.is_tested ? out.outcomes.back()
                                                       : words("contrasts.untested");
-    const WorkRatio ratio = work_ratio(costs, families, places[i][0], places[i][1]);
+    const WorkRatio ratio =
+        work_ratio(costs, families, methods[places[i][0]], methods[places[i][1]]);
     for (const std::size_t side : {0, 1})
       if (ratio.both + (side == 0 ? ratio.only_a : ratio.only_b) == 0)
         out.outcomes.back() += words("contrasts.solves-none", pairs[i][side], settings.size());

@@ -87,9 +87,7 @@ std::string common_settings(const Comparison& c) {
 }
 
 std::string decision_sentence(const Comparison& c, const Decision& decision) {
-  const auto name = [&](const results::Place& place) {
-    return name_in_sentence(c.optimizers[place.method]);
-  };
+  const auto name = [&](const results::Place& place) { return names_text(c, {place.method}, 1); };
   const results::Place& first = decision.places[0];
   const std::string on = settings_text(c), measure(counted_name(c)), tau = tau_name(c);
   if (decision.places.size() == 1)
@@ -194,9 +192,7 @@ std::string solved_runs_text(const Comparison& c, std::size_t method) {
 
 std::string robustness_text(const Comparison& c, const Decision& decision) {
   const results::Place& first = decision.places[0];
-  const auto name = [&](const results::Place& place) {
-    return name_in_sentence(c.optimizers[place.method]);
-  };
+  const auto name = [&](const results::Place& place) { return names_text(c, {place.method}, 1); };
   std::vector<results::Place> often = decision.places;
   std::ranges::stable_sort(often, std::ranges::greater{}, &results::Place::share_first);
   const auto other = std::ranges::find_if_not(
