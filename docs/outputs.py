@@ -31,15 +31,15 @@ def masked(line, shape):
 
 def blocks(lines):
     """The first line, the end and the info string of each fence."""
-    begin = None
+    begin = -1
     for i, line in enumerate(lines):
         if not line.startswith("```"):
             continue
-        if begin is None:
+        if begin < 0:
             begin = i
         else:
             yield begin + 1, i, lines[begin][3:]
-            begin = None
+            begin = -1
 
 
 def scripts(lines):
@@ -70,8 +70,8 @@ def fresh(block, out, shape):
     found, at = [], begins
     for line in block:
         near = range(at, min(at + 30, len(out)))
-        best = max(near, key=lambda i: likeness(line, i) - (i - at) / 1000, default=None)
-        if best is None or likeness(line, best) < 0.5:
+        best = max(near, key=lambda i: likeness(line, i) - (i - at) / 1000, default=-1)
+        if best < 0 or likeness(line, best) < 0.5:
             found.append(None)
         else:
             found.append(out[best])
@@ -85,7 +85,7 @@ def main():
     parser.add_argument("pages", nargs="*")
     for option in ("--write", "--printed", "--shape"):
         parser.add_argument(option, action="store_true")
-    asked = parser.parse_args()
+    asked = parser.parse_intermixed_args()
     pages = asked.pages or ["README.md", *sorted(f"docs/{page.name}" for page in ROOT.glob("docs/*.md"))]
     differ = 0
     for page in pages:
