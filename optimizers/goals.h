@@ -1,5 +1,5 @@
-// What a run is to reach, and what it has reached: the targets of its loss and of its error in x,
-// that of its budget, the noise of its data; and whether it still makes progress.
+// The goals of a run, and how far it has come: the targets of its loss and of its error in x, that
+// of its budget, the noise of its data; and whether it still makes progress.
 #pragma once
 
 #include <cmath>

@@ -1,5 +1,5 @@
-// What a meter knows of the points of a run: the last one that the harness evaluated, the last one
-// that is paid for, and the Jacobian at one of them.
+// The points that a meter knows: the last one that the harness evaluated, the last one that is paid
+// for, and the Jacobian at one of them.
 #pragma once
 
 #include <limits>

@@ -199,6 +199,7 @@ class Runner {
                   outcome_.reused + static_cast<std::int64_t>(pending_.queued().size()),
                   outcome_.reused) {
     outcome_.planned = static_cast<std::int64_t>(requests.size());
+    store_.look_for_states();
   }
 
   Outcome run() {

@@ -167,8 +167,6 @@ Store::Store(fs::path folder) : folder_(std::move(folder)) {
       if (const fs::path path = folder_ / part / name; is_abandoned(path)) {
         std::error_code error;
         fs::remove(path, error);
-      } else {
-        has_states_ |= name.ends_with(".state") || name.ends_with(".end");
       }
 }
 
@@ -329,6 +327,17 @@ void Store::remove_checkpoint(const Request& request) const {
   fs::remove(checkpoint_path(request), missing);
 }
 
+void Store::look_for_states() {
+  std::vector<std::string> names;
+  try {
+    names = names_in(folder_ / "checkpoints");
+  } catch (const UsageError&) {  // cells start at their beginning
+  }
+  has_states_ = std::ranges::any_of(names, [](const std::string& name) {
+    return name.ends_with(".state") || name.ends_with(".end");
+  });
+}
+
 fs::path Store::end_stem(const Request& request) const {
   Request any = request;
   any.budget.iterations = any.budget.work = 0;
@@ -347,8 +356,6 @@ fs::path Store::end_within_budget(const Request& request) const {
     names = names_in(folder_ / "checkpoints");
   } catch (const UsageError&) {  // the cell starts at its beginning
   }
-  std::erase_if(names, [](const std::string& name) { return !name.ends_with(".end"); });
-  if (names.empty()) return {};
   const fs::path stem = end_stem(request);
   for (const std::string& name : names) {
     Budget needed;

@@ -58,7 +58,8 @@ class Store {
   // Where a run of this request by this build is kept while it goes.
   std::filesystem::path checkpoint_path(const Request& request) const;
   void remove_checkpoint(const Request& request) const;
-  bool has_states() const { return has_states_; }  // when this object was made
+  void look_for_states();  // once before many cells, which then need not look for theirs
+  bool has_states() const { return has_states_; }
   // States of runs of this build that differ from the request in their budget of iterations and
   // work alone: what their files' names begin with; the file of one that needs this budget; and the
   // latest one within the budget of the request, or nothing.
@@ -69,7 +70,7 @@ class Store {
  private:
   // Creates the folders again if they are removed during the run.
   void try_to_write(const std::function<void()>& write);
-  // Of a folder or a pipe, where a file is to stand. Whether anything stood there.
+  // Moves a folder or a pipe away from where a file is to stand. False if nothing stood there.
   bool clear_way(const std::filesystem::path& path);
 
   std::filesystem::path folder_;

@@ -235,8 +235,8 @@ void write_csv(const std::filesystem::path& path, const NumberArray& array) {
 
 void require_ending(const std::filesystem::path& path, const std::vector<std::string>& known) {
   require(std::ranges::find(known, path.extension().string()) != known.end(), [&] {
-    return fmt::format("{}: the name of a data file must end with one of {}", path.string(),
-                       fmt::join(known, ", "));
+    return fmt::format("{}: the name of a data file must end with {}", path.string(),
+                       fmt::join(known, " or "));
   });
 }
 

@@ -97,7 +97,10 @@ TEST(Escape, EachFormatHasItsOwn) {
 
 TEST(Html, HostileNamesStayText) {
   const Study study = hostile_study();
-  const std::string page = readable_html(document_of(compare_optimizers(study)));
+  std::string page = readable_html(document_of(compare_optimizers(study)));
+  const std::string of_memory = "src=\"${URL.createObjectURL(";  // no request
+  ASSERT_TRUE(has(page, of_memory));
+  page.erase(page.find(of_memory), of_memory.size());
   EXPECT_FALSE(has(page, "<b>&|"));
   EXPECT_FALSE(has(page, "</script><!--@all"));
   EXPECT_TRUE(has(page, "&lt;b&gt;&amp;|&quot;x&quot;"));
