@@ -53,6 +53,7 @@ const Schema* schema_of(const std::string& name) {
 struct RecordIdentity {
   std::string file, cell, build, instance = {};
   Json noise_level = {};
+  bool has_started = false;
 
   auto place() const {
     const std::size_t folder = file.find_last_of('/') + 1;
@@ -75,7 +76,8 @@ Examined examined_record(const Json& record, const std::string& path) {
                   instance_of(request.at("seed")), parts.value("problem", ""));
   Examined examined{.violations = {},
                     .identity = {{path, record.at("cell"), record.at("build"), instance,
-                                  record.value("noise_level", Json())}}};
+                                  record.value("noise_level", Json()),
+                                  record.at("summary").at("start_loss").is_number()}}};
   for (const std::string& each : {fields_violation(record, path), answer_violation(record, path)})
     if (!each.empty()) examined.violations.push_back(each);
   return examined;
@@ -197,10 +199,12 @@ void compare_doubles(std::vector<RecordIdentity> records, Wrong& wrong) {
   }
 }
 
-// Names a record whose noise level is not that of another one of its instance.
+// Names a record whose noise level is not that of another one of its instance. A run without a loss
+// at its start, such as that of an inapplicable method, states no noise level.
 void compare_noise(const std::vector<RecordIdentity>& records, Wrong& wrong) {
   std::map<std::string, const RecordIdentity*> first;
   for (const RecordIdentity& record : records) {
+    if (!record.has_started) continue;
     const RecordIdentity& other = *first.try_emplace(record.instance, &record).first->second;
     if (record.noise_level == other.noise_level) continue;
     wrong[record.file].push_back("its noise level is not that of the same instance in " +
