@@ -131,6 +131,7 @@ ProblemParts make_rippled_square(const RippleOptions& o, const Draw& draw) {
 // nearest π/9, whose target is (0.87, −1).
 struct HigOptions {
   Real lambda = 1;
+  std::string samples;
   Learning learning{.mode = "learn",
                     .network = "mlp[layers=7,activation=tanh,precision=double,init=glorot]",
                     .batch = 256,
@@ -138,6 +139,8 @@ struct HigOptions {
 };
 void fields(HigOptions& o, auto& field) {
   field("lambda", o.lambda, between(1e-6, 1e6), "scale λ of the second component");
+  field("samples", o.samples, {"", "pairs"},
+        "pairs: every second t lies 0.001 beside the one before, so that rows of J nearly agree");
   fields(o.learning, field);
 }
 
@@ -151,10 +154,13 @@ Index nearest_to_the_shown(const Batch& batch) {
 
 ProblemParts make_hig_toy(const HigOptions& o, const Draw& draw) {
   require(o.learning.is_on(), "hig-toy has only mode=learn; remove mode=direct");
-  const auto sample = [lambda = o.lambda](RandomStream& stream, Index b, Batch& batch) {
-    const Real t = batch.input(0, b) = stream.uniform(-1, 1);
+  const auto sample = [o](RandomStream& stream, Index b, Batch& batch) {
+    constexpr Real kApart = 1e-3;
+    const bool is_second = o.samples == "pairs" && b % 2 == 1;
+    const Real t = batch.input(0, b) =
+        is_second ? batch.input(0, b - 1) + kApart : stream.uniform(-1, 1);
     batch.target.col(b) << std::sin(6 * t), std::cos(9 * t);
-    batch.truth.col(b) << batch.target(0, b), batch.target(1, b) / lambda;
+    batch.truth.col(b) << batch.target(0, b), batch.target(1, b) / o.lambda;
   };
   const auto distance = [](BatchRef x, const Batch& batch) {
     return (x - batch.truth).colwise().norm().mean();
@@ -167,6 +173,36 @@ ProblemParts make_hig_toy(const HigOptions& o, const Draw& draw) {
   parts.series = joined(std::move(parts.series), joined(hidden_activity(*parts.network), shown));
   parts.series = joined(std::move(parts.series), saturation(*parts.network, kShownNeurons));
   return parts;
+}
+
+// P(x) = x², x* = ±√y*, y* ~ U[0, 1), both signs alike: the inverse has two modes, whose mean is 0
+// and makes no y*. The opening example of the Physics-based Deep Learning book; the network is our
+// own choice. An error in x is the distance to the nearer root.
+struct ParabolaOptions {
+  Learning learning{.mode = "learn", .network = "mlp[layers=10-10]"};
+};
+void fields(ParabolaOptions& o, auto& field) { fields(o.learning, field); }
+
+class Parabola final : public DensePhysics {
+ public:
+  Parabola() : DensePhysics(1, 1) {}
+  void value(VectorRef x, VectorOut y) const override { y[0] = x[0] * x[0]; }
+  void derivative(VectorRef x, BatchOut J) const override { J(0, 0) = 2 * x[0]; }
+};
+
+ProblemParts make_parabola(const ParabolaOptions& o, const Draw& draw) {
+  require(o.learning.is_on(), "parabola has only mode=learn; remove mode=direct");
+  const auto sample = [](RandomStream& stream, Index b, Batch& batch) {
+    const Real u = stream.uniform(-1, 1);
+    batch.truth(0, b) = std::copysign(std::sqrt(std::abs(u)), u);
+    batch.input(0, b) = batch.target(0, b) = std::abs(u);
+  };
+  const auto distance = [](BatchRef x, const Batch& batch) {
+    return (x.cwiseAbs() - batch.truth.cwiseAbs()).cwiseAbs().mean();
+  };
+  return learn(
+      o.learning, {.inputs = 1, .outputs = 1}, draw,
+      {.physics = std::make_unique<Parabola>(), .x_error = distance, .samples = {.draw = sample}});
 }
 
 }  // namespace
@@ -223,6 +259,14 @@ void register_toys(ProblemRegistry& registry) {
                    .kind = "path",
                    .quantity = "y1 at t = π/9|y2 at t = π/9"}}},
       make_hig_toy));
+  registry.add(problem_entry({.name = "parabola",
+                              .title = "The roots of a number, learned",
+                              .group = Group::toy,
+                              .formula = "x = N(y*; θ),  P(x) = x²,  L = ½(P(x) − y*)²",
+                              .source = "Thuerey et al., Physics-based Deep Learning, overview",
+                              .aim = Aim::loss,  // either root solves it
+                              .in_all = false},
+                             make_parabola));
 }
 
 }  // namespace isoline::problems

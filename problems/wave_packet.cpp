@@ -20,11 +20,15 @@ namespace {
 struct Options {
   Index samples = 64;
   Real noise = 0.05;
+  std::string count;
   Learning learning{.network = "mlp[layers=64-64]", .batch = 100};
 };
 void fields(Options& o, auto& field) {
   field("samples", o.samples, between(8, 65536), "times m at which the signal is sampled");
   field("sigma", o.noise, between(0, 10), "standard deviation σ of the noise in y*");
+  field("count", o.count, {"", "optimum"},
+        "optimum: an additional series, the share of samples whose x is within 0.5 of x*, which "
+        "other local minima are not");
   fields(o.learning, field);
 }
 
@@ -134,6 +138,19 @@ Real distance(VectorRef x, VectorRef truth) {
   return apart.norm();
 }
 
+// The share of samples in the basin of x*: `truth`, or those of the batch if it is empty.
+Series share_at_optimum(const Matrix& truth) {
+  return {.names = {"share at the global optimum"},
+          .evaluate = [truth](const Problem&, VectorRef, Point& at, VectorOut values) {
+            constexpr Real kNear = 0.5;
+            const Matrix& all = truth.size() > 0 ? truth : at.batch->truth;
+            Index near = 0;
+            for (Index b = 0; b < all.cols(); ++b)
+              near += distance(at.x().col(b), all.col(b)) < kNear;
+            values[0] = static_cast<Real>(near) / static_cast<Real>(all.cols());
+          }};
+}
+
 struct Signal {
   Eigen::Vector4d truth;  // x*
   Vector observed;        // y*, (m)
@@ -158,10 +175,11 @@ ProblemParts learn_wave_packet(const Options& o, const Draw& draw) {
     for (Index b = 0; b < x.cols(); ++b) sum += distance(x.col(b), batch.truth.col(b));
     return sum / static_cast<Real>(x.cols());
   };
-  return learn(o.learning, {.inputs = o.samples, .outputs = 4}, draw,
-               {.physics = std::make_unique<WavePacket>(o.samples),
-                .x_error = mean_distance,
-                .samples = {.draw = sample}});
+  ProblemParts parts{.physics = std::make_unique<WavePacket>(o.samples),
+                     .x_error = mean_distance,
+                     .samples = {.draw = sample}};
+  if (o.count == "optimum") parts.series = share_at_optimum(Matrix());
+  return learn(o.learning, {.inputs = o.samples, .outputs = 4}, draw, std::move(parts));
 }
 
 // With noise no x makes y*: what attains the least loss is the fit from x*, and its distance from
@@ -178,6 +196,7 @@ ProblemParts make_wave_packet(const Options& o, const Draw& draw) {
       .minimum = 0,
       .x_error = [truth](BatchRef x, const Batch&) { return distance(x.col(0), truth); },
       .x_scale = truth.norm()};
+  if (o.count == "optimum") parts.series = share_at_optimum(truth);
   if (o.noise > 0) {
     parts.made_from = truth;
     parts.noise_level = o.noise * std::sqrt(static_cast<Real>(o.samples));

@@ -39,7 +39,8 @@ std::vector<std::string> specs() {
       "pinn-poisson[dimension=10,layers=4-3-5,interior=6,boundary=4,points=fixed]",
       "pinn-burgers[layers=5-4,points=9]", "pinn-forward[layers=5-4,interior=9,boundary=4]",
       "pinn-forward[equation=convection,layers=5,interior=9,boundary=4]",
-      "regression[function=polynomial,batch=6]", "rippled-square[ripple=0.01]"};
+      "regression[function=polynomial,batch=6]", "rippled-square[ripple=0.01]", "parabola[batch=6]",
+      "wave-packet[count=optimum]", "hig-toy[batch=6,samples=pairs," + smooth + "]"};
   for (const auto& [name, entry] : all_problems().ready()) {
     const bool is_grid = std::ranges::any_of(
         entry.options, [](const OptionField& field) { return field.name == "N"; });
