@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <utility>
@@ -74,6 +75,20 @@ class Examination {
   std::vector<Finding> findings;
   bool is_slow() const { return problem_.is_elsewhere() && call_seconds_ >= kSlowSeconds; }
   double call_seconds() const { return call_seconds_; }
+
+  // Again in other directions where a call failed: a program may fail here and there.
+  void make(void (Examination::*check)()) {
+    constexpr int kTries = 5;
+    for (int i = 0; i < kTries; ++i) {
+      const auto before = std::ssize(findings);
+      const std::int64_t failed = failures_->total;
+      (this->*check)();
+      const auto made = findings.begin() + before;
+      if (std::all_of(made, findings.end(), std::mem_fn(&Finding::holds))) return;
+      if (failures_->total == failed || i + 1 == kTries) return;
+      findings.erase(made, findings.end());
+    }
+  }
 
   // NaN differs from itself, which would read as randomness.
   bool is_finite() {
@@ -355,7 +370,8 @@ class Examination {
     for (int i = 0; i < steps().count; ++i) {
       h *= steps().ratio;
       const Real now = remainder(h);
-      if (now > floor) slopes.push_back(std::log(now / previous) / std::log(steps().ratio));
+      if (now > floor && std::isfinite(previous))  // a call may fail
+        slopes.push_back(std::log(now / previous) / std::log(steps().ratio));
       previous = now;
     }
     std::nth_element(slopes.begin(), slopes.begin() + static_cast<Index>(slopes.size() / 2),
@@ -599,7 +615,7 @@ std::vector<Finding> examine_at(const Problem& problem, StartScale scale, Random
   for (std::size_t i = 0; i < checks.size(); ++i) {
     progress.done = i;
     if (before) before(progress);
-    (examination.*checks[i])();
+    examination.make(checks[i]);
   }
   return examination.findings;
 }

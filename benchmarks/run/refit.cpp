@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/decompose.h"
+#include "core/differences.h"
 #include "core/errors.h"
 
 namespace isoline::benchmarks {
@@ -34,17 +36,21 @@ Refits::Refits(problems::Problem& problem, Vector fit, Real variance, Real rise_
   hold(-1, fit);
   fit = bounds_.nearest(fit);
   Linearization at;
-  require(evaluate(fit, at), "P has no value at the fit, where it had one before");
-  least_ = residual(at).squaredNorm();
-  constexpr Real kFirst = 1e-3, kLeastSize = 1e-3, kOfDeviation = 0.3;
-  steps_ = kFirst * fit.cwiseAbs().cwiseMax(kLeastSize);
+  Vector r;
+  require(evaluate(fit, at, r), "P has no value at the fit, where it had one before");
+  least_ = r.squaredNorm();
+  constexpr Real kFirst = 1e-3, kOfDeviation = 0.3, kNear = 3, kMostGrowth = 100;
+  constexpr int kPasses = 6;
+  steps_ = kFirst * fit.cwiseAbs().cwiseMax(sizes_of_unknowns(start_.standard));
   differences_.know_noise(fit, std::numeric_limits<Real>::epsilon());
-  for (const char* kind : {"differences", "central"}) {
+  // Printed digits hide what a step far too small changes: until each has the length that it shows.
+  for (int pass = 0; pass < kPasses; ++pass) {
     differences_.take_steps(steps_);
-    if (!is_exact_) differences_.renew(f_, fit, kind, at);
-    const Vector slopes = at.jacobian().colwise().norm();
-    for (Index j = 0; j < fit.size(); ++j)
-      if (slopes[j] > 0) steps_[j] = kOfDeviation * std::sqrt(variance_) / slopes[j];
+    if (!is_exact_) differences_.renew(f_, fit, pass == 0 ? "differences" : "central", at);
+    const Vector shown = at.jacobian().colwise().norm().transpose().cwiseProduct(steps_) /
+                         (kOfDeviation * std::sqrt(variance));
+    steps_ = steps_.cwiseQuotient(shown.cwiseMax(1 / kMostGrowth));
+    if (pass > 0 && shown.minCoeff() > 1 / kNear && shown.maxCoeff() < kNear) break;
   }
   known_.push_back(known_at(fit, at));
   (*this)(-1, fit);  // a run may have ended at its target
@@ -61,13 +67,18 @@ void Refits::hold(Index fixed, const Vector& theta) {
   problem_ = problems::Problem(std::move(parts));
 }
 
-bool Refits::evaluate(const Vector& theta, Linearization& at) {
+bool Refits::evaluate(const Vector& theta, Linearization& at, Vector& r) {
   f_.linearize(theta, at);
-  return at.y().allFinite();
+  r = (at.y() - problem_.target()).reshaped();
+  return r.allFinite();
 }
 
-Vector Refits::residual(const Linearization& at) const {
-  return (at.y() - problem_.target()).reshaped();
+Vector Refits::deviations() const {
+  Svd svd;
+  const Known& fit = known_[0];
+  if (!thin_svd(fit.J * steps_.asDiagonal(), svd)) return steps_;
+  const Matrix root = svd.Vt.transpose() * svd.sigma.cwiseInverse().asDiagonal();
+  return std::sqrt(variance_) * steps_.cwiseProduct(root.rowwise().norm());
 }
 
 Refits::Known Refits::known_at(const Vector& theta, Linearization& at) {
@@ -84,25 +95,36 @@ std::optional<Vector> Refits::operator()(Index fixed, Vector theta) {
   constexpr int kSteps = 50;
   constexpr Real kNone = 1e-24, kEnough = 5e-3;  // of s²: changes u = √(rise) by 0.1 %
   constexpr Real kNearEnd = 0.005;               // of t, as profiles have it
+  constexpr Real kPoor = 10;                     // of the rise at an end, of a start
   hold(fixed, theta);
   const problems::Bounds bounds = *problem_.bounds();
   Linearization at, trial;
   optimizers::DampedLeastSquares squares;
-  Vector first, step, change;
+  Vector step, change, r, r_trial;
   const Known& nearest = nearest_to(theta);
   const Vector apart = theta - nearest.theta;
+  std::vector<Vector> starts;
   if (fixed >= 0 && apart.lpNorm<1>() == std::abs(apart[fixed])) {  // others follow by J
     at.set_jacobian(nearest.J);
-    const Vector r = nearest.y - problem_.target().reshaped() + nearest.J * apart;
+    r = nearest.y - problem_.target().reshaped() + nearest.J * apart;
     squares.set(f_, at, theta, -r, "jacobian");
-    if (squares.solve(kNone, "orthogonal", step, change)) theta = bounds.nearest(theta + step);
+    if (squares.solve(kNone, "orthogonal", step, change)) starts.push_back(theta + step);
   }
-  for (const int shift : {0, 1, -1, 2}) {  // a call may fail here and not nearby
-    first = bounds.nearest(theta + shift * steps_);
-    if (evaluate(first, at)) break;
-    if (shift == 2) return std::nullopt;
+  // J may lead astray, where a bound hides it; and a call may fail here and not nearby.
+  const std::size_t beside = starts.size() + 1;
+  for (const int shift : {0, 1, -1, 2}) starts.push_back(theta + shift * steps_);
+  bool has_start = false;
+  for (std::size_t i = 0; i < starts.size() && !(has_start && i >= beside); ++i) {
+    const Vector from = bounds.nearest(starts[i]);
+    if (!evaluate(from, trial, r_trial)) continue;
+    if (has_start && r_trial.squaredNorm() >= r.squaredNorm()) continue;
+    has_start = true;
+    theta = from;
+    std::swap(at, trial);
+    r = r_trial;
+    if (r.squaredNorm() - least_ <= kPoor * rise_at_end_ * variance_) break;
   }
-  theta = first;
+  if (!has_start) return std::nullopt;
   const Vector D = steps_.cwiseInverse();
   bool is_fresh = is_exact_, is_trusted = true;
   if (!is_exact_) {
@@ -110,7 +132,6 @@ std::optional<Vector> Refits::operator()(Index fixed, Vector theta) {
     differences_.know(nearest.theta, nearest.y, nearest.J);
     differences_.update(theta, D, at);
   }
-  Vector r = residual(at);
   Real damping = 1e-6;
   int rejected = 0;
   is_minimum_ = false;
@@ -135,13 +156,13 @@ std::optional<Vector> Refits::operator()(Index fixed, Vector theta) {
     }
     squares.solve(damping, "orthogonal", step, change);
     const Vector to = bounds.nearest(theta + step);
-    const bool has_value = evaluate(to, trial);
-    const bool is_better = has_value && residual(trial).squaredNorm() < r.squaredNorm();
-    is_trusted = has_value && predicts(at.jacobian(), to - theta, residual(trial) - r);
+    const bool has_value = evaluate(to, trial, r_trial);
+    const bool is_better = has_value && r_trial.squaredNorm() < r.squaredNorm();
+    is_trusted = has_value && predicts(at.jacobian(), to - theta, r_trial - r);
     if (is_better) {
       theta = to;
       std::swap(at, trial);
-      r = residual(at);
+      std::swap(r, r_trial);
       if (!is_exact_) differences_.update(theta, D, at);
       rejected = 0;
       damping /= 5;

@@ -25,6 +25,7 @@ class Refits {
   std::optional<Vector> operator()(Index fixed, Vector theta);
   const Vector& fit() const { return known_[0].theta; }  // all unknowns fitted
   Real least() const { return least_; }                  // S there
+  Vector deviations() const;                             // (n) there, with no unknown held
   Real sum_of_squares() const { return sum_; }           // of the last fit
   bool has_converged() const { return is_minimum_; }
 
@@ -36,8 +37,7 @@ class Refits {
 
   const Known& nearest_to(const Vector& theta) const;
   void hold(Index fixed, const Vector& theta);  // nothing: −1
-  bool evaluate(const Vector& theta, optimizers::Linearization& at);
-  Vector residual(const optimizers::Linearization& at) const;
+  bool evaluate(const Vector& theta, optimizers::Linearization& at, Vector& residual);
   Known known_at(const Vector& theta, optimizers::Linearization& at);
 
   problems::Problem& problem_;

@@ -317,14 +317,9 @@ results::ProfiledFit profiled_fit(const Solution& solution, const Problem& probl
       if (!std::isnan(upper[Index(i)])) fit.upper[i] = upper[Index(i)];
     }
   }
-  const Vector start = problem.in_own_units(problem.standard_start());
   for (std::size_t i = 0; i < x.size(); ++i) {
     fit.names.push_back(solution.answer.name(i));
     fit.is_log.push_back(x[i] > 0 && results::has_log(record, fit.names[i]));
-    constexpr Real kOfSize = 0.03;  // where a bound holds it: by which the search begins
-    if (const Real size = std::max(std::abs(x[i]), std::abs(start[Index(i)]));
-        !(fit.deviation[i] > 0) && size > 0)
-      fit.deviation[i] = kOfSize * size;
   }
   return fit;
 }
@@ -401,16 +396,24 @@ void add_profiles(Solution& solution, const SolutionArguments& given, Session& s
   require(!unknowns.empty(), "--unknown names no free unknown of the fit");
   const auto n = static_cast<std::size_t>(problem.unknowns());
   const std::size_t ends = 2 * unknowns.size(), first = 2 + 3 * n;  // measured on calibrations
-  say(stderr, fmt::format("profile: {}, {} to {} forward solves; up to ten times as many "
-                          "where the data hardly determine an unknown\n",
-                          reports::counted(unknowns.size(), "unknown"),
-                          first + ends * (n > 1 ? n + 2 : 3), first + ends * (9 * n - 3)));
+  constexpr Real kValley = 1000;  // a condition number from which a refit takes ten times as many
+  const bool is_valley = record.uncertainty->condition > kValley;
+  say(stderr,
+      fmt::format("profile: {}, {} to {} forward solves{}\n",
+                  reports::counted(unknowns.size(), "unknown"), first + ends * (n > 1 ? n + 2 : 3),
+                  first + ends * (9 * n - 3) * (is_valley ? 10 : 1),
+                  is_valley ? ", since the data hardly determine some unknowns" : ""));
   const Real t = results::student_quantile(0.975, fit.freedom);
   Refits refits(problem, units.to_theta(fit.best.x), fit.variance, t * t);
   const Vector best = problem.in_own_units(refits.fit());
   fit.best = {refits.least(), {best.begin(), best.end()}};
   fit.variance = refits.least() / static_cast<Real>(fit.freedom);
+  const Vector deviations = refits.deviations();
   for (const std::size_t i : unknowns) {
+    if (Vector theta = refits.fit(); !(fit.deviation[i] > 0)) {  // a bound holds it
+      theta[*units.component(i)] += deviations[*units.component(i)];
+      fit.deviation[i] = std::abs(problem.in_own_units(theta)[Index(i)] - fit.best.x[i]);
+    }
     solution.profiles.push_back(results::profile_of(
         fit, i,
         [&](std::size_t unknown, const std::vector<Real>& start) -> std::optional<results::Refit> {

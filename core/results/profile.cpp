@@ -101,17 +101,21 @@ class Side {
            (std::abs(last->u - t_) <= kExact * t_ || (last->distance == room_ && last->u < t_));
   }
 
+  // The last value with u ≤ t, and the next one, if there is one.
+  std::pair<const Tried*, const Tried*> around_end() const {
+    const auto last = std::ranges::find_if(tried_.rbegin(), tried_.rend(),
+                                           [&](const Tried& each) { return each.u <= t_; });
+    return {&*last, last == tried_.rbegin() ? nullptr : &*last + 1};
+  }
   // Where u = t: by u's inverse parabola or line through the nearest points; between points far
   // from t with a margin, a share of what is between them.
   Real crossing(Real margin) const {
     std::vector<Tried> near = tried_;
     std::ranges::sort(near, {}, [&](const Tried& each) { return std::abs(each.u - t_); });
-    Real low = 0, high = kNowhere;
-    for (const Tried& each : tried_)
-      each.u <= t_ ? low = each.distance : high = std::min(high, each.distance);
-    if (high < low) high = kNowhere;  // it falls again
+    const auto [below, above] = around_end();
+    const Real low = below->distance, high = above != nullptr ? above->distance : kNowhere;
     constexpr Real kFar = 0.2;
-    const bool is_far = high < kNowhere && std::abs(near[0].u - t_) > kFar * t_;
+    const bool is_far = above != nullptr && std::abs(near[0].u - t_) > kFar * t_;
     margin *= is_far ? high - low : 0;
     for (const std::size_t count : {3U, 2U}) {
       if (near.size() < count) continue;
@@ -126,10 +130,7 @@ class Side {
         return std::clamp(distance, low + margin, high - margin);
     }
     constexpr Real kLonger = 2.5;
-    return high < kNowhere ? (low + high) / 2 : kLonger * low;
-  }
-  bool has_above() const {
-    return std::ranges::any_of(tried_, [&](const Tried& each) { return each.u >= t_; });
+    return above != nullptr ? (low + high) / 2 : kLonger * low;
   }
   // Where the others may converge, with a fit nearer by.
   std::optional<Real> nearer_than(Real distance) const {
@@ -141,9 +142,12 @@ class Side {
     return (below + distance) / 2;
   }
   std::optional<Real> next_distance() const {
-    constexpr Real kMargin = 0.1, kNear = 0.02, kFlat = 100;
+    constexpr Real kMargin = 0.1, kNear = 0.02, kFlat = 100, kJump = 1e-3;
     const Tried& last = tried_.back();
-    if (has_above()) return crossing(kMargin);
+    if (const auto [below, above] = around_end(); above != nullptr) {
+      if (above->distance - below->distance <= kJump * above->distance) return std::nullopt;
+      return crossing(kMargin);
+    }
     if (failed_ < kNowhere) {
       if (failed_ - last.distance <= kNear * failed_) return std::nullopt;
       return (last.distance + failed_) / 2;
@@ -169,16 +173,19 @@ class Side {
     const Tried& nearest = *std::ranges::min_element(
         tried_, {}, [&](const Tried& each) { return std::abs(each.u - t_); });
     const Real miss = std::abs(nearest.u - t_);
-    if (has_above() || miss <= kExact * t_) {
+    const auto [below, above] = around_end();
+    if (above != nullptr || miss <= kExact * t_) {
       constexpr Real kInexact = 0.02;  // of t
       if (const std::string held = held_at(nearest.x); !held.empty())
         out_.messages.push_back(
             fmt::format("the {} limit of {} holds with {} at a bound; without it, it lies beyond",
                         side, out_.name, held));
       if (miss > kInexact * t_)
-        out_.messages.push_back(
-            fmt::format("the {} limit of {} is inexact: {} values did not find it", side, out_.name,
-                        kProfilePoints));
+        out_.messages.push_back(fmt::format(
+            "the {} limit of {} is inexact: between {:.6g} and {:.6g}, the root of (S − S_min)/s² "
+            "rises from {:.3g} to {:.3g}, past t = {:.3g}",
+            side, out_.name, value_at(below->distance), value_at(above->distance), below->u,
+            above->u, t_));
       return value_at(std::min(crossing(0), room_));
     }
     const Real value = value_at(last.distance);

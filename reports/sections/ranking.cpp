@@ -290,7 +290,10 @@ std::vector<std::string> verdict(const Comparison& c) {
         row, [](const Cell& cell) { return cell.headline[kTightest].is_solved(); });
   });
   const bool are_all_unknown = std::ranges::all_of(c.problems, &ProblemAxis::lacks_least_loss);
-  if (!is_any_solved && !are_all_unknown) return {words("ranking.none-solved", tau_name(c))};
+  if (!is_any_solved && !are_all_unknown) {  // calls of one's own may differ by more than τ
+    const bool are_own = std::ranges::all_of(c.problems, &ProblemAxis::is_least_of_runs);
+    return {words(are_own ? "ranking.none-near" : "ranking.none-solved", tau_name(c))};
+  }
   std::vector<std::string> all;
   std::string left_out = left_out_text(c);
   if (!left_out.empty()) left_out = words("fact.not-ranked") + ": " + left_out;

@@ -4,7 +4,8 @@
 
 COVERAGE.so is tests/plugin/coverage.c; its seeds are data sets with other noise. Prints a line per problem, unknown and
 kind of interval: the share that covers, with its Wilson interval (95 %), and the data sets that have one. Where an unknown
-has a bound, `held` are the data sets whose fit it holds. Exits with 1 if a share is outside 93 to 97 % by more than chance.
+has a bound, `held` are the data sets whose fit it holds. Exits with 1 if a share is outside 93 to 97 % by more than chance,
+or if printed digits move an end of a profile by more than 2 % of its interval.
 """
 import argparse
 import json
@@ -20,6 +21,7 @@ VARIANTS = ["", ",printed=6", ",bounded=1", ",bounded=1,printed=6"]
 OPTIMIZERS = "levenberg-marquardt,levenberg-marquardt[jacobian=central]"  # as isoline.fit tries them
 BATCH = 250  # data sets of one folder
 LEAST, MOST = 0.93, 0.97
+MOVED = 0.02  # of an interval
 
 
 def wilson(covered, count, z=1.96):
@@ -64,6 +66,22 @@ def counted(all_sets, truth):
     return counts, without
 
 
+def moved_ends(exact, printed):
+    """By how much printed digits move ends of profiles, in parts of the intervals, with seed and unknown, the most first.
+
+    Not where they decide whether a bound holds an unknown, since the degrees of freedom then differ.
+    """
+    key = lambda fit, one: (fit["seed"], fit["degrees_of_freedom"], one["unknown"])
+    ends, found = {key(each, one): one for each in exact for one in each.get("profile", [])}, []
+    for each in printed:
+        for one in each.get("profile", []):
+            other = ends.get(key(each, one), {"low": "nan", "high": "nan"})
+            (low, high), (left, right) = [map(float, (of["low"], of["high"])) for of in (other, one)]
+            if math.isfinite(high - low):
+                found.append((max(abs(left - low), abs(right - high)) / (high - low), each["seed"], one["unknown"]))
+    return sorted(found, reverse=True)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("isoline")
@@ -81,12 +99,14 @@ def simulate(given, folder):
     is_wrong = False
     os.makedirs(folder, exist_ok=True)
     for name, truth in TRUTH.items():
+        exact = {}
         for variant in VARIANTS:
             problem = f"{name}[sigma={SIGMA[name]}{variant}]"
             if given.only and problem not in given.only:
                 continue
             found = [each for first in range(0, given.data, BATCH)
                      for each in solutions(given, problem, first, min(BATCH, given.data - first), folder)]
+            exact.setdefault(variant.replace(",printed=6", ""), found)
             true = truth[:2] + [0.0 if "bounded" in variant else truth[2]]
             counts, without = counted(found, true)
             unknown = sum("profile" not in each for each in found) - without
@@ -98,6 +118,12 @@ def simulate(given, folder):
                 is_wrong |= is_off and not is_its_own and group != "free"
                 print(f"  {group:4} {unknown:3} {kind:8} {covered / count:7.2%}  ({low:.2%} to {high:.2%}) of {count}"
                       f"{'  outside' if is_off else '' if LEAST <= covered / count <= MOST else '  just outside'}", flush=True)
+            moved = moved_ends(exact[variant.replace(",printed=6", "")], found) if "printed" in variant else []
+            if moved and moved[0][0] > 0:
+                far = sum(each[0] > MOVED for each in moved)
+                is_wrong |= far > 0
+                print("  digits move {} of {} profiles by more than {:.0%}; most: {:.2%}, seed {}, {}".format(
+                    far, len(moved), MOVED, *moved[0]), flush=True)
     return is_wrong
 
 

@@ -82,6 +82,13 @@ def boarding_school(x):  # British Medical Journal, 4 March 1978: boys in bed on
     return y
 
 
+def lubricant(x):  # Yasuda et al. (1981), with an Arrhenius shift
+    zero, infinite, relaxation, width, n, energy = x
+    shifts = [math.exp(energy / 8.31446261815324 * (1 / kelvin - 1 / 313.15)) for kelvin in (303.15, 313.15, 323.15)]
+    return [infinite + (zero * shift - infinite) * (1 + (relaxation * shift * shear) ** width) ** ((n - 1) / width)
+            for shift in shifts for shear in (4e7, 7e7, 1e8, 2e8, 4e8, 7e8, 1e9, 2e9)]
+
+
 # forward, data, arguments of fit, x, sd, correlations of the first with the others, profile intervals
 CALIBRATIONS = {
     "misra1a": (misra, MISRA_Y, {"x0": [500, 1e-4]}, [238.94212918, 5.5015643181e-4], [2.7070075241, 7.2668688436e-6],
@@ -100,6 +107,10 @@ CALIBRATIONS = {
                    [-0.1214, -0.1195, 0.0824, -0.6401],
                    [[0.760119, 0.761457], [2.47369e-07, 3.88299e-07], [1.45477, 1.49997], [0.035516, 0.0375758], [45.7746, 62.6607]]),
 }
+# Pa s, synthetic: at three temperatures and eight shear rates
+VISCOSITY = [0.0318619, 0.0236786, 0.0194568, 0.0133373, 0.00914138, 0.00670503, 0.00552466, 0.00376826, 0.0266442, 0.019656,
+             0.0162281, 0.0111088, 0.00763982, 0.00560483, 0.00462316, 0.00315254, 0.0221819, 0.0167061, 0.0137524, 0.00943234,
+             0.0064389, 0.0047677, 0.00391665, 0.00265948]
 BOYS = [3, 8, 26, 76, 225, 298, 258, 233, 189, 128, 68, 29, 14, 4]
 
 
@@ -149,6 +160,14 @@ class Fits(unittest.TestCase):
         ends = [1.54863, 1.72494, 0.411735, 0.478913, 1, 1.73308]
         self.assertNear([each for row in profile.interval for each in row], ends, 0.001)
 
+    def test_profiles_a_curved_valley_beside_bounds(self):  # a linear step leads to relaxation = 0, where y does not change
+        result = self.fit(lubricant, VISCOSITY, [0.05, 1e-3, 1e-6, 2, 0.6, 2e4], sigma=[0.003 * y for y in VISCOSITY],
+                          bounds=([0, 0, 0, 0.1, 0, 0], [math.inf] * 3 + [10, 1, math.inf]))
+        self.assertAlmostEqual(result.x[3], 1.94646, delta=1e-4)
+        profile = result.profile(["x4"])
+        self.assertAlmostEqual(profile.interval[0][1], 5.5572, delta=0.05)  # of nested fits by SciPy 1.10.1 (TRF)
+        self.assertEqual(profile.messages, [])
+
     def test_needs_no_file_for_a_closure_and_makes_no_call_twice(self):
         calls = []
 
@@ -177,6 +196,25 @@ class Fits(unittest.TestCase):
 
         _, data, given, x, sd, *_ = CALIBRATIONS["puromycin"]
         self.assertNear(self.fit(forward, data, **given).x, x, 1e-6)
+
+    def test_a_script_that_fails_here_and_there_passes_its_checks(self):
+        script = self.folder + "/script.py"
+        with open(script, "w") as file:
+            file.write("import isoline, struct, sys, zlib\n"
+                       f"ppm, salt, factor = {PPM}, *map(float, sys.argv[1:])\n"
+                       "def forward(x):\n"
+                       "    if zlib.crc32(struct.pack('3d', *x, salt)) % 10 == 0:\n"
+                       "        raise RuntimeError('no mesh')\n"
+                       "    return [x[0] * c / (x[1] + c) for c in ppm]\n"
+                       "def vjp(x, w):\n"
+                       "    return [factor * sum(v * c / (x[1] + c) for v, c in zip(w, ppm)),\n"
+                       "            factor * sum(-v * x[0] * c / (x[1] + c) ** 2 for v, c in zip(w, ppm))]\n"
+                       "given = {'vjp': vjp} if factor else {'differences': True}\n"
+                       "isoline.problem(forward, start=[100, 1], start_scale='own', target=[100.0] * 12, **given)\n")
+        for words, code in (("1 0", 0), ("2 0", 0), ("2 1", 0), ("3 1", 0), ("2 1.1", 2)):  # salt, factor of vjp
+            ran = subprocess.run([os.environ["ISOLINE"], "check", f"process[command=\"{sys.executable} {script} {words}\"]"],
+                                 capture_output=True, text=True, timeout=120)
+            self.assertEqual(ran.returncode, code, words + ran.stdout + ran.stderr)
 
     def test_has_no_uncertainty_without_a_fit(self):
         flat = self.fit(lambda x: misra(x[:2]), MISRA_Y, [500, 1e-4, 1], names=["a", "b", "idle"])

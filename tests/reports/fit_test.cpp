@@ -6,6 +6,7 @@
 #include "core/results/uncertainty.h"
 #include "reports/sections/answers.h"
 #include "reports/sections/sections.h"
+#include "reports/sections/words.h"
 #include "tests/reports/fixture.h"
 
 namespace isoline::reports {
@@ -67,6 +68,20 @@ TEST(Fit, IsTheFirstSectionAndHasIntervalsAndBasins) {
   // the least loss of the records counts
   EXPECT_FALSE(c.problems[0].lacks_least_loss());
   EXPECT_LT(c.taken(c.runs[0], Measure::work, 0), kNever);
+}
+
+// A run whose last step is worse than one before, as the digits of a program can have it.
+TEST(Fit, IsNotCalledUnsolvedWhereNoRunEndsAtTheLeastLoss) {
+  Record record = fit_of("a", 2.001);
+  record.summary.best_loss = 2;
+  const Compared c({record});
+  const auto sentences = document_of(c).section("standings").readings;
+  const auto is_said = [&](const std::string& sentence) {
+    return std::ranges::any_of(sentences,
+                               [&](const Reading& each) { return each.text == sentence; });
+  };
+  EXPECT_TRUE(is_said(words("ranking.none-near", tau_name(c))));
+  EXPECT_FALSE(is_said(words("ranking.none-solved", tau_name(c))));
 }
 
 TEST(Fit, HasTheProfilesOfItsCellAndNoOthers) {

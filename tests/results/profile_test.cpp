@@ -69,6 +69,19 @@ TEST(LikelihoodProfiles, AreInfiniteWhereTheyStayFlat) {
   EXPECT_NE(profile.messages.at(0).find("flat"), std::string::npos);
 }
 
+TEST(LikelihoodProfiles, EndWhereTheyJumpAndSaySo) {
+  const auto jumping = [](std::size_t unknown, const std::vector<Real>& x) {
+    std::optional<Refit> refit = parabola(unknown, x);
+    if (x[0] > 1.3) refit->sum_of_squares = 1e6;
+    return refit;
+  };
+  const LikelihoodProfile profile = profile_of(fit_of(), 0, jumping);
+  EXPECT_NEAR(profile.high, 1.3, 1e-3);
+  EXPECT_LT(profile.value.size(), 25U) << "values that only bisect the jump";
+  ASSERT_EQ(profile.messages.size(), 1U);
+  EXPECT_NE(profile.messages[0].find("inexact"), std::string::npos);
+}
+
 TEST(LikelihoodProfiles, StopBeforeWhatFailsAndReportABetterFit) {
   const auto failing = [](std::size_t unknown, const std::vector<Real>& x) -> std::optional<Refit> {
     if (x[0] > 1.1) return std::nullopt;
