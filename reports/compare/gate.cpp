@@ -506,8 +506,12 @@ void conclude(GateResult& result, const GateOptions& options) {
 
 // The file where it is a baseline; nothing of a folder.
 std::optional<std::vector<ComparedCell>> read_baseline(const std::filesystem::path& path) {
-  require(is_there(path),
-          [&] { return fmt::format("{}: no such result folder or baseline", path.string()); });
+  require(is_there(path), [&] {
+    return fmt::format(
+        "{}: no such result folder or baseline; `isoline run --out FOLDER` "
+        "creates a result folder",
+        path.string());
+  });
   std::error_code unknown;
   if (std::filesystem::is_directory(path, unknown)) return std::nullopt;
   const Json json = read_json(path);

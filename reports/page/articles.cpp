@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -186,7 +187,7 @@ std::string options_html(const Comparison& c, std::size_t s, const Sheet& sheet)
                         html_text(values_of(c, s, text_at(option, "name"))),
                         html_text(text_at(option, "doc")), html_text(text_at(option, "range")));
   return fmt::format(
-      "<details><summary>Options</summary><div class=scroll tabindex=0 role=region "
+      "<details><summary>Options</summary><div class=scroll tabindex=0 role=group "
       "aria-label=\"Options of {}\"><table><thead><tr><th scope=col>option<th scope=col>default"
       "<th scope=col>in these runs<th scope=col>meaning<th scope=col>range<tbody>{}</table>"
       "</div></details>",
@@ -239,8 +240,12 @@ std::string facts_text(const Sheet& sheet) {
   if (sheet.residuals > 0)
     facts += fmt::format("{} residual{}, ", sheet.residuals, sheet.residuals == 1 ? "" : "s");
   std::vector<std::string> conditions;  // of J, where they are known
-  if (sheet.start_condition) conditions.push_back(figure(*sheet.start_condition) + " at the start");
-  if (sheet.condition) conditions.push_back(figure(*sheet.condition) + " at the solution");
+  const auto add = [&](const std::optional<Real>& condition, const char* where) {
+    if (condition)
+      conditions.push_back((std::isfinite(*condition) ? figure(*condition) : "∞") + where);
+  };
+  add(sheet.start_condition, " at the start");
+  add(sheet.condition, " at the solution");
   if (!conditions.empty()) facts += fmt::format("condition number of J {}, ", joined(conditions));
   const bool has_inverse = !sheet.inverse.empty() && sheet.inverse != "none";
   return facts + (has_inverse ? sheet.inverse : "no") + " inverse";
@@ -262,7 +267,7 @@ std::string problem_html(const Comparison& c, std::size_t p,
              "<p class=reading>{3}</p><div class=solve><div class=curves>{4}</div><div "
              "class=reached></div></div>",
              p, html_text(problem_name(problem)), problem_sheet_html(problem),
-             html_text(curve_reading(c, p)), curves_html(c, p)) +
+             prose_html(curve_reading(c, p)), curves_html(c, p)) +
          planes_html(c, p) + (fields ? fields_html(c, *fields) : "") + "</noscript></article>\n";
 }
 

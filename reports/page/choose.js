@@ -43,6 +43,6 @@ function liveChoose(place) {
   const choices = (key, caption, names) => newSwitch(caption, Object.fromEntries(names.map((name, i) => [i, name])), String(means[key]), choose(key));
   place.replaceChildren(choices('level', 'Simulator', ['forward only', '+ gradient', '+ Jacobian', '+ Hessian']), choices('inverse', 'Local inverse', ['no', 'yes']),
       choices('size', 'Unknowns', SIZES), choices('budget', 'Forward solves', BUDGETS),
-      ...DATA.dataKinds.length > 1 ? [choices('kind', 'Data', DATA.dataKinds)] : [], answer);
+      DATA.dataKinds.length > 1 ? choices('kind', 'Data', DATA.dataKinds) : element('p', {className: 'lead'}, ...guideText(worded('choose-exact'))), answer);
   live(answer, draw);
 }

@@ -59,7 +59,7 @@ function answerOf({answer}) {
   const rowOf = (i) => element('tr', {}, ...columns.map((texts, column) => element(i === 0 || column === 0 ? 'th' : 'td', {scope: i === 0 ? 'col' : 'row'}, texts[i])));
   const caption = worded('answer', {seed, loss, norm: norm === undefined ? '' : worded('answer-norm', {norm})}), rest = file === '' ? 'answer-rest' : 'answer-file';
   filledTable(table, caption, shown === 0 ? [] : [rowOf(0)], Array.from({length: shown}, (_, i) => rowOf(i + 1)));
-  return [scrolled(table), ...shown === unknowns ? [] : [element('p', {}, worded(rest, {shown, unknowns, file}))]];
+  return [scrolled(table), ...shown === unknowns ? [] : [element('p', {}, ...guideText(worded(rest, {shown, unknowns, file})))]];
 }
 
 // What is known of a method on a problem, its curve, its x, the command of all its runs, and each record.

@@ -12,7 +12,7 @@ function filledTable(table, caption, heads, rows) {
 // A table that scrolls by itself where it is wider than the page.
 function scrolled(table) {
   const place = element('div', {className: 'scroll', tabIndex: 0}, table), made = element('div', {}, place);
-  place.setAttribute('role', 'region');
+  place.setAttribute('role', 'group');
   place.setAttribute('aria-label', table.caption.textContent);
   addCopies(table);
   return made;

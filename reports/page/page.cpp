@@ -46,7 +46,7 @@ std::string filled(std::string_view page, const Parts& parts) {
 std::string remarks_html(const Document& document) {
   std::string html;
   for (const std::string& remark : document.remarks)
-    html += fmt::format("<li>{}</li>", html_text(remark));
+    html += fmt::format("<li>{}</li>", prose_html(remark));
   return html.empty() ? "" : "<ul class=remarks>" + html + "</ul>";
 }
 

@@ -19,6 +19,7 @@ namespace isoline::reports {
 
 // A section as every other: sentences, plots, tables. Complete without scripts.
 std::string section_html(const Section& section);
+std::string prose_html(std::string_view text);  // html_text with code between backticks
 
 // What no other format has.
 std::string details_html(const Comparison& comparison);

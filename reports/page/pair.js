@@ -112,7 +112,7 @@ function dotRows(rows) {
     made.style.setProperty('--at', at(tick));
     return made;
   })));
-  return element('ol', {className: 'bars-of'}, ...high > low ? [axis] : [], ...rows.map(({p, taken, words}) => {
+  return element('ol', {className: 'bars-of'}, ...high > low ? [axis] : [], ...rows.map(({p, taken, words, those = pair.methods}) => {
     const dots = taken.map((value, i) => {
       const dot = element('i', {className: value === Infinity ? 'lost' : ''}, value === Infinity ? '✗' : '');
       dot.style.setProperty('--at', at(value));
@@ -121,8 +121,8 @@ function dotRows(rows) {
     });
     const link = element('a', {href: `#problem-${p}`, title: DATA.problems[p].spec}, brief(DATA.problems[p])), row = element('li', {}, link, element('span', {className: 'way'}, ...dots), element('small', {}, words));
     row.dataset.p = p;
-    link.addEventListener('click', () => showLines(p, pair.methods));
-    row.addEventListener('click', ({target}) => { if (target !== link) openDrawer(p, ...pair.methods); });
+    link.addEventListener('click', () => showLines(p, those));
+    row.addEventListener('click', ({target}) => { if (target !== link) openDrawer(p, ...those); });
     return row;
   }));
 }
@@ -142,13 +142,16 @@ function learnedSentence(p, a, b) {
     interval: low > 0 && high !== null ? worded('learned-interval', {low: multiple(low), high: multiple(high)}) : worded('learned-few')}), chance > 0.05 ? ` ${worded('pair-open')}` : '', ...others ? [' ', element('a', {href: '#ratio-readings'}, worded('other-readings'))] : [])];
 }
 
-// Learned problems by the error in x at equal work.
+// Learned problems by the error in x at equal work: with the row that a method has there, whatever it was given.
 function learnedSection() {
   const rows = DATA.problems.flatMap(({learned}, p) => {
-    const found = pair.methods.map((s) => learned?.rows.find((row) => row.s === s)), taken = found.map((row) => row?.error ?? Infinity);
-    return found.includes(undefined) ? [] : [{p, taken, words: taken.map(figure).join(' : ')}];
+    const found = pair.methods.map((s) => learned?.rows.find((row) => row.s === s) ?? learned?.rows.find((row) => DATA.methods[row.s] === DATA.methods[s]));
+    const those = new Set(found.map((row) => row?.s)), taken = found.map((row) => row?.error ?? Infinity);
+    return those.has(undefined) || those.size < found.length ? [] : [{p, those: [...those], taken, words: taken.map(figure).join(' : ')}];
   });
-  return rows.length === 0 ? [] : [element('h3', {}, worded('learned-pair')), ...rows.flatMap(({p}) => pair.methods.slice(1).flatMap((s) => learnedSentence(p, pair.methods[0], s))), dotRows(rows)];
+  const apart = ({taken: [x, y]}) => Math.abs(Math.log(x / y)) || 0;
+  rows.sort((x, y) => apart(y) - apart(x));
+  return rows.length === 0 ? [] : [element('h3', {}, worded('learned-pair')), ...rows.flatMap(({p, those: [first, ...others]}) => others.flatMap((s) => learnedSentence(p, first, s))), dotRows(rows)];
 }
 
 // The work of each other method over settings, against that of the first: below the diagonal it needs less.

@@ -15,6 +15,18 @@
 #include "reports/sections/words.h"
 
 namespace isoline::reports {
+
+std::string prose_html(std::string_view text) {
+  std::string html;
+  std::size_t open = 0, close = 0;
+  while ((open = text.find('`')) != text.npos && (close = text.find('`', open + 1)) != text.npos) {
+    html += html_text(text.substr(0, open)) + "<code>" +
+            html_text(text.substr(open + 1, close - open - 1)) + "</code>";
+    text.remove_prefix(close + 1);
+  }
+  return html + html_text(text);
+}
+
 namespace {
 
 // A button that copies the text by a script.
@@ -37,7 +49,7 @@ std::string cell_html(const Table& table, const TableCell& cell, std::size_t col
   tag += about(table.column_topics, column);
   if (cell.of) tag += fmt::format(" data-of=\"{} {}\"", cell.of->first, cell.of->second);
   if (!cell.note.empty()) tag += fmt::format(" title=\"{}\"", html_text(cell.note));
-  std::string text = html_text(cell.text);
+  std::string text = prose_html(cell.text);
   if (align == 'c' && !text.empty()) text = "<code>" + text + "</code>";
   if (!cell.link.empty()) text = fmt::format("<a href=\"{}\">{}</a>", html_text(cell.link), text);
   if (cell.is_best) text = "<b>" + text + "</b>";
@@ -81,7 +93,7 @@ std::string table_html(const Table& table, const std::string& name) {
   constexpr std::size_t kTall = 25;  // rows: more scroll in a window of their own
   const bool is_tall = table.rows.size() > kTall && !table.is_folded;
   html += fmt::format(
-      "{}<div class=\"scroll{}\" tabindex=0 role=region aria-label=\"{}\"><table class=sortable "
+      "{}<div class=\"scroll{}\" tabindex=0 role=group aria-label=\"{}\"><table class=sortable "
       "data-table=\"{}\">{}</table></div>",
       table.is_folded ? "<details><summary>Table</summary>" : "", is_tall ? " tall" : "",
       html_text(table.title.empty() ? name : table.title), table.id, rows_html(table));
@@ -105,7 +117,7 @@ std::string section_html(const Section& section) {
     html += fmt::format(
         "<p class=reading>{}{}</p>\n",
         reading.title.empty() ? "" : fmt::format("<b>{}:</b> ", html_text(reading.title)),
-        html_text(reading.text));
+        prose_html(reading.text));
   if (!section.plots.empty()) {
     html += "<div class=plots>\n";
     for (const Plot& plot : section.plots) html += plot_html(plot);
@@ -299,8 +311,9 @@ std::string row_html(const Comparison& c, std::size_t s) {
   std::array<std::optional<bool>, std::size(kProperties)> answers;
   for (const AuditedOptimizer& audited : c.study->audits)
     if (audited.name == axis.method) answers = answers_of(audited);
-  for (const std::optional<bool>& answer : answers)
-    html += !answer ? "<td class=none>" : *answer ? "<td class=yes>✓" : "<td class=no>✗";
+  if (!c.study->audits.empty())
+    for (const std::optional<bool>& answer : answers)
+      html += !answer ? "<td class=none>" : *answer ? "<td class=yes>✓" : "<td class=no>✗";
   return html + fmt::format("<td class=text>{}<td class=text>{}\n",
                             html_text(counted_oracles(c, s)), html_text(joined(axis.privileges)));
 }
@@ -333,7 +346,9 @@ std::string methods_html(const Comparison& c) {
       "<table class=\"grid sortable\" id=methods-table><caption>Methods by rank; select a name for "
       "details</caption><thead><tr><th scope=col>method<th scope=col>kind";
   std::string legend;
+  const bool is_measured = !c.study->audits.empty();
   for (const auto& [name, meaning] : kProperties) {
+    if (!is_measured) break;
     html += fmt::format("<th scope=col>{}", name);
     add_meaning(legend, name, meaning);
   }
@@ -341,10 +356,12 @@ std::string methods_html(const Comparison& c) {
       "<th scope=col>required derivatives<th scope=col id=privileges>extra information "
       "(†)<tbody>\n";
   for (std::size_t s = 0; s < c.optimizers.size(); ++s) html += row_html(c, s);
-  return "<div class=\"scroll pane\" tabindex=0 role=region aria-label=Methods>" + html +
-         "</table></div><p class=legend>Measured on small problems with known solutions, with "
-         "default options. " +
-         legend + ". Empty: not measured.</p>";
+  return "<div class=\"scroll pane\" tabindex=0 role=group aria-label=Methods>" + html +
+         "</table></div>" +
+         (is_measured ? "<p class=legend>Measured on small problems with known solutions, with "
+                        "default options. " +
+                            legend + ". Empty: not measured.</p>"
+                      : "");
 }
 
 }  // namespace isoline::reports

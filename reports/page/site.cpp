@@ -194,7 +194,7 @@ std::string problem_page(const std::string& name, const std::vector<Place>& plac
       html = problem_sheet_html(problem) + (are_many ? settings_html(places, kFirst) : "");
     html += fmt::format("<h2>{} · {}</h2>\n", html_text(shown_spec(problem.spec)),
                         link("../" + suite_address(*place.results), place.results->name));
-    html += fmt::format("<p class=reading>{}</p>\n", html_text(curve_reading(c, place.index)));
+    html += fmt::format("<p class=reading>{}</p>\n", prose_html(curve_reading(c, place.index)));
     for (const NamedDrawing& one : place.results->drawings)
       if (one.problem == place.index) html += drawing_html(*place.results, one, "../");
     html += relinked(best_methods_html(c, place.index), *place.results, "../");
@@ -359,7 +359,7 @@ std::string doc_body(const Site& site, std::string_view html) {
         anchor += fmt::format("-{}", earlier);
       tag = fmt::format("<h{} id=\"{}\">", html[2], anchor);
     } else if (starts("<table>")) {
-      tag = "<div class=scroll tabindex=0 role=region aria-label=Table><table>";
+      tag = "<div class=scroll tabindex=0 role=group aria-label=Table><table>";
     } else if (starts("</table>")) {
       tag += "</div>";
     }

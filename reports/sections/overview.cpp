@@ -196,10 +196,12 @@ std::vector<std::string> remarks(const Comparison& c) {
   for (const auto& [method, those] : sources)
     named.push_back(words("remarks.source", method, joined({those.begin(), those.end()}, "; ")));
   if (!named.empty()) all.push_back(words("remarks.imported", joined(named)));
+  std::map<const char*, std::vector<std::string>> unknown;
   for (const ProblemAxis& problem : c.problems)
     if (!problem.is_minimum_known)
-      all.push_back(words(problem.is_least_of_runs ? "remarks.least-of-runs" : "remarks.no-minimum",
-                          problem_name(problem)));
+      unknown[problem.is_least_of_runs ? "remarks.least-of-runs" : "remarks.no-minimum"].push_back(
+          problem_name(problem));
+  for (const auto& [key, problems] : unknown) all.push_back(words(key, joined(problems)));
   return all;
 }
 

@@ -147,6 +147,17 @@ std::string group_text(const Comparison& c, const Decision& decision) {
          " " + variation_text(decision);
 }
 
+std::string most_solved_text(const Decision& decision) {
+  const std::size_t most =
+      decision.places.empty()
+          ? 0
+          : std::ranges::max_element(decision.places, {}, &results::Place::solved)->solved;
+  const auto count =
+      static_cast<std::size_t>(std::ranges::count(decision.places, most, &results::Place::solved));
+  return words("ranking.most-solved", count, most, decision.settings,
+               count > 1 ? words("ranking.within-noise") : "");
+}
+
 // The settings that methods of each kind solve: their order within a kind is mostly chance.
 std::string kinds_text(const Comparison& c, const Decision& decision) {
   std::map<std::string, std::vector<std::size_t>> kinds;
@@ -158,14 +169,7 @@ std::string kinds_text(const Comparison& c, const Decision& decision) {
     std::ranges::sort(solved);
     parts.push_back(words("ranking.kind", kind, range_text(solved.front(), solved.back())));
   }
-  const std::size_t most =
-      decision.places.empty()
-          ? 0
-          : std::ranges::max_element(decision.places, {}, &results::Place::solved)->solved;
-  const auto count =
-      static_cast<std::size_t>(std::ranges::count(decision.places, most, &results::Place::solved));
-  std::string text = words("ranking.most-solved", count, most, decision.settings,
-                           count > 1 ? " " + words("ranking.within-noise") : "");
+  std::string text = most_solved_text(decision);
   if (parts.size() > 1)
     text += " " + words("ranking.kinds", decision.settings, joined(parts, "; "));
   return text;
@@ -338,7 +342,7 @@ std::vector<std::string> first_sentences(const Comparison& c) {
     return {words("ranking.shared-time"), words("ranking.chosen")};
   const bool can_decide = c.decision->places.size() < 2 || c.decision->fewest_wins().has_value();
   return {first_sentence(c, *c.decision),
-          can_decide ? varies_text(c, *c.decision) : kinds_text(c, *c.decision),
+          can_decide ? varies_text(c, *c.decision) : most_solved_text(*c.decision),
           words("ranking.chosen")};
 }
 

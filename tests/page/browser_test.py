@@ -135,6 +135,9 @@ class Page(InBrowser):
             seen = self.browser.run("return [...document.querySelectorAll('.tab')].filter((tab) => "
                                     "tab.getClientRects().length > 0).map((tab) => tab.id)")
             self.assertEqual(seen, [tab])
+            names = self.browser.run("return [...document.querySelectorAll('[role=region]')]"
+                                     ".map((one) => one.getAttribute('aria-label'))")
+            self.assertEqual(len(names), len(set(names)), "landmarks of one name")
             self.assertEqual(self.browser.run("return document.querySelectorAll("
                                               "'nav [aria-current]').length"), 1)
             count = self.browser.run("return document.querySelectorAll('*').length")
@@ -181,6 +184,9 @@ class Page(InBrowser):
         self.assertLessEqual(len(verdict.split()), 60)
         self.assertLessEqual(self.browser.run(
             "return document.querySelectorAll('#overview > :is(.verdict, .lead):not(.first ~ *)').length"), 3)
+        said = self.browser.run("return [...document.querySelectorAll('#overview > :is(.verdict, .lead):not(.first ~ *)')]"
+                                ".map((one) => one.innerText).join(' ')")
+        self.assertLessEqual(len(re.findall(r"[.](?:\s|$)", said)), 3, said)
         self.assertLess(self.browser.run("return document.documentElement.scrollHeight "
                                          "/ innerHeight"), 2.2)
         self.assertEqual(self.browser.run("return document.querySelectorAll('.settled dt').length"), 3)
@@ -963,7 +969,7 @@ class Whole(InBrowser):
     @classmethod
     def made(cls, folder):
         run("run", "--problem", "rosenbrock,helical-valley,poisson,heat,burgers,nist[dataset=Misra1a],"
-            "sine[xi=32,mode=learn]", "--optimizer", "gd,adam,gauss-newton,ceres-lm", "--seeds", "2",
+            "sine[xi=32,mode=learn]", "--optimizer", "gd,adam,sip,gauss-newton,ceres-lm", "--seeds", "2",
             "--iterations", "40", "--out", folder, "--quiet")
         return pathlib.Path(folder, "report", "index.html")
 
@@ -982,6 +988,13 @@ class Whole(InBrowser):
                 ".map((head) => head.getBoundingClientRect().right)")
             self.assertGreater(len(ends), 0)
             self.assertLessEqual(max(ends), width)
+
+    def test_a_pair_is_compared_on_learned_problems_whatever_a_method_was_given_there(self):
+        self.open("#compare")
+        link = self.browser.wait("return document.querySelector('#pair a[title=\"sine[xi=32,mode=learn]\"]') !== null")
+        self.assertTrue(link)
+        named = self.browser.run("return pair.methods.map((s) => DATA.optimizers[s])")
+        self.assertNotIn("sip, given the exact Hessian", named)
 
     def test_every_error_of_a_learned_problem_says_where_it_is_read(self):
         self.open("")

@@ -172,6 +172,11 @@ TEST(Page, IsSentInAsciiAndWaitsInShortPieces) {
 }
 
 // A sheet names the least that a method can do with; the page names what its runs asked for.
+TEST(Page, ShowsCodeBetweenBackticksAsCode) {
+  EXPECT_EQ(prose_html("use `a<b` or `c`, or `d"),
+            "use <code>a&lt;b</code> or <code>c</code>, or `d");
+}
+
 TEST(Page, NamesTheDerivativesThatRunsCounted) {
   Study study;
   study.runs = {record_of({.problem = "a", .optimizer = "hig"}),
