@@ -328,14 +328,12 @@ void Store::remove_checkpoint(const Request& request) const {
 }
 
 void Store::look_for_states() {
-  std::vector<std::string> names;
+  states_.clear();
   try {
-    names = names_in(folder_ / "checkpoints");
+    for (std::string& name : names_in(folder_ / "checkpoints"))
+      if (name.ends_with(".state") || name.ends_with(".end")) states_.insert(std::move(name));
   } catch (const UsageError&) {  // cells start at their beginning
   }
-  has_states_ = std::ranges::any_of(names, [](const std::string& name) {
-    return name.ends_with(".state") || name.ends_with(".end");
-  });
 }
 
 fs::path Store::end_stem(const Request& request) const {
@@ -349,18 +347,15 @@ fs::path Store::end_path(const fs::path& stem, const Budget& needed) {
 }
 
 fs::path Store::end_within_budget(const Request& request) const {
-  if (!has_states_) return {};
+  if (states_.empty()) return {};
   Budget latest{.iterations = 0};
-  std::vector<std::string> names;
-  try {
-    names = names_in(folder_ / "checkpoints");
-  } catch (const UsageError&) {  // the cell starts at its beginning
-  }
   const fs::path stem = end_stem(request);
-  for (const std::string& name : names) {
+  const std::string start = stem.filename().string() + "-";
+  for (auto name = states_.lower_bound(start); name != states_.end() && name->starts_with(start);
+       ++name) {
     Budget needed;
-    const std::string pattern = stem.filename().string() + "-%" SCNd64 "-%" SCNd64;
-    if (std::sscanf(name.c_str(), pattern.c_str(), &needed.iterations, &needed.work) == 2 &&
+    if (std::sscanf(name->c_str() + start.size(), "%" SCNd64 "-%" SCNd64, &needed.iterations,
+                    &needed.work) == 2 &&
         needed.iterations <= request.budget.iterations && needed.work <= request.budget.work &&
         needed.iterations > latest.iterations)
       latest = needed;

@@ -59,7 +59,7 @@ class Store {
   std::filesystem::path checkpoint_path(const Request& request) const;
   void remove_checkpoint(const Request& request) const;
   void look_for_states();  // once before many cells, which then need not look for theirs
-  bool has_states() const { return has_states_; }
+  bool has_states() const { return !states_.empty(); }
   // States of runs of this build that differ from the request in their budget of iterations and
   // work alone: what their files' names begin with; the file of one that needs this budget; and the
   // latest one within the budget of the request, or nothing.
@@ -77,7 +77,7 @@ class Store {
   std::vector<std::string> remarks_;
   std::vector<std::pair<std::filesystem::path, std::string>> waiting_;  // texts for flush()
   std::set<std::filesystem::path> obsolete_;  // fields that earlier runs have kept: it removes them
-  bool has_states_ = false;
+  std::set<std::string> states_;  // names of files, as look_for_states() found them
 };
 
 // The record of a request in a folder, of any build.

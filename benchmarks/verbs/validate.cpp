@@ -68,6 +68,14 @@ struct Examined {
   std::optional<RecordIdentity> identity;
 };
 
+// A copy under the name of another cell would stand for that cell.
+std::string name_violation(const Json& record, const fs::path& path) {
+  const std::string own = record_file_name(record.at("cell"), record.at("build"));
+  return path.parent_path().filename() != "runs" || path.filename() == own
+             ? ""
+             : "its file has another name than its cell and build, which is " + own;
+}
+
 Examined examined_record(const Json& record, const std::string& path) {
   const Json &request = record.at("request"), parts = record.value("build_parts", Json::object());
   const std::string instance =
@@ -78,7 +86,8 @@ Examined examined_record(const Json& record, const std::string& path) {
                     .identity = {{path, record.at("cell"), record.at("build"), instance,
                                   record.value("noise_level", Json()),
                                   record.at("summary").at("start_loss").is_number()}}};
-  for (const std::string& each : {fields_violation(record, path), answer_violation(record, path)})
+  for (const std::string& each : {fields_violation(record, path), answer_violation(record, path),
+                                  name_violation(record, path)})
     if (!each.empty()) examined.violations.push_back(each);
   return examined;
 }

@@ -327,6 +327,15 @@ TEST_F(Exchange, AFileThatTheManifestLacksOrThatIsMissingIsNamed) {
                         "is missing, but SHA256SUMS"}});
 }
 
+TEST_F(Exchange, ARecordUnderTheNameOfAnotherCellIsNamed) {
+  shell.expect(
+      "./isoline run --problem rosenbrock --optimizer gd --seeds 2 --iterations 5 --quiet "
+      "--no-report --out copied && ./isoline validate copied");
+  shell("cd copied/runs && cp $(ls)");
+  shell.expect("./isoline validate copied",
+               {.exit_code = 2, .out = {"its file has another name than its cell and build"}});
+}
+
 TEST_F(Exchange, ANoiseLevelUnlikeThatOfItsInstanceIsNamed) {
   shell.expect(
       "./isoline run --problem 'exponential[n=4,noise=0.01]' --optimizer gd,gauss-newton,kfac "
