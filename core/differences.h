@@ -86,8 +86,8 @@ auto difference_quotient(const std::array<Real, 2>& at, const Array& y0, const A
 }
 
 // dy/dt at 0 by calls y(t) at these offsets, of which y(t) may round t. Where no call has a value,
-// the other side is tried if there is room; without any, 0. Of two, a call halfway stands in for
-// one.
+// the other side is tried if there is room, and then shorter steps; without any, 0. Of two, a call
+// halfway stands in for one.
 template <class Array>
 Array quotient_of_calls(const std::array<Real, 2>& offsets, const Room& room, const Array& y0,
                         const auto& y) {
@@ -101,8 +101,12 @@ Array quotient_of_calls(const std::array<Real, 2>& offsets, const Room& room, co
   };
   for (const Real t : offsets)
     if (t != 0) take(t);
-  const Real back = -offsets[0];
-  if (count == 0 && back != 0 && std::abs(back) <= (back > 0 ? room.up : room.down)) take(back);
+  constexpr Real kShortest = 0.1;  // of the step
+  for (Real share = 1; count == 0 && share > kShortest; share /= 2)
+    for (const Real t : {share * offsets[0], -share * offsets[0]}) {
+      const bool is_known = t == 0 || (share == 1 && (t == offsets[0] || t == offsets[1]));
+      if (count == 0 && !is_known && std::abs(t) <= (t > 0 ? room.up : room.down)) take(t);
+    }
   if (count == 1 && offsets[1] != 0) take(at[0] / 2);  // of second order still, on one side
   if (count == 0) return Array::Zero(y0.rows(), y0.cols());
   if (count == 1) at[1] = 0;

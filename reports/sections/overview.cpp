@@ -196,7 +196,7 @@ std::vector<std::string> remarks(const Comparison& c) {
   for (const auto& [method, those] : sources)
     named.push_back(words("remarks.source", method, joined({those.begin(), those.end()}, "; ")));
   if (!named.empty()) all.push_back(words("remarks.imported", joined(named)));
-  std::map<const char*, std::vector<std::string>> unknown;
+  std::map<std::string, std::vector<std::string>> unknown;  // by sentence
   for (const ProblemAxis& problem : c.problems)
     if (!problem.is_minimum_known)
       unknown[problem.is_least_of_runs ? "remarks.least-of-runs" : "remarks.no-minimum"].push_back(

@@ -547,8 +547,12 @@ TEST(Differences, UseTheOtherSideOfAFailedCall) {
     EXPECT_NEAR(slope(-1, 0, offsets, 1)[0], 3, 1e-9);
     EXPECT_EQ(slope(1, 1, offsets, 1), Vector::Zero(2));
   }
-  EXPECT_EQ(slope(-1, 0, {h, 0}, h / 2), Vector::Zero(2));
+  EXPECT_EQ(slope(-1, 0, {h, 0}, 0), Vector::Zero(2));
+  EXPECT_NEAR(slope(-1, 0, {h, 0}, h / 2)[0], 3, 1e-9);
   EXPECT_NEAR(slope(0, 1, {h, -h}, 1)[0], 3, 1e-9);
+  for (const Real most : {0.6, 0.2})  // of the step: farther away, calls fail on both sides
+    EXPECT_NEAR(slope(-most * h, most * h, {h, -h}, 1)[0], 3, 1e-8);
+  EXPECT_EQ(slope(-1, 1, {0, 0}, 1), Vector::Zero(2));
 }
 
 }  // namespace

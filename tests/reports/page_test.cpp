@@ -171,12 +171,12 @@ TEST(Page, IsSentInAsciiAndWaitsInShortPieces) {
     EXPECT_LE(page.find('<', page.find('>', at)) - page.find('>', at), kLongest + 1);
 }
 
-// A sheet names the least that a method can do with; the page names what its runs asked for.
 TEST(Page, ShowsCodeBetweenBackticksAsCode) {
   EXPECT_EQ(prose_html("use `a<b` or `c`, or `d"),
             "use <code>a&lt;b</code> or <code>c</code>, or `d");
 }
 
+// A sheet names the least that a method can do with; the page names what its runs asked for.
 TEST(Page, NamesTheDerivativesThatRunsCounted) {
   Study study;
   study.runs = {record_of({.problem = "a", .optimizer = "hig"}),
