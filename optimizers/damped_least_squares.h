@@ -73,6 +73,7 @@ class DampedLeastSquares {
     set_right(b);
   }
   void set_right(const Vector& b) { right_.head(rows_) = b; }
+  void hold(Index i) { J_.col(i).setZero(); }  // no step of it, after set() of a dense J
   // d and J d; false where they are not finite.
   bool solve(Real mu, std::string_view factorization, Vector& d, Vector& Jd) {
     if (is_sparse_) {

@@ -74,9 +74,10 @@ struct LevenbergMarquardt {
     bool is_retried = false;  // a step was rejected, and J updated by it, since J was fresh
     bool is_limited = false;  // the last step, by the radius
     bool has_point = false;
-    Index updates = 0;  // of J since it was fresh
-    Real radius = 0;    // Δ, of steps by differences
-    Real gain = 1;      // actual over predicted decrease of the last step, 0 where rejected
+    Index updates = 0;      // of J since it was fresh
+    Real radius = 0;        // Δ, of steps by differences
+    Real gain = 1;          // actual over predicted decrease of the last step, 0 where rejected
+    Real noise = kEpsilon;  // of y in a call, where the problem's own J is by differences
     Linearization at, trial;
     Vector step, candidate, bend;    // (n), of the acceleration, or with S
     Vector Jd, residual, Jbend;      // (m·B)
@@ -93,7 +94,7 @@ struct LevenbergMarquardt {
     s.differences.persist(archive);
     s.curvature.persist(archive);
     archive(s.is_fine, s.has_point, s.is_retried, s.is_limited, s.updates, s.radius, s.gain,
-            s.last_length, s.last_promise, s.residual);
+            s.noise, s.last_length, s.last_promise, s.residual);
   }
 
   State init(Meter& f, const Vector&) const {
@@ -125,7 +126,12 @@ struct LevenbergMarquardt {
     const bool accelerates = acceleration > 0 && s.gain < kPoorGain;
     if (accelerates && !accelerate(f, theta, s)) return reject(f, theta, s);
     s.candidate = theta + s.step;
-    if (f.bounds() && !f.bounds()->hold(s.candidate)) predicted = project(f, theta, s);
+    if (f.bounds() && !f.bounds()->hold(s.candidate)) {
+      keep_within(f, theta, s);
+      s.candidate = f.bounds()->nearest(theta + s.step);
+      s.squares.push_dense(s.step, s.Jd);
+      predicted = s.residual.dot(s.Jd) - 0.5 * s.Jd.squaredNorm();
+    }
     if (s.candidate == theta && !f.has_fresh_batches()) return stop(f, theta, s);
     f.linearize(s.candidate, s.trial);
     const Real actual = s.squares.misfit() - 0.5 * (s.trial.y() - f.target()).squaredNorm();
@@ -361,14 +367,33 @@ struct LevenbergMarquardt {
       ++s.updates;
     }
     s.squares.set(f, s.at, theta, s.residual, scaling);
+    s.noise = std::max(s.noise, f.problem().products().noise);
   }
 
-  // The candidate, moved onto the bounds, and the decrease of ½‖r‖² that J predicts for it.
-  static Real project(const Meter& f, const Vector& theta, State& s) {
-    s.candidate = f.bounds()->nearest(s.candidate);
-    s.step = s.candidate - theta;
-    s.squares.push_dense(s.step, s.Jd);
-    return s.residual.dot(s.Jd) - 0.5 * s.Jd.squaredNorm();
+  // A step that leaves the bounds takes the unknowns that leave onto them, and the others from
+  // there by J: moved onto the bounds as it is, it need not lower the loss.
+  void keep_within(Meter& f, const Vector& theta, State& s) const {
+    const Bounds& bounds = *f.bounds();
+    DampedLeastSquares rest = s.squares;
+    Vector to = theta, moved, step;
+    std::vector<bool> is_held(static_cast<std::size_t>(theta.size()));
+    constexpr int kMostPasses = 8;
+    for (int pass = 0; pass < kMostPasses && !bounds.hold(theta + s.step); ++pass) {
+      const Vector beyond = theta + s.step, nearest = bounds.nearest(beyond);
+      for (Index i = 0; i < to.size(); ++i) {
+        if (beyond[i] == nearest[i]) continue;
+        to[i] = nearest[i];
+        is_held[static_cast<std::size_t>(i)] = true;
+      }
+      moved = to - theta;
+      s.squares.push_dense(moved, s.Jd);
+      rest.set(f, s.at, to, s.residual - s.Jd, scaling);
+      for (Index i = 0; i < to.size(); ++i)
+        if (is_held[static_cast<std::size_t>(i)]) rest.hold(i);
+      if (!rest.solve(s.damping.mu, factorization, step, s.Jd)) break;
+      s.step = moved + step;
+    }
+    s.step = bounds.nearest(theta + s.step) - theta;  // what is left, or rounding
   }
 
   // The decrease of ½‖r‖², ½‖J d‖² + μ‖D d‖², without cancellation.
@@ -383,9 +408,8 @@ struct LevenbergMarquardt {
   static Real rounding_of_misfit(Meter& f, const State& s) {
     constexpr Real kSure = 3;  // standard deviations
     const Real largest = (f.target().reshaped() - s.residual).lpNorm<Eigen::Infinity>();  // of y
-    const Real error = s.jacobian == "exact"      ? kEpsilon
-                       : s.differences.is_noisy() ? kSure * s.differences.noise()
-                                                  : s.differences.noise();
+    const Real noise = s.jacobian == "exact" ? s.noise : s.differences.noise();
+    const Real error = noise > kEpsilon ? kSure * noise : noise;
     return error * (s.squares.misfit() + s.residual.norm() * largest);
   }
 
@@ -396,7 +420,7 @@ struct LevenbergMarquardt {
     constexpr Real kShare = 0.1, kAccurate = 1e-2;  // of d, and of J d
     s.Jbend = f.target().reshaped() - s.residual;   // y
     const Real error = kEpsilon * s.Jbend.norm() / (kShare * kShare);
-    if (error > kAccurate * s.Jd.norm()) return true;
+    if (s.noise > kEpsilon || error > kAccurate * s.Jd.norm()) return true;
     s.candidate = theta + kShare * s.step;
     if (f.bounds() && !f.bounds()->hold(s.candidate)) return true;  // d is projected as it is
     f.linearize(s.candidate, s.trial);

@@ -6,6 +6,7 @@
 
 #include "problems/features.h"
 #include "run.h"
+#include "trial_problems.h"
 
 namespace isoline::optimizers {
 namespace {
@@ -72,6 +73,21 @@ TEST(Bounds, ASolutionOnThemSatisfiesTheConditionsOfKarushKuhnAndTucker) {
       EXPECT_GT(active, 0) << what;
     }
   }
+}
+
+// Without bounds the first step ends at (10, −9). Moved onto the bound as it is, to (10, 0), it
+// raises the loss, and steps that shorten until this ends hardly move.
+TEST(Bounds, AStepThatLeavesThemTakesTheOtherUnknownsByTheModel) {
+  const Problem problem(
+      {.physics = std::make_unique<Linear>(Eigen::Matrix2d{{1, 1}, {0, 0.1}}),
+       .start = Eigen::Vector2d(1, 1),
+       .target = Eigen::Vector2d(1, -0.9),
+       .bounds = problems::Bounds{Eigen::Vector2d(-100, 0), Eigen::Vector2d(100, 100)}});
+  const Outcome outcome = run(problem, "levenberg-marquardt", {.iterations = 100, .target = 0});
+  EXPECT_NEAR(outcome.theta[0], 1, 1e-6);
+  EXPECT_EQ(outcome.theta[1], 0);
+  EXPECT_EQ(outcome.trace->status, Status::converged);
+  EXPECT_EQ(outcome.trace->rejected_steps, 0);
 }
 
 // The model of Ceres counts what the bounds cut off a step, so that its radius shrinks, and it ends
