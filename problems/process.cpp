@@ -47,9 +47,9 @@ class Session {
   int starts() const { return workers_.starts(); }
 
   // Why the call failed; empty if it did not. LineError where too many of its kind have in a row.
-  // From the store of evaluations, if it has this one; else from a program, after `prepare(start)`:
-  // that of the first program, or kNowhere where another one may answer, and no program knows the
-  // point. `x` is the point of a product.
+  // From the store of evaluations, if it has this one; else from a program, after `prepare(start)`,
+  // which says why it failed: start of the first program, or kNowhere where another one may answer,
+  // and no program knows the point. `x` is the point of a product.
   std::string call(Verb verb, std::uint32_t number, std::span<const Real> sent,
                    std::span<Real> answer, const auto& prepare, std::span<const Real> x = {}) {
     const std::array<std::span<const Real>, 2> request = {x, sent};
@@ -65,7 +65,7 @@ class Session {
         return *why;
       }
     const bool is_announced = verb == Verb::linearize && workers_.is_next(sent[0]);
-    prepare(is_announced ? kNowhere : starts());
+    if (std::string why = prepare(is_announced ? kNowhere : starts()); !why.empty()) return why;
     const std::int64_t begin = monotonic_nanoseconds();
     is_late_ = false;
     const std::string why = is_announced ? answered(verb, [&] { workers_.take(answer); })
@@ -112,6 +112,7 @@ class Session {
   void give_back(std::uint32_t point) { free_points_.push_back(point); }
 
   static constexpr int kNowhere = -1;
+  static std::string nothing(int) { return ""; }  // to prepare
 
  private:
   // A product needs a program that knows its point.
@@ -265,7 +266,7 @@ class ProcessPhysics final : public ByJacobian {
     Vector answer(x.size() + y.cols());     // x, then one success flag per sample
     const std::array<std::span<const Real>, 2> given = {numbers_of(targets), numbers_of(starts)};
     const std::span<Real> numbers(answer.data(), static_cast<std::size_t>(answer.size()));
-    if (!session_->call(Verb::inverse, 0, given, given, numbers, [](int) {}).empty())
+    if (!session_->call(Verb::inverse, 0, given, given, numbers, Session::nothing).empty())
       return Success::Constant(y.cols(), false);
     x = answer.head(x.size()).reshaped(x.rows(), x.cols());
     return answer.tail(y.cols()).array() == 1;
@@ -299,10 +300,9 @@ class ProcessPhysics final : public ByJacobian {
     Real* const to = is_direct ? answer.data() : point.out.data();
     if (is_forward) point.start = 0;
     const auto prepare = [&](int start) {
-      if (is_forward)
-        point.start = start;
-      else if (point.start != session_->starts())
-        remember(point, w);
+      if (!is_forward) return remember(point, w);
+      point.start = start;
+      return std::string();
     };
     const std::span<const Real> x = is_forward ? std::span<const Real>() : point_x(point, w);
     const std::string why = session_->call(verb, point.number, numbers, {to, count}, prepare, x);
@@ -322,13 +322,16 @@ class ProcessPhysics final : public ByJacobian {
     return numbers_of(bounds_ ? point.within : w.x);
   }
 
-  // The forward pass again, in a program that was started since.
-  void remember(OwnPoint& point, const Workspace& w) const {
+  // The forward pass again, in a program that was started since. Why it failed, else empty.
+  std::string remember(OwnPoint& point, const Workspace& w) const {
+    if (point.start == session_->starts()) return "";
     const std::span<const Real> x = point_x(point, w);
     Vector y(outputs_ * w.x.cols());
-    point.start = session_->starts();
-    session_->ask_program(Verb::linearize, point.number, std::span(&x, 1),
-                          {y.data(), static_cast<std::size_t>(y.size())});
+    const int start = session_->starts();
+    std::string why = session_->ask_program(Verb::linearize, point.number, std::span(&x, 1),
+                                            {y.data(), static_cast<std::size_t>(y.size())});
+    if (why.empty()) point.start = start;
+    return why;
   }
 
   void form_jacobian(Matrix& J, Workspace& w) const override {
@@ -366,7 +369,7 @@ ProblemParts process_parts(const SimulatorOptions& given, const ProblemHandshake
       Real error = 0;
       const std::span<const Real> numbers = numbers_of(whole);
       const std::string why =
-          session->call(Verb::x_error, 0, numbers, std::span(&error, 1), [](int) {});
+          session->call(Verb::x_error, 0, numbers, std::span(&error, 1), Session::nothing);
       return why.empty() ? error : kNaN;
     };
   if (!said.truth.empty()) parts.truth = vector_of(said.truth);

@@ -77,7 +77,7 @@ class Store {
   std::vector<std::string> remarks_;
   std::vector<std::pair<std::filesystem::path, std::string>> waiting_;  // texts for flush()
   std::set<std::filesystem::path> obsolete_;  // fields that earlier runs have kept: it removes them
-  std::set<std::string> states_;  // names of files, as look_for_states() found them
+  std::set<std::string> states_;              // names of files, as look_for_states() found them
 };
 
 // The record of a request in a folder, of any build.

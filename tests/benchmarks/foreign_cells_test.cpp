@@ -64,7 +64,8 @@ TEST_F(ForeignCells, FailWithWhatTheOtherDid) {
   expect_failed("two-answers", "sent data that was");
 }
 
-// One call of the run fails, which the record states.
+// The third call of a program fails, which the record states. (A loaded machine may start it
+// twice.)
 TEST_F(ForeignCells, WhoseCallFailedSayWhereAndWhy) {
   for (const char* misdeed : {"raises", "raises-at-length"}) {
     const Record record = record_after(misdeed);
@@ -72,10 +73,30 @@ TEST_F(ForeignCells, WhoseCallFailedSayWhereAndWhy) {
     for (const char* part : {"the first at x = (1.2, 1)", "ValueError: the mesh"})
       EXPECT_NE(record.message.find(part), std::string::npos) << record.message;
     ASSERT_TRUE(record.failures);
-    EXPECT_EQ(record.failures->total, 1);
-    EXPECT_EQ(record.failures->x, (std::vector<std::vector<Real>>{{1.2, 1}}));
+    EXPECT_GE(record.failures->total, 1);
+    EXPECT_EQ(record.failures->x.at(0), (std::vector<Real>{1.2, 1}));
     EXPECT_NE(record.failures->reasons.at(0).find("ValueError: the mesh"), std::string::npos);
   }
+}
+
+// The store of calls answers for y, and the program fails when it is to remember that point for J.
+TEST_F(ForeignCells, WhoseProgramFailsAtAKnownPointSayWhy) {
+  const auto script = folder.path() / "later.py", mark = folder.path() / "mark";
+  write_text(
+      script,
+      "import os, sys, isoline\n"
+      "calls = []\n"
+      "def forward(x):\n"
+      "    calls.append(x)\n"  // the first tells how many numbers y has
+      "    if calls[1:] and os.path.exists(sys.argv[1]): raise ValueError('the mesh is tangled')\n"
+      "    return [10 * (x[1] - x[0] * x[0]), 1 - x[0]]\n"
+      "isoline.problem(forward, [-1.2, 1], jacobian=lambda x: [[-20 * x[0], 10], [-1, 0]])\n");
+  const std::string problem = process_of("python3 " + script.string() + " " + mark.string());
+  record_of(request_of(problem, "nlopt-neldermead"));
+  write_text(mark, "");
+  const Record record = record_of(request_of(problem, "gd"));
+  ASSERT_TRUE(record.failures) << record.message;
+  EXPECT_NE(record.failures->reasons.at(0).find("ValueError: the mesh"), std::string::npos);
 }
 
 // Rosenbrock's valley where x₂ > 1.2 fails: by an exception, by the end of the script, or by a call
