@@ -39,14 +39,15 @@ double seconds_per_tick() {
 }
 
 // A reading is a system call, as long as an evaluation of a small problem. This thread is taken to
-// run from one reading to the end of a short interval.
+// run from one reading to the end of a short interval, unless it may have waited for a process that
+// computes for it. A thread that loses the processor loses it for longer than that.
 double processor_seconds() {
-  constexpr double kShort = 2e-5;
+  constexpr double kShort = 1e-4;
   static thread_local double read = 0;
   static thread_local std::uint64_t read_at = 0;
   const std::uint64_t now = ticks();
   const double since = static_cast<double>(now - read_at) * seconds_per_tick();
-  if (read_at != 0 && since < kShort) return read + since;
+  if (read_at != 0 && since < kShort && !counts_processes()) return read + since;
   read_at = now;
   return read = 1e-9 * static_cast<double>(read_clock(CLOCK_PROCESS_CPUTIME_ID)) +
                 counted_processor_seconds();

@@ -137,8 +137,10 @@ CountedProcess::~CountedProcess() {
   ledger().running.erase(mine);
 }
 
+bool counts_processes() { return ledger().owner != 0 && ledger().owner == getpid(); }
+
 double counted_processor_seconds() {
-  if (ledger().owner == 0 || ledger().owner != getpid()) return 0;
+  if (!counts_processes()) return 0;
   const std::lock_guard lock(ledger().mutex);
   double sum = ledger().ended_seconds;
   for (Counted& one : ledger().running) {

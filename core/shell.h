@@ -30,5 +30,6 @@ class CountedProcess {
 };
 
 double counted_processor_seconds();  // of all of them so far, user and system
+bool counts_processes();             // this process has had some
 
 }  // namespace isoline

@@ -173,24 +173,22 @@ Advice advise(const Comparison& c, const Means& means) {
   advice.of_size = advice.settings.size();
   const auto methods = rows_by_method(c);
   Trial trial = trial_of(c, means, advice.settings, methods);
-  const auto decided = [&] {
+  const auto ranked = [&] {
     Evidence evidence{.costs = trial.costs, .families = {}, .repetitions = {}, .others = {}};
     for (const std::size_t p : advice.settings) evidence.families.push_back(c.problems[p].family());
-    return advice.settings.empty() ? std::nullopt : decide(evidence);
+    return ranked_places(evidence);
   };
-  auto decision = decided();
-  const bool has_first = decision && !decision->places.empty();
-  if (const auto m = better_on_some(
-          trial, has_first ? std::optional(decision->places[0].method) : std::nullopt)) {
+  auto places = ranked();
+  if (const auto m =
+          better_on_some(trial, places.empty() ? std::nullopt : std::optional(places[0].method))) {
     std::vector<std::size_t> shared;
     for (std::size_t i = 0; i < advice.settings.size(); ++i)
       if (trial.costs[i][*m]) shared.push_back(advice.settings[i]);
     advice.settings = std::move(shared);
     trial = trial_of(c, means, advice.settings, methods);
-    decision = decided();
+    places = ranked();
   }
-  for (std::size_t i = 0; decision && i < decision->places.size(); ++i) {
-    const Place& place = decision->places[i];
+  for (const Place& place : places) {
     advice.ranked.push_back(trial.all[place.method]);
     advice.ranked.back().score = place.score;
     advice.ranked.back().is_in_group = place.is_in_group;

@@ -8,6 +8,7 @@
 #include <numeric>
 #include <set>
 
+#include "core/array.h"
 #include "core/draws.h"
 #include "core/results/contrasts.h"
 #include "core/results/statistics.h"
@@ -181,23 +182,9 @@ class Decider {
     means_ = mean_scores(scores_);
   }
 
-  std::optional<Decision> decision() const {
-    if (firsts(means_).empty()) return std::nullopt;
-    Decision out;
-    out.unranked = unranked_;
-    out.settings = evidence_.costs.size();
-    out.families = families_.size();
-    out.least_p = std::exp2(1 - Real(families_.size()));
-    out.is_range = families_.size() < kFewestForInterval;
-    out.tied = firsts(means_).size();
-    fill_places(out);
-    fill_shares(out);
-    fill_choices(out);
-    return out;
-  }
-
- private:
-  void fill_places(Decision& out) const {
+  std::vector<Place> places() const {
+    std::vector<Place> out;
+    if (firsts(means_).empty()) return out;
     std::vector<std::size_t> order(methods_.size());
     std::iota(order.begin(), order.end(), 0);
     std::ranges::stable_sort(order, [&](std::size_t a, std::size_t b) {
@@ -208,7 +195,6 @@ class Decider {
       return means_[order[0]] - means_[s] <= score_margin();
     };
     levels.is_lead = levels.is_lead && !is_equal(order[1]);
-    out.is_lead = levels.is_lead;
     for (const std::size_t s : order) {
       Row own;
       for (const Row& family : scores_) own.push_back(family[s]);
@@ -226,12 +212,39 @@ class Decider {
         place.solved += *row[place.method] < kNever;
         place.wins += *row[place.method] < kNever && *row[place.method] == least;
       }
-      out.places.push_back(place);
+      out.push_back(place);
     }
+    return out;
+  }
+
+  std::optional<Decision> decision() const {
+    if (firsts(means_).empty()) return std::nullopt;
+    Decision out{.places = places()};
+    out.unranked = unranked_;
+    out.settings = evidence_.costs.size();
+    out.families = families_.size();
+    out.least_p = std::exp2(1 - Real(families_.size()));
+    out.is_range = families_.size() < kFewestForInterval;
+    out.tied = firsts(means_).size();
+    out.is_lead = out.places.size() > 1 && out.group().size() == 1;
+    fill_contrasts(out);
+    fill_shares(out);
+    fill_choices(out);
+    return out;
+  }
+
+ private:
+  // Between the first and each other method, and between all.
+  void fill_contrasts(Decision& out) const {
+    const auto column_of = [&](const Place& place) {
+      return std::ranges::find(methods_, place.method) - methods_.begin();
+    };
+    const auto first = column_of(out.places[0]);
     Row detectable;
-    for (std::size_t i = 1; i < order.size(); ++i) {
+    for (std::size_t i = 1; i < out.places.size(); ++i) {
+      const auto other = column_of(out.places[i]);
       Row differences;
-      for (const Row& family : scores_) differences.push_back(family[order[0]] - family[order[i]]);
+      for (const Row& family : scores_) differences.push_back(family[first] - family[other]);
       detectable.push_back(detectable_mean(deviation_of(differences), differences.size()));
     }
     out.detectable = detectable.empty() ? kNever : median_of(std::move(detectable));
@@ -371,18 +384,20 @@ FlipLevels flip_levels(const std::vector<Row>& sums, std::size_t exact_families,
     }
   hits.assign(scale.size(), 0);
   Row sorted(k);
+  Vector u(static_cast<Index>(k));
   const auto count_hits = [&](const Row& flipped) {
     for (std::size_t i = 0; i < k; ++i) sorted[i] = flipped[order[i]];
     Real most = 0;
     std::size_t pair = scale.size();
     for (std::size_t i = k - 1; i-- > 0;) {
-      pair -= k - 1 - i;
+      const std::size_t count = k - 1 - i;
+      pair -= count;
       const Real own = sorted[i];
-      for (std::size_t j = i + 1, at = pair; j < k; ++j, ++at) {
-        const Real size = std::abs(sorted[j] - own) * scale[at];
-        hits[at] += size >= reach[at] ? 1 : 0;
-        most = size > most ? size : most;
+      for (std::size_t j = 0; j < count; ++j) {
+        u[Index(j)] = std::abs(sorted[i + 1 + j] - own) * scale[pair + j];
+        hits[pair + j] += u[Index(j)] >= reach[pair + j] ? 1 : 0;
       }
+      most = std::max(most, u.head(Index(count)).maxCoeff());  // of whole registers at a time
       steps[i] += most >= sizes[i] - kRounding ? 1 : 0;
     }
   };
@@ -482,6 +497,7 @@ std::optional<std::size_t> Decision::fewest_wins() const {
   return std::nullopt;
 }
 
+std::vector<Place> ranked_places(const Evidence& evidence) { return Decider(evidence).places(); }
 std::optional<Decision> decide(const Evidence& evidence) { return Decider(evidence).decision(); }
 
 }  // namespace isoline::results

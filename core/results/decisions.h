@@ -142,7 +142,9 @@ struct Decision {
   std::optional<std::size_t> fewest_wins() const;
 };
 
-// Nothing where no ranked method solves a setting.
+// Best first, without `share_first`; none where no ranked method solves a setting.
+std::vector<Place> ranked_places(const Evidence& evidence);
+// Nothing where there are none.
 std::optional<Decision> decide(const Evidence& evidence);
 
 }  // namespace isoline::results
