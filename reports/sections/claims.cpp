@@ -203,7 +203,7 @@ std::vector<Reading> claim_notes(const Judgement& judgement) {
   if (const auto& direction = judgement.direction)
     notes.push_back(
         {"Direction", words("claim.direction", direction->with, direction->seeds, direction->p)});
-  if (!judgement.break_even.empty()) notes.push_back({"Break-even", judgement.break_even});
+  if (!judgement.break_even.empty()) notes.push_back({"Cost of a step", judgement.break_even});
   if (!judgement.reading.empty()) notes.push_back({"Published figure", judgement.reading});
   if (!judgement.why.empty()) notes.push_back({"Reason", judgement.why + "."});
   if (!judgement.survives.empty())
