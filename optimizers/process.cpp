@@ -57,6 +57,10 @@ class Service {
         throw;
       }
     }
+    if (is_of_one_x()) {
+      f_.remark(InARow::kOfOneX);
+      return Status::stalled;
+    }
     return f_.status() == Status::running ? Status::budget : f_.status();
   }
 
@@ -65,7 +69,8 @@ class Service {
  private:
   static constexpr Index kLeastRoom = 512;  // numbers, for the text of a claim
 
-  bool is_over() const { return f_.is_spent() || f_.status() != Status::running; }
+  bool is_of_one_x() const { return repeats_ >= InARow::kMostRepeats; }
+  bool is_over() const { return is_of_one_x() || f_.is_spent() || f_.status() != Status::running; }
 
   void expect(const FrameHead& head, Index numbers) {
     if (head.bytes == static_cast<std::uint64_t>(numbers) * sizeof(Real)) return;
@@ -97,11 +102,12 @@ class Service {
   auto behind_theta(Index count) const { return room_.segment(f_.unknowns(), count); }
   void reply(Verb verb, std::span<const Real> numbers) { line_.send(verb, kDone, numbers); }
 
-  // One forward per point, for all calls there.
-  Linearization& at_given() {
+  // One forward per point, for all calls there; products with other vectors repeat nothing.
+  Linearization& at_given(bool is_product = false) {
     const bool is_same = point_theta_.size() > 0 &&
                          std::memcmp(point_theta_.data(), room_.data(),
                                      sizeof(Real) * static_cast<std::size_t>(f_.unknowns())) == 0;
+    repeats_ = is_same && !is_product ? repeats_ + 1 : 0;
     if (is_same) return point_;
     point_theta_ = given_theta();
     f_.linearize(point_theta_, point_);
@@ -164,7 +170,7 @@ class Service {
   }
   void answer_along(Verb verb) {
     const Vector v = behind_theta(f_.unknowns());
-    Linearization& at = at_given();
+    Linearization& at = at_given(true);
     if (verb == Verb::hessian_product) {
       gradient_.resize(f_.unknowns());
       at.hessian_product(v, gradient_);
@@ -178,7 +184,7 @@ class Service {
   void answer_pullback() {
     const Index samples = f_.samples(), outputs = f_.residuals() / samples;
     const Matrix w = scale_ * behind_theta(f_.residuals()).reshaped(outputs, samples);
-    Linearization& at = at_given();
+    Linearization& at = at_given(true);
     gradient_.resize(f_.unknowns());
     at.pullback(w, gradient_);
     reply(Verb::pullback_of_r, numbers_of(gradient_));
@@ -204,6 +210,7 @@ class Service {
   Real scale_;
   Vector point_theta_;  // (n), where `point_` is; empty: nowhere yet
   Linearization point_;
+  int repeats_ = 0;                             // evaluations at `point_`, in a row
   std::unordered_map<std::size_t, Real> paid_;  // losses, by the bits of θ
   Real best_loss_ = std::numeric_limits<Real>::infinity();
   Vector gradient_, residual_;

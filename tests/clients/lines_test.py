@@ -33,6 +33,13 @@ class Lines(unittest.TestCase):
         self.assertEqual(records["idle"]["claimed"], "no change")
         self.assertEqual(records["idle"]["summary"]["loss"], 0)
 
+    def test_one_x_a_thousand_times_ends_a_run(self):
+        text = ("echo isoline optimizer name=same; read -r x\n"
+                "while echo isoline value 0.5 0.5; do read -r x || exit; done\n")
+        record = self.of_shell(text)[1]["same"]
+        self.assertEqual((record["status"], record["counts"]["forward"]), ("stalled", 1))
+        self.assertIn("one x 1000 times", record["message"])
+
     def test_a_request_that_is_wrong_is_named(self):
         for request in ("valeu 1 2", "value 1 two", "jacobian 1 2"):
             said, _ = self.of_shell(f"echo isoline optimizer; read -r x; echo isoline {request}; read -r x")
