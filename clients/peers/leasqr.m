@@ -7,8 +7,12 @@ function numbers = ask(request, x = [])
   numbers = sscanf(input("", "s"), "%f");  % fgetl waits for the next line, too
 end
 pkg load optim
-begun = ask("optimizer name=octave-leasqr least_squares failed=1e100");
+begun = ask("optimizer name=octave-leasqr least_squares keeps_bounds failed=1e100");
 n = begun(1); m = begun(2);
-[y, x, converged, iterations] = leasqr((1:m)', zeros(m, 1), begun(3:n + 2), @(t, x) ask("residual", x), 1e-10, 10000);
+x0 = begun(3:n + 2); bounds = reshape(begun(n + 3:3 * n + 2), n, 2);
+options = struct();
+if any(isfinite(bounds(:))), options.bounds = bounds; end
+residual = @(t, x) ask("residual", x);
+[y, x, converged, iterations] = leasqr((1:m)', zeros(m, 1), x0, residual, 1e-10, 10000, [], [], [], options);
 ask(sprintf("claim converged=%d iterations=%d", converged, iterations));
 ask("finish", x);

@@ -15,8 +15,9 @@ from petsc4py import PETSc
 import isoline
 
 method, is_least_squares = sys.argv[1], sys.argv[1] == "brgn"
+keeps_bounds = method != "lmvm"
 p = isoline.optimizer(["jacobian" if is_least_squares else "pullback"], f"tao-{method}",
-                      least_squares=is_least_squares, keeps_bounds=method == "blmvm", failed=1e10)
+                      least_squares=is_least_squares, keeps_bounds=keeps_bounds, failed=1e10)
 vector = lambda values: PETSc.Vec().createWithArray(numpy.array(values, float), comm=PETSc.COMM_SELF)
 tao = PETSc.TAO().create(PETSc.COMM_SELF)
 tao.setType(method)
@@ -29,7 +30,7 @@ if is_least_squares:
 else:
     tao.setObjective(lambda _, x: p.value(x.getArray()))
     tao.setGradient(lambda _, x, g: g.setArray(p.gradient(x.getArray())), vector(p.x0))
-if method == "blmvm":
+if keeps_bounds:
     tao.setVariableBounds(vector(p.lower), vector(p.upper))
 tao.setMaximumIterations(2**31 - 1)
 tao.setMaximumFunctionEvaluations(2**31 - 1)

@@ -4,6 +4,7 @@ import contextlib
 import io
 import json
 import pathlib
+import runpy
 import sys
 import tempfile
 import unittest
@@ -23,6 +24,7 @@ except ImportError as error:
 
 TABLE = ROOT / "clients" / "peers" / "conduct" / "conduct.json"
 PAGE = ROOT / "docs" / "conduct.md"
+peers = runpy.run_path(str(ROOT / "docs" / "peers.py"))
 
 
 def right(p, limit, _=None):
@@ -201,12 +203,18 @@ class Conduct(unittest.TestCase):
                 published = table["methods"][method.name][name]["mark"]
                 self.assertEqual({None: "–", True: "✓", False: "✗"}[holds], published, f"{method.name}: {name}")
 
-    def test_the_page_shows_the_published_table(self):
+    def unchanged(self, page, write):
         with tempfile.NamedTemporaryFile("w", suffix=".md") as copy:
-            copy.write(PAGE.read_text())
+            copy.write(page.read_text())
             copy.flush()
-            conduct.page(TABLE, copy.name)
-            self.assertEqual(pathlib.Path(copy.name).read_text(), PAGE.read_text())
+            write(copy.name)
+            self.assertEqual(pathlib.Path(copy.name).read_text(), page.read_text())
+
+    def test_the_page_shows_the_published_table(self):
+        self.unchanged(PAGE, lambda copy: conduct.page(TABLE, copy))
+
+    def test_the_page_of_peers_shows_their_rows(self):
+        self.unchanged(PAGE.with_name("bring-an-optimizer.md"), peers["page"])
 
     def test_the_page_shows_the_published_table_of_our_own_methods(self):
         own = json.loads(conduct.PUBLISHED.read_text())["optimizers"]

@@ -3,6 +3,7 @@
 // call of the callback.
 #include "methods.h"
 
+#include <dlib/global_optimization.h>
 #include <dlib/optimization.h>
 #include <libalglib/optimization.h>
 
@@ -68,12 +69,17 @@ void run_dlib(const std::string& method) {
       dlib::find_min(dlib::lbfgs_search_strategy(10), dlib::objective_delta_stop_strategy(1e-9),
                      value, gradient, x, -1e300);
     } else {
-      const auto [lower, upper] = finite_bounds();
-      const long most = given.limit > 0 ? static_cast<long>(given.limit) : 100000;
-      dlib::find_min_bobyqa(value, x, 2 * n + 1, Point(dlib::mat(lower)), Point(dlib::mat(upper)),
-                            0.1, 1e-8, most);
+      const auto [low, high] = finite_bounds();
+      const Point lower = dlib::mat(low), upper = dlib::mat(high);
+      const auto most = [](std::size_t otherwise) { return given.limit ? given.limit : otherwise; };
+      if (method == "global") {
+        const dlib::max_function_calls calls(most(200));
+        x = dlib::find_min_global(value, lower, upper, calls, dlib::FOREVER, 0).x;
+      } else {
+        dlib::find_min_bobyqa(value, x, 2 * n + 1, lower, upper, 0.1, 1e-8, most(100000));
+      }
     }
-    finish(true, "none", "returned", &x(0));
+    finish(method != "global", "none", "returned", &x(0));
   } catch (const dlib::bobyqa_failure&) {
     finish(false, "none", "bobyqa_failure", &x(0));
   }

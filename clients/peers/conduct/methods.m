@@ -13,11 +13,13 @@ warning off
 pkg load optim
 name = argv(){end};
 begun = sscanf(input("", "s"), "%f");
-m = begun(2); limit = begun(3);
-x0 = begun(6:begun(1) + 5);
+n = begun(1); m = begun(2); limit = begun(3);
+x0 = begun(6:n + 5);
+bounds = struct();
+if begun(4), bounds.bounds = reshape(begun(n + 6:3 * n + 5), n, 2); end
 for run = 1:begun(5)
   if strcmp(name, "leasqr")
-    [y, x, success, iterations] = leasqr((1:m)', zeros(m, 1), x0, @(t, x) ask("residual", x));
+    [y, x, success, iterations] = leasqr((1:m)', zeros(m, 1), x0, @(t, x) ask("residual", x), [], [], [], [], [], bounds);
     ask(sprintf("done %d none converged_%d", success, success), x);
   else
     options = optimset("GradObj", "on");

@@ -116,7 +116,7 @@ NOT_FOR_THREADS = {"threads": "not run: PETSc is for one thread"}
 
 @add("TAO POUNDERS", package="petsc4py", takes="residuals", differences=True, keeps_bounds=True,
      lost=NOT_FOR_THREADS)
-@add("TAO BRGN", package="petsc4py", takes="residuals", lost=NOT_FOR_THREADS)
+@add("TAO BRGN", package="petsc4py", takes="residuals", keeps_bounds=True, lost=NOT_FOR_THREADS)
 @add("TAO LMVM", package="petsc4py", takes="loss", lost=NOT_FOR_THREADS)
 @add("TAO BLMVM", "TAO BNCG", "TAO BQNLS", package="petsc4py", takes="loss", keeps_bounds=True,
      lost=NOT_FOR_THREADS)
@@ -328,7 +328,7 @@ def ipopt(p, _, __):
 @add("R nlminb", package="Rscript stats", takes="loss", keeps_bounds=True)
 @add("R optim-BFGS", package="Rscript stats", takes="loss", has_limit=False)
 @add("R optim-L-BFGS-B", package="Rscript stats", takes="loss", keeps_bounds=True, has_limit=False)
-@add("Octave leasqr", package="octave-cli optim", takes="residuals", differences=True, has_limit=False)
+@add("Octave leasqr", package="octave-cli optim", takes="residuals", differences=True, keeps_bounds=True, has_limit=False)
 @add("Octave fminunc", package="octave-cli optim", takes="loss")
 def of_a_script(p, limit, name):
     is_octave = name in ("leasqr", "fminunc")
@@ -338,6 +338,8 @@ def of_a_script(p, limit, name):
 
 @add("dlib find_min_bobyqa", package="c++ dlib", takes="loss", differences=True, keeps_bounds=True,
      lost={"missing": "not run: it needs two unknowns"})
+@add("dlib find_min_global", package="c++ dlib", takes="loss", differences=True, keeps_bounds=True,
+     lost={"QD": "not run: it takes no start"})
 @add("dlib find_min_lbfgs", package="c++ dlib", takes="loss", has_limit=False)
 @add("ALGLIB minlm", package="c++ alglib", takes="residuals", differences=True, keeps_bounds=True, has_limit=False)
 @add("ALGLIB minlbfgs", package="c++ alglib", takes="loss", has_limit=False)
