@@ -171,14 +171,15 @@ std::string table_text(const Solution& solution) {
   constexpr std::size_t kMostRows = 40;
   const Record& record = *solution.record;
   const Request& request = record.request;
+  const auto digits = [](Real loss) { return fmt::format("{:.6g}", loss); };
+  const std::string returned = digits(record.summary.loss), best = digits(solution.loss());
   std::string text =
-      fmt::format("{} × {}, seed {}: {}, loss {:.6g}", reports::terminal_text(request.problem.spec),
+      fmt::format("{} × {}, seed {}: {}, loss {}", reports::terminal_text(request.problem.spec),
                   reports::terminal_text(request.optimizer.spec), request.seed,
-                  name_of(record.status), record.summary.loss);
+                  name_of(record.status), returned);
   if (solution.answer.residual_norm)
     text += fmt::format(", ‖y − y*‖ {:.6g}", *solution.answer.residual_norm);
-  const std::string best = fmt::format("; best: loss {:.6g}\n", solution.loss());
-  text += solution.loss() < record.summary.loss ? best : "\n";
+  text += best == returned ? "\n" : fmt::format("; best: loss {}\n", best);
   if (!record.message.empty())
     text += fmt::format("  {}\n", reports::terminal_text(record.message));
   if (const std::string doubt = reports::doubt_text(record); record.uncertainty && !doubt.empty())
