@@ -6,7 +6,8 @@
     python3 docs/outputs.py FILE --printed --shape PAGE       # FILE has what the commands of one page printed
 
 A block of output is a fence ```text. It shows lines that the ```sh blocks before it print, or the command
-after the word `text`. Times, paths and digests are masked; with --shape, all numbers are.
+after the word `text`, or their first columns, or after "… " their ends. Times, paths and digests are masked; with
+--shape, all numbers are.
 """
 
 import argparse
@@ -27,6 +28,10 @@ def masked(line, shape):
     for pattern, name in MASKS + ([(r"[\d.,]*\d(?:e[+-]?\d+)?", "#")] if shape else []):
         line = re.sub(pattern, name, line)
     return " ".join(line.split())
+
+
+def shows(line, whole):
+    return whole.endswith(line[2:]) if line.startswith("… ") else whole.startswith(line)
 
 
 def blocks(lines):
@@ -109,8 +114,8 @@ def main():
                     continue
                 here = printed(info[5:], folder) if info != "text" else out
                 block = [line for line in lines[begin:end] if line.strip() not in ("", "…")]
-                known = [masked(line, asked.shape) for line in here]  # a page may show the first columns alone
-                missing = [line for line in block if not any(one.startswith(masked(line, asked.shape)) for one in known)]
+                known = [masked(line, asked.shape) for line in here]
+                missing = [line for line in block if not any(shows(masked(line, asked.shape), one) for one in known)]
                 if not missing:
                     continue
                 differ += len(missing)
