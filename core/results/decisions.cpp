@@ -218,8 +218,8 @@ class Decider {
   }
 
   std::optional<Decision> decision() const {
-    if (firsts(means_).empty()) return std::nullopt;
     Decision out{.places = places()};
+    if (out.places.empty()) return std::nullopt;
     out.unranked = unranked_;
     out.settings = evidence_.costs.size();
     out.families = families_.size();
