@@ -576,7 +576,7 @@ std::vector<Record> relabelled(const std::vector<Record>& runs, RandomStream& ra
 
 // Which of two is ahead comes out right by chance every other time, and a chance that does not hold
 // for all seeds is still consistent: of that none has more than its half.
-TEST(Nulls, AtMostOneClaimInTwentyIsReproducedByPermutedLabels) {
+TEST(PlantedLabels, ReproduceAtMostOneClaimInTwentyWherePermuted) {
   constexpr int kPermutations = 50;
   RandomStream random(0, "claims", "labels");
   const std::vector<Record>& runs = trained().runs;
@@ -600,7 +600,7 @@ std::vector<Record> of_one_label(const std::vector<Record>& runs, int i) {
   return planted;
 }
 
-TEST(Nulls, AtMostOneClaimInTwentyOutlivesOneMethodUnderAllNames) {
+TEST(PlantedLabels, OfOneMethodLetAtMostOneClaimInTwentyOutlive) {
   constexpr int kMethods = 12;  // of a problem: the square has more names, of the same methods
   const std::vector<Record>& runs = trained().runs;
   const auto planted = [&](int i) { return of_one_label(runs, i); };
