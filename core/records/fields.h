@@ -19,6 +19,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -35,9 +36,14 @@
 
 namespace isoline {
 
-// JSON, written from left to right: some three times as fast as a tree.
+// JSON, written from left to right: some three times as fast as a tree. Canonical text is that of
+// json_text(): the keys of an object are sorted, and numbers are as the library prints them.
 class JsonText {
  public:
+  JsonText() = default;
+  // Canonical, without the members of these paths, such as "summary/loss".
+  explicit JsonText(const std::set<std::string>& left_out) : left_out_(&left_out) {}
+
   void raw(std::string_view json) {  // a whole value
     if (needs_comma_) text_ += ',';
     text_ += json;
@@ -52,7 +58,9 @@ class JsonText {
   // Also infinite, or not a number. Another reader takes no double for an integer.
   void number(Real value) {
     if (!std::isfinite(value)) return raw(json_text(json_number(value)));
-    char digits[32];
+    char digits[64];
+    if (left_out_ != nullptr)
+      return raw({digits, nlohmann::detail::to_chars(digits, std::end(digits), value)});
     const std::string_view shortest(digits,
                                     std::to_chars(digits, std::end(digits), value).ptr - digits);
     raw(shortest);
@@ -64,6 +72,8 @@ class JsonText {
          static_cast<std::size_t>(std::to_chars(digits, std::end(digits), value).ptr - digits)});
   }
   void key(std::string_view name) {
+    if (left_out_ != nullptr)
+      objects_.back().members.emplace_back(name, text_.size() + (needs_comma_ ? 1 : 0));
     text(name);
     text_ += ':';
     needs_comma_ = false;
@@ -71,16 +81,48 @@ class JsonText {
   void begin(char bracket) {
     raw({&bracket, 1});
     needs_comma_ = false;
+    if (left_out_ == nullptr || bracket != '{') return;
+    const bool is_first = objects_.empty();
+    objects_.push_back(
+        {is_first ? "" : objects_.back().path + objects_.back().members.back().first + "/", {}});
   }
   void end(char bracket) {
+    if (left_out_ != nullptr && bracket == '}') sort_members();
     text_ += bracket;
     needs_comma_ = true;
   }
   std::string take() { return std::move(text_); }
+  // The text of each member of a canonical object, by its name.
+  std::map<std::string, std::string> take_members() { return std::move(members_); }
 
  private:
+  struct Object {
+    std::string path;  // of the member that it is, with a slash
+    std::vector<std::pair<std::string, std::size_t>> members;  // the names, and where each begins
+  };
+
+  void sort_members() {
+    const Object object = std::move(objects_.back());
+    objects_.pop_back();
+    if (object.members.empty()) return;
+    std::map<std::string, std::string> sorted;
+    for (std::size_t i = 0; i < object.members.size(); ++i) {
+      const auto& [name, at] = object.members[i];
+      const bool is_last = i + 1 == object.members.size();
+      const std::size_t end = is_last ? text_.size() : object.members[i + 1].second - 1;
+      if (!left_out_->contains(object.path + name)) sorted[name] = text_.substr(at, end - at);
+    }
+    text_.resize(object.members.front().second);
+    for (const auto& [name, member] : sorted) text_ += member + ",";
+    if (!sorted.empty()) text_.pop_back();
+    if (objects_.empty()) members_ = std::move(sorted);
+  }
+
   std::string text_;
   bool needs_comma_ = false;
+  const std::set<std::string>* left_out_ = nullptr;  // where the text is canonical
+  std::vector<Object> objects_;                      // those that are open
+  std::map<std::string, std::string> members_;
 };
 
 // The JSON form of a type's values: write(value, out), read(view, value), law(out), its schema.

@@ -116,15 +116,6 @@ class Invariants {
     }
   }
 
-  // The work of counts by oracle, in the place i of each column.
-  std::int64_t priced_work(const std::map<std::string, Works>& counts, std::size_t i) const {
-    std::int64_t work = 0;
-    for (std::size_t kind = 0; kind < kOracles; ++kind)
-      if (const auto column = counts.find(std::string(kOracleNames[kind])); column != counts.end())
-        work += column->second[i] * record_.prices[kind];
-    return work;
-  }
-
   void check_prices() {
     if (std::ranges::none_of(record_.prices, std::identity())) return;
     std::int64_t total = 0;
@@ -134,8 +125,14 @@ class Invariants {
     const auto check = [&](const char* whose, const std::map<std::string, Works>& counts,
                            const Works& works) {
       if (counts.empty()) return;
+      Works priced(works.size());
+      for (std::size_t kind = 0; kind < kOracles; ++kind)
+        if (const auto column = counts.find(std::string(kOracleNames[kind]));
+            column != counts.end())
+          for (std::size_t i = 0; i < works.size(); ++i)
+            priced[i] += column->second[i] * record_.prices[kind];
       for (std::size_t i = 0; i < works.size(); ++i)
-        if (works[i] >= 0 && priced_work(counts, i) != works[i])
+        if (works[i] >= 0 && priced[i] != works[i])
           return hold(false, "the work of its {} is not the nominal cost of its calls", whose);
     };
     check("curve", curve_.counts, curve_.work);

@@ -12,6 +12,7 @@
 #include "core/json.h"
 #include "core/options.h"
 #include "core/records/fields.h"
+#include "core/records/member_texts.h"
 #include "core/records/npy.h"
 #include "core/status.h"
 
@@ -328,35 +329,60 @@ Record read_record(const std::string& path) {
   return record;
 }
 
-Json result_of(const Json& record) {
-  Json result = without_timings(record);
-  result.erase("provenance");
-  Json& request = result.at("request");
-  request.erase("rates");  // which file chose the options, and how they were typed
-  for (const char* component : {"problem", "optimizer"}) request.at(component).erase("asked");
-  return result;
+namespace {
+
+const std::set<std::string>& paths_of_timings() {
+  static const std::set<std::string> paths = [] {
+    std::set<std::string> all = {"repeat_wall_seconds", "output"};  // may hold addresses and times
+    for_each_part(Parts(), [&](const auto& part) {
+      constexpr Part kPart = std::remove_cvref_t<decltype(*part)>::kPart;
+      const std::string ignored = kPart.ignored, member = kPart.member;
+      if (!ignored.empty()) all.insert(ignored == "*" ? member : member + "/" + ignored);
+    });
+    // Start time, concurrent jobs, exclusive.
+    all.insert(std::string("provenance/") + kRunKey);
+    for (const std::string name : {"wall_seconds", "processor_seconds", "peak_memory_bytes"})
+      all.insert({"summary/" + name, "curve/" + name});
+    for (const std::string hits : {"hits/", "x_hits/"})  // whose counts are the work again by kind
+      all.insert({hits + "wall_seconds", hits + "counts"});
+    return all;
+  }();
+  return paths;
 }
 
-Json without_timings(Json record) {
-  record.erase("repeat_wall_seconds");
-  record.erase("output");  // may hold addresses and times
-  for_each_part(Parts(), [&](const auto& part) {
-    constexpr Part kPart = std::remove_cvref_t<decltype(*part)>::kPart;
-    const std::string_view ignored = kPart.ignored;
-    if (ignored == "*")
-      record.erase(kPart.member);
-    else if (!ignored.empty() && record.contains(kPart.member))
-      record[kPart.member].erase(std::string(ignored));
-  });
-  record.at("provenance").erase(kRunKey);  // start time, concurrent jobs, exclusive
-  for (const char* name : {"wall_seconds", "processor_seconds", "peak_memory_bytes"}) {
-    record.at("summary").erase(name);
-    record.at("curve").erase(name);
+Json without(Json record, const std::set<std::string>& paths) {
+  for (const std::string& path : paths) {
+    Json* at = &record;
+    std::size_t begin = 0;
+    for (std::size_t end; at && (end = path.find('/', begin)) != path.npos; begin = end + 1) {
+      const auto inner = at->find(path.substr(begin, end - begin));
+      at = inner == at->end() ? nullptr : &*inner;
+    }
+    if (at) at->erase(path.substr(begin));
   }
-  for (const char* hits : {"hits", "x_hits"})  // whose counts are the work again by kind
-    if (record.contains(hits))
-      for (const char* name : {"wall_seconds", "counts"}) record[hits].erase(name);
   return record;
+}
+
+}  // namespace
+
+const std::set<std::string>& paths_beside_results() {
+  static const std::set<std::string> paths = [] {
+    std::set<std::string> all = paths_of_timings();
+    // Which file chose the options, and how they were typed.
+    all.insert({"provenance", "request/rates", "request/problem/asked", "request/optimizer/asked"});
+    return all;
+  }();
+  return paths;
+}
+
+Json result_of(const Json& record) { return without(record, paths_beside_results()); }
+Json without_timings(Json record) { return without(std::move(record), paths_of_timings()); }
+
+std::map<std::string, std::string> member_texts(const Record& record,
+                                                const std::set<std::string>& left_out) {
+  JsonText out(left_out);
+  Form<Record>::write(record, out);
+  return out.take_members();
 }
 
 // Requests and plans.

@@ -4,15 +4,19 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <initializer_list>
 #include <map>
 #include <mutex>
 #include <nlohmann/json.hpp>
+#include <ranges>
+#include <set>
 #include <unordered_map>
 
 #include "core/errors.h"
 #include "core/files.h"
 #include "core/json.h"
 #include "core/records/json_view.h"
+#include "core/records/member_texts.h"
 #include "core/seeds.h"
 #include "core/status.h"
 #include "reports/compare/gate.h"
@@ -113,25 +117,34 @@ void add_figures(ComparedCell& cell, const Record& record) {
 
 // The path is compared apart, to state which values differ. What follows from it is not.
 void add_digests(ComparedCell& cell, const Record& record) {
-  Json json = result_of(to_json(record));
-  for (const char* known : {"build", "build_parts", "cell", "schema", "answer", "failures"})
-    json.erase(known);
-  Json path = Json::object();
-  for (const char* name : {"curve", "trajectory", "series", "exhibit", "hits"})
-    if (json.contains(name)) {
-      path[name] = std::move(json[name]);
-      json.erase(name);
-    }
-  cell.trace = digest(json_text(path));
-  cell.rest = digest(json_text(json));
-  json["rates"] = record.request.rates;
-  if (record.answer) json["answer"] = to_json(record).at("answer");
-  if (record.failures) json["failures"] = to_json(record).at("failures");
-  if (record.fields) json["snapshots"] = record.fields->digest;
-  if (record.hits) json["hit_counts"] = record.hits->counts;
-  if (record.x_hits) json["x_hit_counts"] = record.x_hits->counts;
-  for (const auto& [name, value] : json.items())
-    cell.members.emplace_back(*shared_value(name, name), fnv1a(json_text(value)));
+  static const std::set<std::string> left_out = [] {
+    std::set<std::string> paths = paths_beside_results();
+    paths.insert({"build", "build_parts", "cell", "schema"});
+    paths.erase("failures/reasons");  // which are compared beside the rest
+    return paths;
+  }();
+  std::map<std::string, std::string> all = member_texts(record, left_out);
+  const auto taken = [&](std::initializer_list<const char*> names) {
+    std::map<std::string, std::string> part;
+    for (const char* name : names) part.insert(all.extract(name));
+    return part;
+  };
+  const auto digest_of = [](const std::map<std::string, std::string>& members) {
+    return digest(fmt::format("{{{}}}", fmt::join(std::views::values(members), ",")));
+  };
+  std::map<std::string, std::string> beside = taken({"answer", "failures"});
+  cell.trace = digest_of(taken({"curve", "trajectory", "series", "exhibit", "hits"}));
+  cell.rest = digest_of(all);
+  all.merge(beside);
+  const auto add = [&](const std::string& name, const Json& value) {
+    all[name] = json_text(name) + ":" + json_text(value);
+  };
+  add("rates", record.request.rates);
+  if (record.fields) add("snapshots", record.fields->digest);
+  if (record.hits) add("hit_counts", record.hits->counts);
+  if (record.x_hits) add("x_hit_counts", record.x_hits->counts);
+  for (const auto& [name, text] : all)
+    cell.members.emplace_back(*shared_value(name, name), fnv1a(text.substr(text.find(':') + 1)));
 }
 
 ComparedCell cell_of(const Record& record) {

@@ -21,6 +21,7 @@
 #include "core/frames.h"
 #include "core/json.h"
 #include "core/records/json_view.h"
+#include "core/records/member_texts.h"
 #include "core/records/npy.h"
 #include "core/records/request.h"
 #include "core/records/sheet.h"
@@ -177,6 +178,20 @@ TEST(Record, TimesAreLeftOutOfComparisons) {
   EXPECT_EQ(without_timings(to_json(other)), without_timings(to_json(sample())));
   other.curve.loss[0] = std::nextafter(1, 2);
   EXPECT_NE(without_timings(to_json(other)), without_timings(to_json(sample())));
+}
+
+// Baselines hold digests of these texts, so they may not change.
+TEST(Record, HasTheTextsOfTheMembersOfItsTree) {
+  Record record = sample();
+  record.curve.loss = {1e-5, 1e15};  // with and without an exponent
+  record.summary.loss = 0.0001;
+  const Json tree = result_of(to_json(record));
+  const auto texts = member_texts(record, paths_beside_results());
+  ASSERT_EQ(texts.size(), tree.size());
+  for (const auto& [name, value] : tree.items())
+    EXPECT_EQ(texts.at(name), json_text(name) + ":" + json_text(value));
+  EXPECT_FALSE(tree.at("curve").contains("wall_seconds"));
+  EXPECT_FALSE(tree.at("request").at("problem").contains("asked"));
 }
 
 // Records are found again by it, so it may not change: of two records that commit 5990f5a wrote.
