@@ -90,53 +90,58 @@ Vector noise_of_values(const std::function<Vector(Real t)>& f) {
 namespace {
 
 // The error of the last place of each of these values, if all have at most nine decimal digits, at
-// most eight decimals, or single precision; the largest of these. `changes`: which rows count.
-Vector last_places(const std::vector<Vector>& values, const std::vector<Index>& rows) {
+// most eight decimals, or single precision, over their factors; the largest of these. `rows`: those
+// that count.
+Vector last_places(const std::vector<Vector>& values, const std::vector<Index>& rows,
+                   const auto& factor) {
   constexpr int kMostDigits = 9, kMostDecimals = 8;
+  constexpr Real kEpsilon = std::numeric_limits<Real>::epsilon();
   constexpr Real kRounded = 0.2887;  // the standard deviation of rounding to 1
   int digits = 1, decimals = 0;
   bool is_single = true;
   std::array<char, 32> text;
-  const auto has = [&](Real value, const char* form, int places) {
-    std::snprintf(text.data(), text.size(), form, places, value);
-    return std::strtod(text.data(), nullptr) == value;
-  };
   for (const Vector& y : values)
     for (const Index i : rows) {
-      is_single = is_single && static_cast<Real>(static_cast<float>(y[i])) == y[i];
-      while (digits <= kMostDigits && !has(y[i], "%.*e", digits - 1)) ++digits;
-      while (decimals <= kMostDecimals && !has(y[i], "%.*f", decimals)) ++decimals;
+      const Real value = y[i] / factor(i);
+      const Real rounding = factor(i) == 1 ? 0 : 2 * kEpsilon * std::abs(value);
+      const auto is_value = [&](Real other) { return std::abs(other - value) <= rounding; };
+      const auto has = [&](const char* form, int places) {
+        std::snprintf(text.data(), text.size(), form, places, value);
+        return is_value(std::strtod(text.data(), nullptr));
+      };
+      is_single = is_single && is_value(static_cast<float>(value));
+      while (digits <= kMostDigits && !has("%.*e", digits - 1)) ++digits;
+      while (decimals <= kMostDecimals && !has("%.*f", decimals)) ++decimals;
     }
   Vector place = Vector::Zero(values[0].size());
   for (Index i = 0; i < place.size(); ++i) {
-    const Real size = std::abs(values[0][i]);
+    if (factor(i) == 0) continue;
+    const Real size = std::abs(values[0][i] / factor(i));
     if (digits <= kMostDigits && size > 0)
       place[i] = std::pow(10.0, std::floor(std::log10(size)) + 1 - digits);
     if (decimals <= kMostDecimals) place[i] = std::max(place[i], std::pow(10.0, -decimals));
     if (is_single)
       place[i] =
           std::max(place[i], size * static_cast<Real>(std::numeric_limits<float>::epsilon()));
+    place[i] *= factor(i);
   }
   return kRounded * place;
 }
 
 }  // namespace
 
-Real noise_of_calls(const Vector& y0, const std::function<Vector(Real t)>& y, Vector* slope) {
+Real noise_of_calls(const Vector& y0, const std::function<Vector(Real t)>& y, const Vector& factors,
+                    Vector* slope) {
   const Real near = kNoiseSteps[2];
   Real far = kNoiseSteps[0];
   constexpr Real kNotSmooth = 0.5, kSmooth = 0.1, kSmaller = 0.01, kFalls = 0.01, kBends = 0.3;
   constexpr Real kBent = 1e-4;  // of the change: a smooth y bends less over so small a step
+  constexpr int kMostAgain = 2;
   constexpr std::size_t kMostRows = 1000;
   const Real size = y0.norm();
   Real noise = std::numeric_limits<Real>::epsilon();
   if (!(size > 0) || !std::isfinite(size)) return noise;
   std::vector<Vector> values{y0, y(far), y(2 * far), y(near)};
-  if (!is_finite(values[1]) || !is_finite(values[2])) {  // failed calls: once more, beside them
-    far *= 0.75;
-    values[1] = y(far);
-    values[2] = y(2 * far);
-  }
   const auto difference = [&](const Vector& once, const Vector& two) -> Vector {
     return two - 2 * once + y0;
   };
@@ -147,27 +152,37 @@ Real noise_of_calls(const Vector& y0, const std::function<Vector(Real t)>& y, Ve
     values.push_back(thrice);
     return third;
   };
-  Vector second = difference(values[1], values[2]);
   const Vector moved = values[3] - y0;
+  Vector second;
   const auto gap_to = [&](Real t, const Vector& once) {
     return (moved - near / t * (once - y0 - second / 2)).norm();
   };
-  Real gap = gap_to(far, values[1]);
-  if (is_finite(second) && !(far / near * gap <= kSmooth * second.norm())) {
-    Real third = third_over(far, values[1], values[2]);
-    if (third > kNotSmooth * second.norm()) {
-      // A narrow feature of a smooth y bends over small steps as much as over large ones, and its
-      // third difference falls with the cube of the step. Noise does not fall, and jumps do not
-      // bend.
-      const Real small = far * kSmaller;
-      const Vector once = y(small), two = y(2 * small);
-      second = difference(once, two);
-      const Real smaller = third_over(small, once, two);
-      gap = gap_to(small, once);
-      const bool bends = second.norm() >= kBends * kSmaller * kSmaller * third;
-      third = bends && smaller <= kFalls * third ? 0 : std::max(third, smaller);
-      if (std::isfinite(third)) noise = std::max(noise, third / std::sqrt(20.0) / size);
-    }
+  Real gap = 0, third = 0;
+  const auto have_values = [&] {
+    second = difference(values[1], values[2]);
+    gap = gap_to(far, values[1]);
+    if (!is_finite(second)) return false;
+    if (far / near * gap <= kSmooth * second.norm()) return true;
+    third = third_over(far, values[1], values[2]);
+    return std::isfinite(third);
+  };
+  for (int again = 0; !have_values() && again < kMostAgain; ++again) {  // beside failed calls
+    far *= 0.75;
+    values[1] = y(far);
+    values[2] = y(2 * far);
+  }
+  if (third > kNotSmooth * second.norm()) {
+    // A narrow feature of a smooth y bends over small steps as much as over large ones, and its
+    // third difference falls with the cube of the step. Noise does not fall, and jumps do not
+    // bend.
+    const Real small = far * kSmaller;
+    const Vector once = y(small), two = y(2 * small);
+    second = difference(once, two);
+    const Real smaller = third_over(small, once, two);
+    gap = gap_to(small, once);
+    const bool bends = second.norm() >= kBends * kSmaller * kSmaller * third;
+    third = bends && smaller <= kFalls * third ? 0 : std::max(third, smaller);
+    if (std::isfinite(third)) noise = std::max(noise, third / std::sqrt(20.0) / size);
   }
   const Real change = moved.norm();
   if (!(gap <= kBent * change)) {
@@ -175,11 +190,13 @@ Real noise_of_calls(const Vector& y0, const std::function<Vector(Real t)>& y, Ve
     if (std::isfinite(bend) && bend > kBent * change) noise = std::max(noise, bend / size);
   }
   std::erase_if(values, [](const Vector& each) { return !is_finite(each); });
+  const auto factor = [&](Index i) { return i < factors.size() ? factors[i] : 0; };
   std::vector<Index> rows;
   for (Index i = 0; i < y0.size() && rows.size() < kMostRows; ++i)
-    if (std::ranges::any_of(values, [&](const Vector& each) { return each[i] != y0[i]; }))
+    if (factor(i) > 0 &&
+        std::ranges::any_of(values, [&](const Vector& each) { return each[i] != y0[i]; }))
       rows.push_back(i);
-  if (!rows.empty()) noise = std::max(noise, last_places(values, rows).norm() / size);
+  if (!rows.empty()) noise = std::max(noise, last_places(values, rows, factor).norm() / size);
   if (slope != nullptr && noise == std::numeric_limits<Real>::epsilon() && is_finite(moved))
     *slope = moved / near;
   return noise;

@@ -55,8 +55,9 @@ Vector sizes_of_unknowns(const Vector& start);
 // differ by from a smooth y, and what is not smooth at two or three steps farther away, as of an
 // adaptive solver, whose values jump where the number of its steps does; the larger one holds. And
 // the last place of values that were printed with few digits or are of single precision, which
-// small steps do not show. `slope`: dy/dt at 0, (m), by the nearest; empty where y has noise.
-Real noise_of_calls(const Vector& y0, const std::function<Vector(Real t)>& y,
+// small steps do not show. `factors`: by which the first rows of y were multiplied after they were
+// printed; the others were not. `slope`: dy/dt at 0, (m), by the nearest; empty where y has noise.
+Real noise_of_calls(const Vector& y0, const std::function<Vector(Real t)>& y, const Vector& factors,
                     Vector* slope = nullptr);
 // t of the first calls: no round numbers, at which y would seem printed with few digits.
 inline constexpr Real kNoiseStep = 1.0471975511965976e-3;
@@ -87,7 +88,7 @@ auto difference_quotient(const std::array<Real, 2>& at, const Array& y0, const A
 
 // dy/dt at 0 by calls y(t) at these offsets, of which y(t) may round t. Where no call has a value,
 // the other side is tried if there is room, and then shorter steps; without any, 0. Of two, a call
-// halfway stands in for one.
+// nearer than the failed one stands in for it, or one halfway to the other.
 template <class Array>
 Array quotient_of_calls(const std::array<Real, 2>& offsets, const Room& room, const Array& y0,
                         const auto& y) {
@@ -99,8 +100,15 @@ Array quotient_of_calls(const std::array<Real, 2>& offsets, const Room& room, co
     at[count] = t;
     count += values[count].allFinite();
   };
-  for (const Real t : offsets)
-    if (t != 0) take(t);
+  Real failed = 0;
+  for (const Real t : offsets) {
+    if (t == 0) continue;
+    const std::size_t before = count;
+    take(t);
+    if (count == before) failed = t;
+  }
+  constexpr Real kNearer = 0.8;  // a call beside the one that failed has less noise in the quotient
+  if (count == 1 && failed != 0) take(kNearer * failed);
   constexpr Real kShortest = 0.1;  // of the step
   for (Real share = 1; count == 0 && share > kShortest; share /= 2)
     for (const Real t : {share * offsets[0], -share * offsets[0]}) {

@@ -48,7 +48,7 @@ class Examination {
     constexpr int kTries = 20;  // a problem may have no value here and there
     if (problem.is_elsewhere()) {
       const double begin = call_clock();
-      start();
+      if (!start().y.allFinite()) return;
       call_seconds_ = call_clock() - begin;
     }
     const Products products = problem.products();
@@ -92,13 +92,15 @@ class Examination {
 
   // NaN differs from itself, which would read as randomness.
   bool is_finite() {
-    const bool has_values = at_.y.allFinite(), has_target = problem_.target().allFinite();
-    if (!has_values)
-      add("y is finite near the start", 1, 0, "20 sampled points near the start have no finite y");
-    if (!has_target) add("y* is finite", 1, 0, "the target must consist of finite numbers");
-    if (has_values && problem_.has_identity_network() && !start().y.allFinite())
+    const bool has_target = problem_.target().allFinite();
+    const bool has_start = !problem_.has_identity_network() || start().y.allFinite();
+    const bool has_values = has_start && at_.y.size() > 0 && at_.y.allFinite();
+    if (!has_start)
       add("y is finite at the start", 1, 0,
           "each method begins there, so the call at the starting point must succeed");
+    else if (!has_values)
+      add("y is finite near the start", 1, 0, "20 sampled points near the start have no finite y");
+    if (!has_target) add("y* is finite", 1, 0, "the target must consist of finite numbers");
     return has_values && has_target;
   }
 
@@ -119,11 +121,14 @@ class Examination {
     const Matrix sized = J * sizes_.cwiseMax(theta_.cwiseAbs()).asDiagonal();
     const bool is_exact = offers(Oracle::jacobian) && !problem_.products().are_differences;
     const Real error = is_exact ? 100 * kEpsilon : 4 * std::sqrt(noise_);
+    const bool is_central = offers(Oracle::jacobian);
+    const Real step = is_central ? central_step(noise_) : forward_step(noise_);
+    const Real unseen = is_exact ? error : 2 * noise_ / step;  // of the size of y
     std::string without;
     std::vector<Index> effective;
     for (Index j = 0; j < n; ++j) {
       if (sizes_[j] == 0) continue;
-      if (sized.col(j).norm() > error * at_.y.norm() && sized.col(j).norm() > 0)
+      if (sized.col(j).norm() > unseen * at_.y.norm())
         effective.push_back(j);
       else
         without += (without.empty() ? "" : ", ") + name_of_unknown(problem_.names(), j);

@@ -12,6 +12,7 @@
 #include "core/differences.h"
 #include "core/errors.h"
 #include "core/workspace.h"
+#include "problems/model.h"
 #include "problems/wrapper.h"
 
 namespace isoline::problems {
@@ -27,7 +28,7 @@ class Differenced final : public Wrapper {
  public:
   // `start`: where the noise is measured, once, before the first product.
   Differenced(std::unique_ptr<Physics> inside, const std::string& derivatives, std::string steps,
-              Vector start, std::optional<Bounds> bounds)
+              Vector start, std::optional<Bounds> bounds, Vector factors)
       : inside_(std::move(inside)),
         is_central_(derivatives == "central"),
         has_products_(derivatives != "none"),
@@ -35,7 +36,8 @@ class Differenced final : public Wrapper {
         given_(given_steps(steps_)),
         start_(std::move(start)),
         sizes_(sizes_of_unknowns(start_)),
-        bounds_(std::move(bounds)) {}
+        bounds_(std::move(bounds)),
+        factors_(std::move(factors)) {}
   void set_jitter(const Jitter& jitter, const Matrix& target) {
     jitter_ = jitter;
     target_ = target;
@@ -156,7 +158,8 @@ class Differenced final : public Wrapper {
     const auto y = [&](Real t) -> Vector {
       return value(other, (start_ + t * line).replicate(1, batch)).reshaped();
     };
-    noise_ = noise_of_calls(y(0), y);
+    noise_ =
+        noise_of_calls(y(0), y, batch == 1 ? factors_ : Vector(Vector::Ones(batch * outputs())));
   }
   // The number of the call is a digest of x: products have no state.
   void disturb(BatchRef x, BatchOut y) const {
@@ -172,6 +175,7 @@ class Differenced final : public Wrapper {
   GivenSteps given_;
   Vector start_, sizes_;  // (k)
   std::optional<Bounds> bounds_;
+  Vector factors_;          // of y, (m), without penalties
   mutable Real noise_ = 0;  // 0: not yet measured
   std::optional<Jitter> jitter_;
   Matrix target_;  // (m, B)
@@ -190,13 +194,17 @@ Real relative_noise(const Problem& problem, const Vector& x) {
     if (const Jitter* jitter = problem.jitter()) jitter->disturb(call++, problem.target(), at.y);
     return at.y.reshaped();
   };
-  return noise_of_calls(y(0), y);
+  const Vector y0 = y(0);
+  if (!is_finite(y0)) return std::numeric_limits<Real>::quiet_NaN();
+  return noise_of_calls(y0, y, factors_of_data(problem.physics(), problem.penalties()));
 }
 
 void replace_derivatives(ProblemParts& parts, const std::string& derivatives, bool keeps_inverse,
                          const std::string& steps) {
-  auto physics = std::make_unique<Differenced>(std::move(parts.physics), derivatives, steps,
-                                               parts.start.standard, parts.bounds);
+  Vector factors = factors_of_data(*parts.physics, parts.penalties);
+  auto physics =
+      std::make_unique<Differenced>(std::move(parts.physics), derivatives, steps,
+                                    parts.start.standard, parts.bounds, std::move(factors));
   if (parts.jitter) physics->set_jitter(*parts.jitter, parts.target);
   if (keeps_inverse) physics->keep_inverse();
   parts.physics = std::move(physics);

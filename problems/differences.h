@@ -10,7 +10,7 @@
 namespace isoline::problems {
 
 // The noise of y in a call, relative to ‖y‖, by four calls at and near x, inside the bounds, and
-// more where y is not smooth.
+// more where y is not smooth. NaN where y is not finite.
 Real relative_noise(const Problem& problem, const Vector& x);
 
 // `derivatives`: "none", or "forward" or "central" differences of forward solves, which cost what

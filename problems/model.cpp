@@ -343,6 +343,12 @@ const Model* Problem::model() const {
   return found == nullptr ? nullptr : &found->model();
 }
 
+Vector factors_of_data(const Physics& physics, Index penalties) {
+  const Modelled* const found = modelled_in(&physics, [](const Wrapper&) {});
+  if (found != nullptr && found->model().factors.size() > 0) return found->model().factors;
+  return Vector::Ones(physics.outputs() - penalties);
+}
+
 Vector point_of_model(const Physics& physics, VectorRef theta) {
   Vector x = theta;
   modelled_in(&physics, [&](const Wrapper& wrapper) { x = Vector(wrapper.inner_point(x)); });

@@ -106,7 +106,8 @@ std::string with_foreign(const Component& component, const std::string& sources)
   return component.foreign ? digest(sources + digest_of(*component.foreign)) : sources;
 }
 
-// The entry with the options that another program declares; first what it says with its defaults.
+// The entry with the options that another program declares. What it says otherwise, such as the
+// standard deviations of its data, may follow from the values that are given.
 template <class Entry>
 Entry with_declared(Entry entry, const OptionValues& given, std::optional<Foreign>& foreign) {
   if (!entry.introduce) return entry;
@@ -114,6 +115,16 @@ Entry with_declared(Entry entry, const OptionValues& given, std::optional<Foreig
   for (const OptionField& field : entry.options)
     if (const OptionValue* value = given.find(field.name)) known.set(field.name, *value);
   foreign = entry.introduce(complete_options(entry.options, entry.name, known));
+  OptionTable own = entry.options;
+  bool is_given = false;
+  for (const OptionField& field : foreign->options) {
+    const OptionValue* const value = given.find(field.name);
+    if (field.doc == kWordOfScript) continue;
+    own.push_back(field);
+    is_given = is_given || value != nullptr;
+    if (value != nullptr) known.set(field.name, *value);
+  }
+  if (is_given) foreign = entry.introduce(complete_options(own, entry.name, known));
   entry.options.insert(entry.options.end(), foreign->options.begin(), foreign->options.end());
   return entry;
 }

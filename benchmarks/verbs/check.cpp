@@ -1,6 +1,7 @@
 // isoline check [SPEC]: checks a problem's derivatives, adjoint, inverse and solution.
 #include <fmt/format.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "benchmarks/cli/verb.h"
@@ -37,10 +38,12 @@ void declare(VerbArguments& verb, CheckArguments& given) {
 
 constexpr double kCheckSeconds = 120;
 
-// The noise of y in a call, and the steps of differences that follow from it.
+// The noise of y in a call, and the steps of differences that follow from it; null where y is not
+// finite.
 Json noise_of(const Problem& problem) {
   constexpr Real kMost = 0.1;  // beyond, differences over the size of an unknown show noise alone
   const Real noise = problems::relative_noise(problem, problem.standard_start());
+  if (!std::isfinite(noise)) return {};
   return {
       {"property",
        fmt::format("noise of y (relative steps of forward, central differences: {:.1e}, {:.1e})",
@@ -61,7 +64,8 @@ Json findings_of(const Catalog& catalog, const Component& component, std::uint64
                    {"limit", json_number(finding.limit)},
                    {"reason", finding.reason},
                    {"holds", finding.holds()}});
-  if (!problem.is_learned()) all.push_back(noise_of(problem));
+  if (!problem.is_learned())
+    if (const Json noise = noise_of(problem); !noise.is_null()) all.push_back(noise);
   return all;
 }
 

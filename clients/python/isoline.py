@@ -668,6 +668,7 @@ class command:
         if child.returncode != 0:
             last = (complaints.strip() or printed.strip() or "no output").splitlines()[-1]
             raise RuntimeError(f"exit code {child.returncode}: {last}")
+        _refuse_errors(printed, "the output")
         return printed
 
     def _results(self, folder, printed):
@@ -677,9 +678,11 @@ class command:
         if self.read is not None:
             path = os.path.join(folder, self.read)
             if not os.path.isfile(path):
-                raise RuntimeError(f"the program did not write {self.read}")
+                last = (printed.strip() or "nothing").splitlines()[-1][:200]
+                raise RuntimeError(f"the program did not write {self.read}; it printed: {last}")
             with open(path, encoding="utf-8", errors="replace") as file:
                 printed = file.read()
+            _refuse_errors(printed, name)
         numbers = _read_by(self.instructions, printed, name) if self.instructions else _numbers(printed, name)
         if not numbers:
             near = re.search(r"(?<!\S)[+-]*\.?[0-9]\S*", printed)
@@ -706,11 +709,14 @@ def _number(word, name):
     return float(re.sub(r"(?<=[\d.])([+-]\d{3})$", r"e\1", plain))
 
 
+def _refuse_errors(text, name):
+    for line in filter(_ERROR.match, text.splitlines()):
+        raise RuntimeError(f"{name} reports an error: {line.strip()[:200]}")
+
+
 def _numbers(text, name):
     numbers = []
     for line in text.splitlines():
-        if _ERROR.match(line):
-            raise RuntimeError(f"{name} reports an error: {line.strip()[:200]}")
         words = line.replace(",", " ").split()
         is_data = all(_NUMBER.fullmatch(word) or _OVERFLOW.fullmatch(word) for word in words)
         is_banner = bool(words) and not is_data and words[0].strip("*") == ""

@@ -1,4 +1,4 @@
-"""isoline.fit: parameters of a function, with uncertainties, from data. Requires NumPy.
+"""isoline.fit: parameters of a function, with uncertainties, from data. Requires NumPy, which read_data does not.
 
 The program `isoline` looks for the parameters, and computes their uncertainties and profiles. It starts bridge.py,
 which passes its socket on to this process, so `forward` may be any function, such as a closure in a notebook.
@@ -25,10 +25,10 @@ import tempfile
 import threading
 import time
 
-import numpy as np
-
 import isoline
 from isoline import Refused
+
+np = isoline.numpy  # None where it is not installed
 
 METHOD, CENTRAL = "levenberg-marquardt[jacobian=differences]", "levenberg-marquardt"
 MOST_ATTEMPTS = 6  # of the default methods, until a point is a confirmed minimum
@@ -39,7 +39,10 @@ FITS = ("converged", "target", "discrepancy")  # statuses of a point that Isolin
 
 
 class Data:
-    """Columns by name, data["t"] (m), of which y (m) is fitted. sigma (m) or None; x: the name of another column, or None."""
+    """Columns by name, data["t"] (m), of which y (m) is fitted. sigma (m) or None; x: the name of another column, or None.
+
+    Columns are arrays, or lists where NumPy is not installed.
+    """
 
     def __init__(self, columns, y, sigma):
         self.columns, self.y, self.y_name, self.sigma = columns, columns[y], y, columns.get(sigma)
@@ -61,12 +64,13 @@ def read_data(source, y="y", sigma="sigma"):
     if names.count(y) != 1 or len(set(names)) < len(names):
         raise Refused(f"{source if is_file else 'the data'} must have one column {y!r} and no name twice, "
                       f"got {', '.join(names)[:200]}; y= sets another name")
-    columns = []
+    columns = {name: [] for name in names}
     for place, row in rows:
         if len(row) != len(names):
             raise Refused(f"{place}: expected {len(names)} fields, as in the header, found {len(row)}")
-        columns.append([_datum(word, f"{place}, column {name}") for name, word in zip(names, row)])
-    return Data(dict(zip(names, np.array(columns).reshape(-1, len(names)).T)), y, sigma)
+        for name, word in zip(names, row):
+            columns[name].append(_datum(word, f"{place}, column {name}"))
+    return Data({name: np.array(column, float) for name, column in columns.items()} if np else columns, y, sigma)
 
 
 def _rows_of_file(path):
@@ -326,6 +330,9 @@ def fit(
     Raises Refused where arguments are wrong or Isoline refuses them. Ctrl-C raises KeyboardInterrupt after
     Isoline has ended.
     """
+    if np is None:
+        sys.exit(f"isoline.fit requires NumPy, which {sys.executable} does not have: `python3 -m pip install numpy`, or on "
+                 "Debian /usr/bin/python3 and `apt-get install python3-numpy`; isoline.problem works without it")
     model = _Model(forward, data, x0, sigma, bounds, names, units, fixed, tied, log, weights, prior, starts, progress)
     y0 = model.answer(model.x0)
     if not np.all(np.isfinite(y0)):

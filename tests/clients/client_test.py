@@ -277,7 +277,10 @@ class Commands(unittest.TestCase):
 
     def test_fails_where_the_program_does(self):
         self.assertEqual(self.ask("echo 1; echo no mesh >&2; exit 3", "model([1, 2])"), "exit code 3: no mesh")
-        self.assertIn("did not write", self.ask("true", "model([1, 2])", ", read='out'"))
+        self.assertIn("printed: no mesh", self.ask("echo no mesh", "model([1, 2])", ", read='out'"))
+        for read in ("'out'", "lambda folder: 1"):
+            said = self.ask("echo 1 2 > out; echo ERROR 42", "model([1, 2])", f", read={read}")
+            self.assertIn("output reports an error: ERROR 42", said)
         self.assertIn("no numbers", self.ask("echo none", "model([1, 2])"))
         self.assertIn("0.2 s", self.ask("exec sleep 60", "model([1, 2])", ", seconds=0.2"))
         self.assertIn("0.2 s", self.ask("sleep 60; echo 1", "model([1, 2])", ", seconds=0.2"))
@@ -449,6 +452,17 @@ class Alone(unittest.TestCase):
             )
             self.assertNotEqual(found.returncode, 0)
             self.assertIn("Isoline starts this script", found.stderr)
+
+    def test_reads_data_without_numpy_and_says_what_a_fit_requires(self):
+        with tempfile.NamedTemporaryFile("w", suffix=".csv") as file:
+            file.write("t,y,sigma\n1,2.5,0.1\n2,3.5,0.2\n")
+            file.flush()
+            text = WITHOUT_NUMPY + f"import isoline; data = isoline.read_data({file.name!r}); "
+            texts = (text + "print(data['t'], data.y, data.sigma, data.x)", text + "isoline.fit(None, data, [1])")
+            read, fit = (subprocess.run([sys.executable, "-c", each], env=dict(os.environ, PYTHONPATH=CLIENT),
+                                        capture_output=True, text=True) for each in texts)
+        self.assertEqual(read.stdout, "[1.0, 2.0] [2.5, 3.5] [0.1, 0.2] t\n", read.stderr)
+        self.assertRegex(fit.stderr, "^isoline.fit requires NumPy")
 
     def test_a_damaged_report_or_array_is_named(self):
         line = {"name": "gd", "x": [1, 2], "y": [3, 4]}

@@ -330,9 +330,10 @@ class Fits(unittest.TestCase):
         with open(script, "w") as file:
             file.write("import isoline, math\n"
                        f"isoline.problem(lambda b: [b[0] * (1 - math.exp(-b[1] * x)) for x in {MISRA_X}], start=[240, 1e-4],\n"
-                       f"                target={path!r}, names=['b1', 'b2'], log=['b2'], fixed=['b1'], sigma=0.1)\n")
+                       f"                target={path!r}, names=['b1', 'b2'], log=['b2'], fixed=['b1'],\n"
+                       f"                sigma=isoline.option('deviation', 0.1))\n")
         fixed = self.fit(misra, MISRA_Y, {"b1": 240, "b2": 1e-4}, log=["b2"], fixed=["b1"], sigma=0.1)
-        for sigma, loss in (("", fixed.loss), (",sigma=0.2", fixed.loss / 4)):
+        for sigma, loss in (("", fixed.loss), (",sigma=0.2", fixed.loss / 4), (",deviation=0.2", fixed.loss / 4)):
             out = f"{self.folder}/script{sigma}"
             ran = subprocess.run(
                 [os.environ["ISOLINE"], "run", "--problem", f"process[command=\"{sys.executable} {script}\"{sigma}]", "--optimizer",
@@ -342,6 +343,39 @@ class Fits(unittest.TestCase):
             self.assertAlmostEqual(record["summary"]["loss"] / loss, 1, delta=1e-6)
             self.assertNear(record["answer"]["x"][0], fixed.x, 1e-5)
             self.assertEqual(record["request"]["problem"]["options"]["log"], "b2")
+
+    def test_digits_show_behind_deviations_where_calls_fail_and_a_bound_holds(self):
+        """An exponential of six digits, a tenth of whose calls fail; c ≥ 0 holds, as in SciPy's least_squares."""
+        t = [0.4 * i for i in range(20)]
+        rest = [0.31, -0.52, 0.12, 0.47, -0.73, 0.22, -0.11, 0.68, -0.35, 0.05, -0.44, 0.58, -0.09, -0.61, 0.4, 0.17,
+                -0.28, 0.33, -0.5, 0.02]
+        deviations = [0.3 + 0.01 * s for s in t]
+        data = [80 * math.exp(-s / 1.7) - 0.2 + r for s, r in zip(t, rest)]
+        exact = lambda a, k: [a * math.exp(-s / (1e-6 * k)) for s in t]
+
+        def digits(x):
+            if hash(tuple(map(float, x))) % 10 == 3 and list(x) != [50, 1e6, 5]:
+                raise ValueError("no mesh")
+            return [float(f"{y + x[2]:.6g}") for y in exact(x[0], x[1])]
+
+        found = self.fit(digits, data, {"a": 50, "k": 1e6, "c": 5}, sigma=deviations, bounds=(0, [1e3, 1e9, 1e3]))
+        free = self.fit(lambda x: exact(*x), data, {"a": 50, "k": 1e6}, sigma=deviations)
+        self.assertEqual((found.status, found.x[2]), ("converged", 0))
+        for i in range(2):
+            self.assertLess(abs(found.x[i] - free.x[i]), 0.02 * free.sd[i])
+            self.assertAlmostEqual(found.sd[i] / free.sd[i], 1, delta=0.02)
+        self.assertAlmostEqual(found.correlation[0][1], free.correlation[0][1], delta=0.01)
+
+    def test_check_names_the_failed_call_at_the_start(self):
+        script = self.folder + "/dead.py"
+        with open(script, "w") as file:
+            file.write("import isoline\ndef forward(x):\n    raise OSError('no licence')\n"
+                       "isoline.problem(forward, start=[3, 1], target=[1, 2, 3])\n")
+        ran = subprocess.run([os.environ["ISOLINE"], "check", f"process[command=\"{sys.executable} {script}\"]"],
+                             capture_output=True, text=True, timeout=60)
+        self.assertEqual(ran.returncode, 2)
+        self.assertIn("x = (3, 1) failed: OSError: no licence", ran.stdout)
+        self.assertIn("1 check, 1 failed", ran.stdout)
 
     def test_makes_several_calls_at_once(self):
         running, most = [], []

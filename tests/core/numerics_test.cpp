@@ -422,7 +422,7 @@ Vector calls_of(Real t, const std::function<Real(Real)>& print) {
 }
 Real noise_by(const std::function<Real(Real)>& print) {
   const auto y = [&](Real t) { return calls_of(t, print); };
-  return noise_of_calls(y(0), y);
+  return noise_of_calls(y(0), y, Vector::Ones(y(0).size()));
 }
 
 TEST(NoiseOfCalls, IsRoundingForASmoothFunction) {
@@ -450,7 +450,7 @@ TEST(NoiseOfCalls, SeesJumpsThatSmallStepsDoNot) {
     return calls_of(t, [](Real value) { return value; }) *
            (1 + 1e-3 * std::sin(1e4 * std::floor(2e3 * t)));
   };
-  EXPECT_GT(noise_of_calls(y(0), y), 1e-5);
+  EXPECT_GT(noise_of_calls(y(0), y, Vector::Ones(y(0).size())), 1e-5);
 }
 
 // Of a wave over many periods the unknown's size says too much, of a small term of y too little.
@@ -472,7 +472,8 @@ TEST(NoiseOfCalls, TakesNoNarrowFeatureForNoise) {
     }
     return all;
   };
-  EXPECT_EQ(noise_of_calls(y(0), y), std::numeric_limits<Real>::epsilon());
+  EXPECT_EQ(noise_of_calls(y(0), y, Vector::Ones(y(0).size())),
+            std::numeric_limits<Real>::epsilon());
 }
 
 TEST(NoiseOfCalls, SeesPrintedDigitsWhereACallFails) {
@@ -486,8 +487,35 @@ TEST(NoiseOfCalls, SeesPrintedDigitsWhereACallFails) {
       const bool fails = std::abs(t - failed * kNoiseStep) < 1e-9;
       return fails ? Vector::Constant(30, std::nan("")) : all;
     };
-    EXPECT_GT(noise_of_calls(y(0), y), 1e-7) << failed;
+    EXPECT_GT(noise_of_calls(y(0), y, Vector::Ones(y(0).size())), 1e-7) << failed;
   }
+}
+
+// As of data with standard deviations, and a row that no program has printed.
+TEST(NoiseOfCalls, SeesPrintedDigitsBehindFactors) {
+  const Vector factors = Vector::LinSpaced(30, 0.37, 7.1);
+  const auto y = [&](Real t) -> Vector {
+    const Vector all = calls_of(t, [](Real value) {
+      std::array<char, 32> text;
+      std::snprintf(text.data(), text.size(), "%.6g", value);
+      return std::strtod(text.data(), nullptr);
+    });
+    Vector rows(31);
+    rows << all.cwiseProduct(factors), 1 + t / 3;
+    return rows;
+  };
+  EXPECT_NEAR(std::log10(noise_of_calls(y(0), y, factors)), -6, 0.7);
+}
+
+// Of the calls at 1, 2 and 3, then at 0.75, 1.5 and 2.25 steps.
+TEST(NoiseOfCalls, IsMeasuredBesideFailedCalls) {
+  const auto y = [](Real t) -> Vector {
+    const Vector all = calls_of(t, [](Real value) { return value; });
+    for (const Real failed : {2.0, 2.25})
+      if (std::abs(t / kNoiseStep - failed) < 1e-6) return std::nan("") * all;
+    return all * (1 + 1e-3 * std::sin(1e4 * std::floor(2e3 * t)));
+  };
+  EXPECT_GT(noise_of_calls(y(0), y, Vector::Ones(30)), 1e-5);
 }
 
 // Where one of two calls fails, a call halfway keeps the order: e^t over steps of 0.01.
@@ -495,6 +523,16 @@ TEST(Differences, OfTwoCallsKeepTheirOrderWhereOneFails) {
   const auto y = [](Real t) { return Vector::Constant(1, t < 0 ? std::nan("") : std::exp(t)); };
   const Vector slope = quotient_of_calls<Vector>({0.01, -0.01}, {}, y(0), y);
   EXPECT_NEAR(slope[0], 1, 1e-4);
+}
+
+// Six digits: one-sided quotients over half the distance would have seven times the noise.
+TEST(Differences, OfTwoCallsHaveLittleNoiseWhereOneFails) {
+  const auto y = [](Real t) {
+    const bool fails = t == -0.01;
+    return Vector::Constant(1, fails ? std::nan("") : std::exp(t) + 1e-6 * std::cos(628.3 * t));
+  };
+  const Vector slope = quotient_of_calls<Vector>({0.01, -0.01}, {}, y(0), y);
+  EXPECT_NEAR(slope[0], 1, 1.5e-4);
 }
 
 TEST(Differences, TakeTheStepsOfAUser) {
@@ -511,10 +549,10 @@ TEST(NoiseOfCalls, GivesTheSlopeOfASmoothFunctionAlone) {
   const auto smooth = [](Real t) -> Vector { return calls_of(t, [](Real y) { return y; }); };
   const auto printed = [&](Real t) -> Vector { return smooth(t).cast<float>().cast<Real>(); };
   Vector slope, none;
-  noise_of_calls(smooth(0), smooth, &slope);
+  noise_of_calls(smooth(0), smooth, Vector::Ones(30), &slope);
   const Real h = 1e-5;
   EXPECT_LT((slope - (smooth(h) - smooth(-h)) / (2 * h)).norm(), 1e-7 * slope.norm());
-  noise_of_calls(printed(0), printed, &none);
+  noise_of_calls(printed(0), printed, Vector::Ones(30), &none);
   EXPECT_EQ(none.size(), 0);
 }
 
