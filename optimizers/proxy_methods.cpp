@@ -5,7 +5,9 @@
 // sip: scale-invariant physics training, Fig. 3: pull the target back through the physics by its
 // local inverse, x̃ = P⁻¹(y + Δy; x) with Δy = η (y* − y). With the identity network and unit rates
 // it is the inverse-simulator update. Several steps of the inversion may be taken for one of the
-// network, each from the x̃ of the last, and several of the network for one x̃.
+// network, each from the x̃ of the last, and several of the network for one x̃. With count=raised a
+// series has the share of points nearer to x̃ than x is at which L is greater than at x: Fig. 4 has
+// it below half, the less the more dimensions x has.
 //
 // sip-theorem-3: as many as theorem 3 requires for convergence: with U = x̃ − x and L(x + U) =
 // (1 − τ) L(x) the network takes steps toward x̃, held, until
@@ -138,7 +140,7 @@ OptimizerEntry proxy_entry(OptimizerEntry entry) {
 
 struct SipOptions : ProxyOptions {
   InversionOptions inversion;
-  std::string proxy = "l2";
+  std::string proxy = "l2", count;
   Index inner_steps = 1, network_steps = 1;
 
   bool falls_back() const { return inversion.fallback == "gradient"; }
@@ -152,6 +154,8 @@ void fields(SipOptions& o, auto& field) {
         "if the problem's own inverse fails for a sample: the sample keeps its x; or it moves as "
         "with inverse=gradient, and a series of the record counts it");
   field("network-steps", o.network_steps, between(1, 1e6), "steps of the network toward each x̃");
+  field("count", o.count, Choices{"", "raised"},
+        "raised: a series of the record has the share that raise L, of points nearer to x̃ than x");
 }
 
 class Sip final : public ProxyMethod<SipOptions> {
@@ -159,12 +163,16 @@ class Sip final : public ProxyMethod<SipOptions> {
   using ProxyMethod::ProxyMethod;
   void start(Meter& f, const Vector& theta) override {
     ProxyMethod::start(f, theta);
-    if (options_.falls_back()) f.name_series({"samples moved along the gradient"});
+    std::vector<std::string> names;
+    if (options_.falls_back()) names.push_back("samples moved along the gradient");
+    if (!options_.count.empty()) names.push_back("share that raises L");
+    if (!names.empty()) f.name_series(names);
   }
   Status step(Meter& f, Vector& theta) override {
     f.linearize(theta, at_);
     fallbacks_ += invert(f, at_, options_.inner_steps, found_);
     if (options_.falls_back()) f.note(0, static_cast<Real>(fallbacks_));
+    if (!options_.count.empty()) f.note(options_.falls_back() ? 1 : 0, raised_share(f));
     const Proxy proxy = options_.proxy == "l1" ? Proxy::l1 : Proxy::l2;
     approach(found_, at_, theta, proxy);
     for (Index i = 1; i < options_.network_steps && !f.is_spent(); ++i) {
@@ -179,7 +187,27 @@ class Sip final : public ProxyMethod<SipOptions> {
   }
 
  private:
+  // The same points of the unit ball in every step.
+  Real raised_share(Meter& f) {
+    constexpr int kPoints = 4000;
+    RandomStream stream(0, "sip", "ball");
+    const Index k = found_.rows();
+    int raised = 0;
+    for (int i = 0; i < kPoints; ++i) {
+      nearer_ = found_;
+      for (Index b = 0; b < found_.cols(); ++b) {
+        const Real share = std::pow(stream.uniform(), 1 / static_cast<Real>(k));
+        nearer_.col(b) +=
+            share * (found_ - at_.x()).col(b).norm() * stream.normal_vector(k).normalized();
+      }
+      f.linearize_physics(nearer_, inner_);
+      if (inner_.loss() > at_.loss()) ++raised;
+    }
+    return static_cast<Real>(raised) / kPoints;
+  }
+
   Index fallbacks_ = 0;  // samples so far
+  Matrix nearer_;        // (k, B)
 };
 
 struct Theorem3Options : ProxyOptions {

@@ -9,6 +9,7 @@
 #include <algorithm>
 
 #include "core/decompose.h"
+#include "core/frames.h"
 #include "problems/learning.h"
 #include "problems/physics/flow_physics.h"
 
@@ -19,7 +20,7 @@ struct Options {
   Index N = 64, steps = 8;
   Real dt = 0.25, viscosity = 0;
   std::string ground_truth = "staggered", rescale = "component", loss;
-  std::string inverse = "generator", track = "consistent";
+  std::string inverse = "generator", track = "consistent", count;
   Learning learning{.network = "unet[levels=5]", .batch = 64};
 
   FlowOptions flow(Arrangement arrangement) const {
@@ -57,6 +58,8 @@ void fields(Options& o, auto& field) {
         "information");
   field("track", o.track, {"consistent", "published"},
         "for inverse=generator: the marker's path, or the published one, which lacks a factor Δt");
+  field("count", o.count, {"", "vorticity"},
+        "vorticity: an additional series of mode=learn, the mean |curl| of x over that of x*");
   fields(o.learning, field);
 }
 
@@ -127,6 +130,20 @@ ProblemParts flow_parts(const Options& o) {
   return parts;
 }
 
+// Above 1 where a network overshoots: Holl et al. (2022) find it in Adam's local optimum.
+Series vorticity_share(Index N) {
+  return {.names = {"mean vorticity over that of x*"},
+          .evaluate = [N](const Problem&, VectorRef, Point& at, VectorOut values) {
+            const Matrix& truth = at.batch->truth;
+            Real own = 0, wanted = 0;
+            for (Index b = 0; b < truth.cols(); ++b) {
+              own += curl(at.x().col(b), N, N).cwiseAbs().sum();
+              wanted += curl(truth.col(b), N, N).cwiseAbs().sum();
+            }
+            values[0] = own / wanted;
+          }};
+}
+
 ProblemParts learn_navier_stokes(const Options& o, const Draw& draw) {
   require(o.learning.watch != "spectrum",
           "navier-stokes: watch=spectrum needs one number per cell in x; a velocity has two");
@@ -147,6 +164,7 @@ ProblemParts learn_navier_stokes(const Options& o, const Draw& draw) {
                            .grid = o.N,
                            .input_channels = 2,
                            .output_channels = 2};
+  if (o.count == "vorticity") parts.series = vorticity_share(o.N);
   return learn(o.learning, shape, draw, std::move(parts));
 }
 

@@ -23,7 +23,7 @@ struct FiguresArguments {
   std::vector<std::string> methods;
   std::string out, only;
   double width = 3.2, tau = 1e-6;
-  bool is_list = false;
+  bool is_list = false, is_beside = false;
 };
 
 void declare(VerbArguments& verb, FiguresArguments& given) {
@@ -42,6 +42,7 @@ void declare(VerbArguments& verb, FiguresArguments& given) {
             "Tolerance of the figures, as --tolerance of report")
       .shown("1e-6");
   verb.text("--out", given.out, "Output folder (default: figures/ in the first DIR)");
+  verb.flag("--beside", given.is_beside, "Also write beside.FORMAT, all in one figure");
   verb.flag("--list", given.is_list, "List the names and titles, and write nothing");
 }
 
@@ -65,6 +66,7 @@ int run(const FiguresArguments& given, Session& session) {
                                         fmt::format("{}", given.width)};
   for (const std::string& records : given.folders)
     arguments.insert(arguments.end(), {"--records", records});
+  if (given.is_beside) arguments.emplace_back("--beside");
   if (!given.only.empty()) arguments.insert(arguments.end(), {"--only", given.only});
   if (!given.methods.empty())
     arguments.insert(arguments.end(), {"--methods", reports::joined(given.methods, ",")});

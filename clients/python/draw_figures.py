@@ -108,14 +108,23 @@ def limits(low, high, is_log):
     return (low if low > 0 else high * 1e-6, high) if is_log else (low, high)
 
 
-def drawn(pyplot, plot, width, methods, text):
+def beside(pyplot, plots, width, methods, text):
+    """A figure of several plots, side by side."""
+    whole = pyplot.figure(figsize=(len(plots) * width, 1.2 * width))
+    parts = iter(whole.subfigures(1, len(plots), squeeze=False)[0])
+    for plot in plots:
+        drawn(lambda **_: next(parts), plot, width, methods, text).suptitle(text(plot["title"]), fontsize=8)
+    return whole
+
+
+def drawn(figure_of, plot, width, methods, text):
     """A figure of one plot: axes, lines, published values, and names below."""
     lines = shown_lines(plot, methods)
     names = [text(textwrap.shorten(line["name"], 50, placeholder="…")) for line in lines]
     columns = 2 if all(len(name) <= 22 for name in names) else 1
     below = 0.42 + 0.14 * math.ceil(len(names) / columns)  # inches for the axis and the names
     height = below + 0.54 * width + 0.2
-    figure = pyplot.figure(figsize=(width, height))
+    figure = figure_of(figsize=(width, height))
     axes = figure.add_axes([0.5 / width, below / height, 1 - 0.6 / width, 0.54 * width / height])
     left, right, bottom, top = map(float, plot["window"])
     axes.set_xscale("log" if plot["log_x"] else "linear")
@@ -277,6 +286,7 @@ def main():
     parser.add_argument("--methods", default="", help="methods, by name, between commas")
     parser.add_argument("--width", type=float, default=3.2, help="width in inches")
     parser.add_argument("--out", default="figures", help="output folder")
+    parser.add_argument("--beside", action="store_true", help="also beside.FORMAT, all in one figure, side by side")
     parser.add_argument("--list", action="store_true", help="list names and titles, and write nothing")
     parser.add_argument("--quiet", action="store_true", help="print nothing")
     given = parser.parse_args()
@@ -323,9 +333,14 @@ def main():
                      "pdf": {"CreationDate": None, "Title": plot["title"]}}
             with named(given.report, plot["name"]):
                 figure = (drawn_fields(pyplot, plot, given.width, text) if is_of_fields else
-                          drawn(pyplot, plot, given.width, methods, text))
+                          drawn(pyplot.figure, plot, given.width, methods, text))
                 figure.savefig(out / f"{plot['name']}.{name}", metadata=plain.get(name))
                 pyplot.close(figure)
+    lines = [plot for plot in plots if plot["kind"] != "fields"]
+    for name in drawings if given.beside and lines else []:
+        with named(given.report, lines[0]["name"]):
+            figure = beside(pyplot, lines, given.width, methods, in_tex if name == "pgf" else str)
+            figure.savefig(out / f"beside.{name}", metadata={"svg": {"Date": None}, "pdf": {"CreationDate": None}}.get(name))
     if not given.quiet:
         print(f"{out}: {len(plots)} figure{'' if len(plots) == 1 else 's'} as {', '.join(formats)}")
 

@@ -186,7 +186,8 @@ constexpr std::size_t kPoints = 24;  // a curve has up to twice as many
 
 // The plotted part of a column: itself, its shape, or nothing if it belongs to a complete run.
 std::string curve_of(const std::string& column) {
-  constexpr std::array<const char*, 3> kWhole = {"milliseconds", "alignment", "turn"};
+  constexpr std::array<const char*, 4> kWhole = {"milliseconds", "peak_memory", "alignment",
+                                                 "turn"};
   if (column.ends_with("deviation") || std::ranges::find(kWhole, column) != kWhole.end()) return "";
   if (is_level(column)) return bound_of(column).first;
   return column == "slowdown" ? "x_error" : column;

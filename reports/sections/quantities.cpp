@@ -201,10 +201,13 @@ std::size_t index_at(const Curve& curve, const Place& place) {
 Real figure_of(const Record& record, const Place& place) {
   const Curve& curve = record.curve;
   const std::string& name = place.column;
+  const bool has_steps = record.summary.iterations > 0 && place.iteration != 0;
   if (name == "milliseconds")
-    return record.summary.iterations == 0
-               ? kUnknown
-               : 1e3 * record.summary.wall_seconds / static_cast<Real>(record.summary.iterations);
+    return has_steps ? 1e3 * record.summary.processor_seconds /
+                           static_cast<Real>(record.summary.iterations)
+                     : kUnknown;
+  if (name == "peak_memory")
+    return has_steps ? 1e-6 * static_cast<Real>(record.summary.peak_memory_bytes) : kUnknown;
   if (curve.iteration.empty()) return kUnknown;
   const std::size_t index = index_at(curve, place);
   if (name == "loss_peak") return std::ranges::max(curve.loss | std::views::take(index + 1));

@@ -458,6 +458,7 @@ Record untrained(Record record) {
   for (auto* windows : {&curve.batch_loss, &curve.batch_x_error})
     for (auto& [window, column] : *windows) keep(column);
   for (auto& [name, column] : record.series) keep(column);
+  record.summary.peak_memory_bytes = 0;
   if (record.hits)
     for (std::size_t i = 0; i < record.hits->target.size(); ++i)
       if (record.hits->work[i] > curve.work[0]) record.hits->iteration[i] = -1;  // never reached

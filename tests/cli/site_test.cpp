@@ -98,10 +98,12 @@ TEST_F(Site, HasNoDeadLinkAndEachPageIsValid) {
 TEST_F(Site, FiguresHaveThePointsOfThePlots) {
   if (!has_matplotlib()) GTEST_SKIP() << "matplotlib is not installed";
   shell.expect("./isoline figures out --list", {.out = {"curves-rosenbrock"}});
-  shell.expect("./isoline figures out --only curves-rosenbrock --format svg,pdf,csv --out drawn",
-               {.out = {"1 figure as svg, pdf, csv"}});
+  shell.expect(
+      "./isoline figures out --beside --only curves-rosenbrock --format svg,pdf,csv --out drawn",
+      {.out = {"1 figure as svg, pdf, csv"}});
   shell.expect("./isoline figures out --only nothing", {.exit_code = 1, .err = {"--list"}});
   const fs::path drawn = shell.folder() / "drawn";
+  EXPECT_TRUE(contains(read_text(drawn / "beside.svg"), ">gauss-newton</text>"));
   const std::string csv = read_text(drawn / "curves-rosenbrock.csv");
   EXPECT_TRUE(csv.starts_with("line,x,y,low,high\r\n")) << csv;
   for (const char* method : {"gd", "adam", "newton", "gauss-newton"})

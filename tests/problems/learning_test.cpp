@@ -199,6 +199,19 @@ TEST(Watches, HalfTheSquaredErrorIsThatOfEachSample) {
   }
 }
 
+TEST(Watches, VorticityIsAShareOfThatOfTheTruth) {
+  const Problem problem = make(
+      "navier-stokes[mode=learn,N=16,batch=1,network=unet[levels=2,filters=2],count=vorticity]");
+  Batch validation;
+  problem.draw_validation(validation);
+  Point at;
+  problem.forward(problem.start(), validation, at);
+  at.physics.x = 3 * validation.truth;
+  Vector values(static_cast<Index>(problem.series().names.size()));
+  problem.series().evaluate(problem, problem.start(), at, values);
+  EXPECT_NEAR(values[0], 3, 1e-12);
+}
+
 TEST(Watches, AreThoseAskedForAndNoMoreThanATraceHolds) {
   const std::vector<std::pair<std::string, std::size_t>> counts = {
       {"sine[mode=learn]", 0},
