@@ -161,6 +161,7 @@ Real noise_of_calls(const Vector& y0, const std::function<Vector(Real t)>& y, co
   const auto have_values = [&] {
     second = difference(values[1], values[2]);
     gap = gap_to(far, values[1]);
+    third = 0;
     if (!is_finite(second)) return false;
     if (far / near * gap <= kSmooth * second.norm()) return true;
     third = third_over(far, values[1], values[2]);

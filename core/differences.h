@@ -98,15 +98,13 @@ Array quotient_of_calls(const std::array<Real, 2>& offsets, const Room& room, co
   const auto take = [&](Real t) {
     values[count] = y(t);
     at[count] = t;
-    count += values[count].allFinite();
+    const bool has_value = values[count].allFinite();
+    count += has_value;
+    return has_value;
   };
   Real failed = 0;
-  for (const Real t : offsets) {
-    if (t == 0) continue;
-    const std::size_t before = count;
-    take(t);
-    if (count == before) failed = t;
-  }
+  for (const Real t : offsets)
+    if (t != 0 && !take(t)) failed = t;
   constexpr Real kNearer = 0.8;  // a call beside the one that failed has less noise in the quotient
   if (count == 1 && failed != 0) take(kNearer * failed);
   constexpr Real kShortest = 0.1;  // of the step

@@ -102,15 +102,15 @@ void require_readable(const struct stat& found, const fs::path& path, std::size_
 // Reads an open file whole. The expected size is a hint: for some system files it is 0.
 std::string all_of(int file, std::size_t size, const fs::path& path, std::size_t most_bytes) {
   constexpr std::size_t kLeast = 1 << 12;
-  std::string text(std::max(size + 1, kLeast), '\0');
+  std::string text(std::max(size + 1, kLeast), '\0');  // one byte more, to detect the end
   std::size_t have = 0;
   for (;;) {
     const ssize_t got = ::read(file, text.data() + have, text.size() - have);
     if (got < 0 && errno == EINTR) continue;
     if (got < 0) refuse(path, strerror(errno));
+    if (got == 0) break;
     have += static_cast<std::size_t>(got);
     if (have > most_bytes) refuse(path, fmt::format("it grows beyond {} bytes", most_bytes));
-    if (got == 0 || have == size) break;  // a file that grows now is read as it was
     if (have == text.size()) text.resize(2 * have);
   }
   text.resize(have);

@@ -163,10 +163,7 @@ class DifferenceJacobian {
       for (std::size_t i = 0; i < kNoiseSteps.size(); ++i)
         points.col(static_cast<Index>(i)) += kNoiseSteps[i] * line;
       f.announce(points);
-      const problems::Model* const model = f.problem().model();
-      const bool is_weighted = model != nullptr && model->factors.size() > 0;
-      const Vector ones = Vector::Ones(f.residuals() - f.problem().penalties());
-      noise_ = noise_of_calls(at.y().reshaped(), y, is_weighted ? model->factors : ones, &slope);
+      noise_ = noise_of_calls(at.y().reshaped(), y, f.problem().factors_of_data(), &slope);
       return;
     }
     const Real level = noise_of_values(y).norm() / at.y().norm();

@@ -196,12 +196,12 @@ Real relative_noise(const Problem& problem, const Vector& x) {
   };
   const Vector y0 = y(0);
   if (!is_finite(y0)) return std::numeric_limits<Real>::quiet_NaN();
-  return noise_of_calls(y0, y, factors_of_data(problem.physics(), problem.penalties()));
+  return noise_of_calls(y0, y, problem.factors_of_data());
 }
 
 void replace_derivatives(ProblemParts& parts, const std::string& derivatives, bool keeps_inverse,
                          const std::string& steps) {
-  Vector factors = factors_of_data(*parts.physics, parts.penalties);
+  Vector factors = factors_of_data(*parts.physics, parts.physics->outputs() - parts.penalties);
   auto physics =
       std::make_unique<Differenced>(std::move(parts.physics), derivatives, steps,
                                     parts.start.standard, parts.bounds, std::move(factors));

@@ -343,10 +343,14 @@ const Model* Problem::model() const {
   return found == nullptr ? nullptr : &found->model();
 }
 
-Vector factors_of_data(const Physics& physics, Index penalties) {
+Vector factors_of_data(const Physics& physics, Index rows) {
   const Modelled* const found = modelled_in(&physics, [](const Wrapper&) {});
   if (found != nullptr && found->model().factors.size() > 0) return found->model().factors;
-  return Vector::Ones(physics.outputs() - penalties);
+  return Vector::Ones(rows);
+}
+
+Vector Problem::factors_of_data() const {
+  return isoline::problems::factors_of_data(physics(), residuals() - penalties());
 }
 
 Vector point_of_model(const Physics& physics, VectorRef theta) {

@@ -44,8 +44,9 @@ inline void fields(ModelWords& o, auto& field) {
 // for `prior` without `sigma`, and for `starts` without finite bounds.
 Problem with_model(Problem plain, const ModelWords& words, const Draw& draw);
 
-// By which each y of the simulator is multiplied; (m) without the last rows, of penalties.
-Vector factors_of_data(const Physics& physics, Index penalties);
+// By which each y of the simulator is multiplied: those of the model, or else 1 in so many `rows`,
+// which are those of data, without priors and penalties.
+Vector factors_of_data(const Physics& physics, Index rows);
 // x at θ, of a physics with a model.
 Vector point_of_model(const Physics& physics, VectorRef theta);
 // Whether an unknown of the methods is a logarithm.

@@ -192,6 +192,8 @@ class Problem {
   const OwnUnits& own_units() const { return parts_.own_units; }
   Vector in_own_units(VectorRef theta) const;  // x
   const Model* model() const;                  // nothing without its words
+  // By which each y of the simulator is multiplied: (residuals), without penalties and priors.
+  Vector factors_of_data() const;
   Matrix model_slopes(VectorRef theta) const;  // ∂x/∂θ, (k, n), of a problem with a model
   const Physics& physics() const { return *parts_.physics; }
   const auto& window() const { return parts_.window; }

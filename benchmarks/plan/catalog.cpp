@@ -118,11 +118,12 @@ Entry with_declared(Entry entry, const OptionValues& given, std::optional<Foreig
   OptionTable own = entry.options;
   bool is_given = false;
   for (const OptionField& field : foreign->options) {
-    const OptionValue* const value = given.find(field.name);
     if (field.doc == kWordOfScript) continue;
     own.push_back(field);
-    is_given = is_given || value != nullptr;
-    if (value != nullptr) known.set(field.name, *value);
+    const OptionValue* const value = given.find(field.name);
+    if (value == nullptr) continue;
+    known.set(field.name, *value);
+    is_given = true;
   }
   if (is_given) foreign = entry.introduce(complete_options(own, entry.name, known));
   entry.options.insert(entry.options.end(), foreign->options.begin(), foreign->options.end());

@@ -105,17 +105,20 @@ class JsonText {
     const Object object = std::move(objects_.back());
     objects_.pop_back();
     if (object.members.empty()) return;
-    std::map<std::string, std::string> sorted;
+    const std::size_t first = object.members.front().second;
+    const std::string unsorted = text_.substr(first);
+    std::map<std::string_view, std::string_view> sorted;
     for (std::size_t i = 0; i < object.members.size(); ++i) {
       const auto& [name, at] = object.members[i];
       const bool is_last = i + 1 == object.members.size();
       const std::size_t end = is_last ? text_.size() : object.members[i + 1].second - 1;
-      if (!left_out_->contains(object.path + name)) sorted[name] = text_.substr(at, end - at);
+      if (!left_out_->contains(object.path + name))
+        sorted.emplace(name, std::string_view(unsorted).substr(at - first, end - at));
     }
-    text_.resize(object.members.front().second);
-    for (const auto& [name, member] : sorted) text_ += member + ",";
+    text_.resize(first);
+    for (const auto& [name, member] : sorted) text_.append(member).push_back(',');
     if (!sorted.empty()) text_.pop_back();
-    if (objects_.empty()) members_ = std::move(sorted);
+    if (objects_.empty()) members_ = {sorted.begin(), sorted.end()};
   }
 
   std::string text_;

@@ -12,7 +12,6 @@
 #include "core/json.h"
 #include "core/options.h"
 #include "core/records/fields.h"
-#include "core/records/member_texts.h"
 #include "core/records/npy.h"
 #include "core/status.h"
 

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -118,6 +119,11 @@ Json run_schema();  // what benchmarks/schemas/run.json holds
 // The part of a record that must be equal in two runs of one build. Fields and spectra are not,
 // since only one of the runs may keep them.
 Json result_of(const Json& record);
+// The paths of what it leaves out, such as "summary/wall_seconds".
+const std::set<std::string>& paths_beside_results();
+// Each member without these paths as json_text() prints it, "name":value, which takes no tree.
+std::map<std::string, std::string> member_texts(const Record& record,
+                                                const std::set<std::string>& left_out);
 
 // The record without everything that may differ between two runs of one build: times, memory,
 // concurrency, fields and spectra.

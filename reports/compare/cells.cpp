@@ -16,7 +16,6 @@
 #include "core/files.h"
 #include "core/json.h"
 #include "core/records/json_view.h"
-#include "core/records/member_texts.h"
 #include "core/seeds.h"
 #include "core/status.h"
 #include "reports/compare/gate.h"
@@ -136,15 +135,12 @@ void add_digests(ComparedCell& cell, const Record& record) {
   cell.trace = digest_of(taken({"curve", "trajectory", "series", "exhibit", "hits"}));
   cell.rest = digest_of(all);
   all.merge(beside);
-  const auto add = [&](const std::string& name, const Json& value) {
+  const Json more = members_beside_results(record);
+  for (const auto& [name, value] : more.items())
     all[name] = json_text(name) + ":" + json_text(value);
-  };
-  add("rates", record.request.rates);
-  if (record.fields) add("snapshots", record.fields->digest);
-  if (record.hits) add("hit_counts", record.hits->counts);
-  if (record.x_hits) add("x_hit_counts", record.x_hits->counts);
   for (const auto& [name, text] : all)
-    cell.members.emplace_back(*shared_value(name, name), fnv1a(text.substr(text.find(':') + 1)));
+    cell.members.emplace_back(*shared_value(name, name),
+                              fnv1a(std::string_view(text).substr(text.find(':') + 1)));
 }
 
 ComparedCell cell_of(const Record& record) {

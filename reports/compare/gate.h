@@ -169,6 +169,9 @@ bool is_chaotic(const ComparedCell& cell, const std::optional<Real>& tolerance);
 // not, or that none of them reached and NEW does. What only some reached is no difference.
 Differences coarse_differences(const ComparedCell& before, const ComparedCell& after);
 
+// Members that are compared beside the result of a record: rates, and counts of calls at its hits.
+Json members_beside_results(const Record& record);
+
 // Every other member of the two records, number by number: within the tolerance times the norm of
 // x* for points, times the largest value of a column for others. Adds the members that a comparison
 // with a tolerance leaves out.

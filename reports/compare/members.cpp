@@ -129,10 +129,7 @@ Json members_of(const std::string& file) {
     record.answer->digest.clear();
   }
   Json json = result_of(to_json(record));
-  json["rates"] = record.request.rates;
-  if (record.fields) json["snapshots"] = record.fields->digest;
-  if (record.hits) json["hit_counts"] = record.hits->counts;
-  if (record.x_hits) json["x_hit_counts"] = record.x_hits->counts;
+  json.update(members_beside_results(record));
   return json;
 }
 
@@ -142,6 +139,15 @@ std::string shown_name(std::string name) {
 }
 
 }  // namespace
+
+Json members_beside_results(const Record& record) {
+  Json json = Json::object();
+  json["rates"] = record.request.rates;
+  if (record.fields) json["snapshots"] = record.fields->digest;
+  if (record.hits) json["hit_counts"] = record.hits->counts;
+  if (record.x_hits) json["x_hit_counts"] = record.x_hits->counts;
+  return json;
+}
 
 Differences member_differences(const ComparedCell& a, const ComparedCell& b,
                                const std::optional<Real>& tolerance,

@@ -21,7 +21,6 @@
 #include "core/frames.h"
 #include "core/json.h"
 #include "core/records/json_view.h"
-#include "core/records/member_texts.h"
 #include "core/records/npy.h"
 #include "core/records/request.h"
 #include "core/records/sheet.h"
