@@ -390,8 +390,13 @@ std::vector<Claim> claims_without(const std::vector<std::string>& dear, std::int
         for (const char* part : {"cells", "quantity", "contrasts"}) claim.erase(part);
       if (!claim.contains("cells")) continue;
       Json cheapest = claim["cells"].back();
-      Json& iterations = cheapest["budget"]["iterations"];
-      iterations = std::min(most, iterations.get<std::int64_t>());
+      const auto limit = [&](Json& budget) {
+        Json& iterations = budget["iterations"];
+        iterations = std::min(most, iterations.get<std::int64_t>());
+      };
+      limit(cheapest["budget"]);
+      if (cheapest.contains("budgets"))  // of single optimizers
+        for (Json& budget : cheapest["budgets"]) limit(budget);
       if (cheapest.contains("seeds")) cheapest["seeds"] = std::to_string(seeds);
       claim["cells"] = Json::array({cheapest});
       claim.erase("length");

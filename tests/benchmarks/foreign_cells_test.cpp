@@ -193,7 +193,7 @@ TEST_F(ForeignCells, ThatWereKilledManyTimesAreAnsweredFromTheStoreAndEndAsOther
           "            [0, 0, -20 * x[2], 10], [0, 0, -1, 0]]\n"
           "isoline.problem(forward, [-1.2, 1, -1.1, 1.1], target=[0] * 4, jacobian=jacobian)\n");
   const std::string command = "python3 " + script.string();
-  constexpr std::size_t kKills = 16;
+  constexpr std::size_t kKills = 8;
   options.logs_calls = true;
   std::vector<std::string> methods = {"nlopt-bobyqa",
                                       "ceres-lm",
