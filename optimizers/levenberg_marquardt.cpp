@@ -64,6 +64,7 @@ struct LevenbergMarquardt {
     Vector Jd, residual, Jbend;      // (m·B)
     Real last_length = kUnbounded;   // ‖D d‖ of the last step that only rounding could judge
     Real last_promise = kUnbounded;  // of ½‖r‖², that the last step by a fresh J was to gain
+    Index longer = 0;                // steps that only rounding could judge, and were not shorter
     std::string jacobian;            // as the option has it; by differences where none is offered
 
     bool has_updated_jacobian() const { return jacobian != "exact" && !differences.is_fresh(); }
@@ -75,7 +76,7 @@ struct LevenbergMarquardt {
     s.differences.persist(archive);
     s.curvature.persist(archive);
     archive(s.is_fine, s.has_point, s.is_retried, s.is_limited, s.updates, s.radius, s.gain,
-            s.noise, s.last_length, s.last_promise, s.residual);
+            s.noise, s.last_length, s.last_promise, s.longer, s.residual);
   }
 
   State init(Meter& f, const Vector&) const {
@@ -186,6 +187,7 @@ struct LevenbergMarquardt {
   Status step_within(Meter& f, Vector& theta, State& s) const {
     constexpr Real kSettled = 1e-7;  // of ½‖r‖², that the Gauss-Newton step would gain
     constexpr Real kFirst = 0.25, kLonger = 1.1, kShorter = 0.9;
+    constexpr Index kMostLonger = 3;  // by errors of J, such as those of a call that failed
     Vector sizes(theta.size()), least(theta.size());
     for (Index j = 0; j < theta.size(); ++j) {
       sizes[j] = s.differences.size_of(theta, j);
@@ -221,7 +223,9 @@ struct LevenbergMarquardt {
     const bool is_rounding =
         std::abs(predicted) <= rounding && std::abs(actual) <= rounding;  // false for NaN
     if (is_rounding) {
-      if (!(length <= kShorter * s.last_length)) return stop(f, theta, s);
+      const bool may_be_by_chance = is_fresh && s.is_fine && s.differences.is_noisy();
+      if (!(length <= kShorter * s.last_length) && (!may_be_by_chance || s.longer++ >= kMostLonger))
+        return stop(f, theta, s);
       s.last_length = length;
     }
     // On a bound, J may predict no decrease of a step that has one.

@@ -208,7 +208,9 @@ std::string table_text(const Solution& solution) {
         "one solution, or the loss does not determine x.\n",
         reports::counted(solution.others, "run"), solution.others == 1 ? "is" : "are",
         solution.distance);
-  if (const auto& failures = record.failures)
+  // Most messages say it.
+  const bool is_said = record.message.find(" failed, the first") != std::string::npos;
+  if (const auto& failures = record.failures; failures && !is_said)
     text +=
         fmt::format("  {} failed, the first with: {}. The record lists x and the reasons.\n",
                     reports::counted(static_cast<std::size_t>(failures->total), "evaluation"),
@@ -299,7 +301,7 @@ results::ProfiledFit profiled_fit(const Solution& solution, const Problem& probl
   require(!solution.deviations().empty() && solution.answer.residual_norm, [&] {
     const std::string doubt = reports::doubt_text(record);
     return fmt::format("a profile requires a fit with standard deviations{}{}",
-                       doubt.empty() ? "" : ": ", doubt);
+                       doubt.empty() ? "" : ". ", doubt);
   });
   const std::span<const Real> x = solution.answer.point(kReturned);
   results::ProfiledFit fit{

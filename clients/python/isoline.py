@@ -666,7 +666,7 @@ class command:
                 raise RuntimeError(f"the program ran for more than {self.seconds} s")
             printed, complaints = (_text_of(file) for file in (out, err))
         if child.returncode != 0:
-            last = (complaints.strip() or printed.strip() or "no output").splitlines()[-1]
+            last = (complaints.strip() or printed.strip() or "no output").splitlines()[-1].strip()
             raise RuntimeError(f"exit code {child.returncode}: {last}")
         _refuse_errors(printed, "the output")
         return printed

@@ -421,7 +421,8 @@ class Fit:
             self._half = found["t"] * self.sd
         self._held = [i for i in model.free if (np.isnan(self.sd[i]) if self.sd is not None else active[i])]
         held = ", ".join(self.names[i] for i in self._held)
-        self.message = "; ".join(filter(None, [found.get("doubt"), held and f"held at a bound: {held}", self._record["message"]]))
+        said = filter(None, [found.get("doubt"), held and f"held at a bound: {held}", self._record["message"]])
+        self.message = "; ".join(said).replace(".; ", "; ")
         nothing = 1e-10 * np.nanmax([float(record["summary"]["start_loss"]) for record, *_ in ends])  # zero residuals
         self.basins, self.calls = self._basins(nothing), model.calls
 
@@ -448,7 +449,7 @@ class Fit:
         calls of forward to expect. names: of these unknowns only. Raises Refused where the point is not a fit.
         """
         if self.sd is None:
-            raise Refused(f"a profile requires a fit, but there is {self.message}")
+            raise Refused(f"a profile requires a fit with standard deviations. {self.message}")
         self._profile = Profile(self, [] if names is None else names)
         return self._profile
 

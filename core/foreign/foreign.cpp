@@ -263,6 +263,24 @@ std::string ChildProgram::end_in_words() {
   return fmt::format("signal {} ({}) ended it", end_->number, strsignal(end_->number));
 }
 
+namespace {
+
+// The exception below the last traceback, and the place that raised it; empty without a traceback.
+std::string error_of_python(std::string_view text) {
+  const std::size_t place = text.rfind("\n  File \"");
+  if (place == std::string_view::npos) return "";
+  const std::size_t begin = place + 3;
+  std::size_t line = text.find('\n', begin);
+  const std::string_view file = text.substr(begin, line - begin);
+  while (line != std::string_view::npos && text.substr(line, 3) == "\n  ")
+    line = text.find('\n', line + 1);  // its source
+  if (line == std::string_view::npos) return "";
+  const std::string_view error = text.substr(line + 1, kLastBytes);
+  return valid_utf8(fmt::format("{} ({})", error, file));
+}
+
+}  // namespace
+
 std::string ChildProgram::last_words() const {
   std::string text = tail_;
   std::erase(text, '\0');  // a reader could take it for the end of the text
@@ -270,6 +288,7 @@ std::string ChildProgram::last_words() const {
   const std::size_t end = words.find_last_not_of("\n\r\t ");
   if (end == std::string_view::npos) return "";
   words = words.substr(0, end + 1);
+  if (const std::string error = error_of_python(words); !error.empty()) return error;
   std::size_t begin = words.size();
   for (std::size_t line = 0; line < kLastLines && begin != std::string_view::npos; ++line)
     begin = begin == 0 ? std::string_view::npos : words.rfind('\n', begin - 1);

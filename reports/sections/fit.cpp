@@ -277,7 +277,7 @@ void add_data_set(Section& section, const Comparison& c, const std::vector<const
   if (doubt != Doubt::none) text += " " + doubt_text(record);
   if (const auto test = noise_test(record); test && doubt == Doubt::none)
     text += " " + words("fit.test", test->chi_square, test->freedom, test->p);
-  if (!record.message.empty()) text += " " + record.message;
+  if (!record.message.empty()) text += " " + words("fit.message", record.message);
   section.readings.push_back({"", text});
   std::vector<Table> tables = {parameters_table(problem, record)};
   if (doubt == Doubt::none && record.uncertainty->x.size() > 1)

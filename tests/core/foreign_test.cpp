@@ -180,6 +180,16 @@ TEST(Programs, HowTheyEndAndWhatTheyPrintedLastIsSaid) {
   EXPECT_NE(failure_of("kill -9 $$").find("signal 9 (Killed) ended it"), std::string::npos);
 }
 
+TEST(Programs, OfPythonEndWithTheirExceptionAndItsPlace) {
+  const std::string frame = "echo \"  File \\\"a.py\\\", line 4, in load\"; echo \"    rows[n]\";";
+  const std::string said =
+      failure_of("echo Traceback:; " + frame + frame + "echo \"KeyError: 7\"; exit 1");
+  EXPECT_TRUE(said.ends_with("output was: KeyError: 7 (File \"a.py\", line 4, in load)")) << said;
+  EXPECT_NE(failure_of(frame + "exit 1").find("rows[n]"), std::string::npos);
+  const std::string place = "echo Traceback:; echo \"  File \\\"a.py\\\", line 4\"; exit 1";
+  EXPECT_TRUE(failure_of(place).ends_with("line 4"));
+}
+
 TEST(Programs, ThatPrintAGigabyteAreReadToTheEndInLittleMemory) {
   const std::string said = failure_of("head -c 1000000000 /dev/zero; echo; echo the end; exit 5");
   EXPECT_NE(said.find("code 5; its last output was: "), std::string::npos) << said.substr(0, 200);

@@ -111,6 +111,17 @@ TEST(Forward, DifferencesFindTheStepForNoiseThatRepeats) {
   }
 }
 
+// A Jacobian beside a failed call may predict a longer step than the last, which is tried as well.
+TEST(Forward, SixDigitsAndFailedCallsDoNotEndAFitBeforeItsMinimum) {
+  const Problem problem =
+      featured("nist[dataset=Hahn1,start=2]",
+               {{"digits", 6.0}, {"fail", 0.05}, {"derivatives", std::string("none")}});
+  const Outcome fit =
+      run(problem, "levenberg-marquardt", {.iterations = 1000, .work = 1000, .target = 0});
+  EXPECT_EQ(fit.status, Status::converged) << fit.trace->message;
+  EXPECT_LT(fit.trace->last.x_error, 5e-3);
+}
+
 // Fewer than J at each step would take, which is n calls an iteration.
 TEST(Forward, UpdatesOfTheJacobianSaveCalls) {
   std::int64_t with_updates = 0, without = 0;
