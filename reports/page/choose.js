@@ -4,7 +4,8 @@ const SIZES = ['any', 'up to 10', '11 to 100', 'more than 100'], BUDGETS = ['any
 const LEVELS = ['forward', 'gradient', 'jacobian', 'hessian'];  // in the order of DATA.advice
 const means = {level: 0, inverse: 0, size: 0, budget: 0, kind: 0};  // kind: of data
 
-const adviceNow = () => DATA.advice[(((2 * means.level + means.inverse) * SIZES.length + means.size) * BUDGETS.length + means.budget) * DATA.dataKinds.length + means.kind];
+const adviceFor = ({level, inverse, size, budget, kind}) => DATA.advice[(((2 * level + inverse) * SIZES.length + size) * BUDGETS.length + budget) * DATA.dataKinds.length + kind];
+const hasSettings = (size) => DATA.dataKinds.some((_, kind) => adviceFor({level: 0, inverse: 0, size, budget: 0, kind})?.[1] !== 0);
 
 function readMeans(asked) {
   const place = (all, key) => Math.max(0, all.indexOf(asked.get(key)));
@@ -20,7 +21,7 @@ function writeMeans(asked) {
 }
 
 function drawAdvice(place) {
-  const [text, settings, flat] = adviceNow() ?? [worded('choose-large'), 0, []], rows = [];
+  const [text, settings, flat] = adviceFor(means) ?? [worded('choose-large'), 0, []], rows = [];
   for (let i = 0; i < flat.length; i += 6) {
     const [s, solved, , score, work, isInGroup] = flat.slice(i, i + 6);
     const row = element('tr', {className: isInGroup ? 'tied' : ''}, cellWith(String(i / 6 + 1)), element('th', {scope: 'row'}, ...nameOfMethod(s)), cellWith(String(solved), `/${settings}`), cellWith(figure(work ?? Infinity)), cellWith(score.toFixed(2)));
@@ -40,9 +41,12 @@ function liveChoose(place) {
     writeAddress();
     draw();
   };
-  const choices = (key, caption, names) => newSwitch(caption, Object.fromEntries(names.map((name, i) => [i, name])), String(means[key]), choose(key));
+  const choices = (key, caption, names, isOffered = () => true) =>
+      newSwitch(caption, Object.fromEntries(names.map((name, i) => [i, name]).filter(([i]) => isOffered(i))), String(means[key]), choose(key));
+  const told = (key, size) => element('p', {className: 'lead'}, ...guideText(worded(key, {size})));
+  const sizes = SIZES.filter((_, size) => size > 0 && hasSettings(size));  // one class is told, not asked for
   place.replaceChildren(choices('level', 'Simulator', ['forward only', '+ gradient', '+ Jacobian', '+ Hessian']), choices('inverse', 'Local inverse', ['no', 'yes']),
-      choices('size', 'Unknowns', SIZES), choices('budget', 'Forward solves', BUDGETS),
-      DATA.dataKinds.length > 1 ? choices('kind', 'Data', DATA.dataKinds) : element('p', {className: 'lead'}, ...guideText(worded('choose-exact'))), answer);
+      sizes.length === 1 ? told('choose-size', sizes[0]) : choices('size', 'Unknowns', SIZES, hasSettings), choices('budget', 'Forward solves', BUDGETS),
+      DATA.dataKinds.length > 1 ? choices('kind', 'Data', DATA.dataKinds) : told('choose-exact'), answer);
   live(answer, draw);
 }

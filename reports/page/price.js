@@ -30,9 +30,12 @@ function standingsAtPrices(gradient, jacobian, crew = 0) {
 // The methods that hand several forward solves over at once, so that workers share them.
 const sharing = () => new Set(DATA.ranked.filter((_, i) => DATA.calls.some(([, methods]) => methods[i].some((value, at) => at % WIDTH === FORWARDS[2] && value !== methods[i][at - FORWARDS[2]]))));
 
-// The method that ranks first from each price of a Jacobian on.
+// The method that ranks first from each price of a Jacobian on; kept, since the slider of that price does not change them.
+const LEADERS = new Map();
 function leadersBy(gradient) {
-  const leaders = [];
+  const key = `${gradient} ${workers}`, leaders = LEADERS.get(key) ?? [];
+  if (leaders.length > 0) return leaders;
+  LEADERS.set(key, leaders);
   for (let step = 0; step <= PRICE_STEPS; ++step) {
     const [{s}] = standingsAtPrices(gradient, priceOf(step), workers);
     if (leaders.length === 0 || leaders[leaders.length - 1].s !== s) leaders.push({s, from: priceOf(step)});
@@ -62,6 +65,7 @@ function drawPrices(list, sentence, shares) {
     row.querySelector('small').textContent = `${score.toFixed(2)}, ${solved}/${DATA.calls.length}${alone}`;
   });
   list.style.setProperty('--places', places.length);
+  list.style.setProperty('--letters', 1 + Math.max(...DATA.ranked.map((s) => DATA.optimizers[s].length)));  // a † too
   sentence.textContent = worded('price-leaders', {gradient: short(gradient), leaders: leadersText(gradient)});
 }
 

@@ -51,7 +51,9 @@ std::string advice_text(const Comparison& c, const Means& means, const Advice& a
   std::size_t physics = 0;
   for (const std::size_t p : advice.settings) physics += c.problems[p].group() == "physics";
   std::string text;
-  if (advice.ranked.empty()) {
+  if (advice.settings.empty()) {
+    text = words("advice.no-settings", means_text(means));
+  } else if (advice.ranked.empty()) {
     text = words("advice.none", means_text(means), tau_name(c), advice.settings.size());
     const auto is_unknown = [&](std::size_t p) { return c.problems[p].lacks_least_loss(); };
     const auto unknown = std::ranges::count_if(advice.settings, is_unknown);
