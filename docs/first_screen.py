@@ -178,9 +178,10 @@ def findings(report):
     decision = (f"{first['optimizer']} is significantly ahead of every other method" if leader["significant"] else
                 "no result could be significant" if leader["families"] < 6 else "no method is significantly ahead of all others")
     return (f"In `quick`, a sample for a first look ({len(leader['places'])} methods, {leader['settings']} settings of "
-            f"{leader['families']} families), {decision}. Networks trained to invert sine by adam have "
-            f"about {float(times):.2g} times (95 %: {low} to {high}; more on {seeds} seeds) the error in x of those by sip, given "
-            f"{sine['optimizer'].partition(', given ')[2]} (†), at published rates and equal work in physics, training apart.")
+            f"{leader['families']} families), {decision}. On sine, networks trained by adam "
+            f"end with about {float(times):.2g} times the error in x of those trained by sip (95 %: {low} to {high}; more on "
+            f"{seeds} seeds), at published rates and equal work in physics. sip (†) is given "
+            f"{sine['optimizer'].partition(', given ')[2]}.")
 
 
 def write_findings(quick, contest):

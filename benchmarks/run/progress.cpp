@@ -1,4 +1,4 @@
-// Predicts the time left from the cells that have ended, and prints the progress line.
+// Prints the progress line.
 #include "benchmarks/run/progress.h"
 
 #include <fmt/format.h>
@@ -15,35 +15,6 @@
 #include "core/text.h"
 
 namespace isoline::benchmarks {
-
-void TimeLeft::expect(std::optional<double> predicted_seconds) {
-  is_known_ = is_known_ && predicted_seconds;
-  expected_ += predicted_seconds.value_or(0);
-}
-
-void TimeLeft::finish(std::optional<double> predicted_seconds, double now) {
-  done_ += predicted_seconds.value_or(0);
-  last_ = now;
-  ends_.emplace_back(now, now + at(now).value_or(0));
-}
-
-bool TimeLeft::is_steady() const {
-  constexpr double kShare = 0.1, kMost = 1.2;
-  if (ends_.empty() || last_ < kShare * ends_.back().second) return false;
-  double low = ends_.back().second, high = low;
-  for (auto one = ends_.rbegin(); one != ends_.rend() && 2 * one->first >= last_; ++one) {
-    low = std::min(low, one->second);
-    high = std::max(high, one->second);
-  }
-  return high <= kMost * low;
-}
-
-// Between two ends it counts down.
-std::optional<double> TimeLeft::at(double now) const {
-  if (!is_known_ || done_ <= 0 || expected_ <= 0) return std::nullopt;
-  const double left = std::max(0.0, expected_ - done_) * last_ / done_;
-  return std::max(0.0, left - (now - last_));
-}
 
 namespace {
 
@@ -100,21 +71,12 @@ Progress::~Progress() {
   if (is_dirty_) clear_line();
 }
 
-void Progress::finished(std::optional<double> predicted_seconds) {
-  ++done_;
-  time_left_.finish(predicted_seconds, seconds_since(begun_));
-}
-
 std::string Progress::line() const {
   const std::int64_t done = already_ + done_;
   std::string text = total_ > 0 ? fmt::format("{} {}/{}", what_, done, total_) : what_;
   const double elapsed = seconds_since(begun_);
   if (done_ > 0 && elapsed > 0) {
-    const double rate = static_cast<double>(done_) / elapsed;
-    text += fmt::format("  {:.3g}/s", rate);
-    const std::optional<double> left = time_left_.at(elapsed);
-    if (done < total_ && left && time_left_.is_steady())
-      text += *left > 0 ? "  " + duration_text(*left) + " left" : "  longer than predicted";
+    text += fmt::format("  {:.3g}/s", static_cast<double>(done_) / elapsed);
   }
   return current_.empty() ? text : text + "  " + current_;
 }

@@ -188,7 +188,7 @@ std::optional<Certificates> require_certified(const Catalog& catalog,
           request->problem.spec, reason);
     });
     passed[request->problem.spec] = build_of(request->problem);
-    progress.finished({});
+    progress.finished();
   }
   for (Request& request : requests)
     if (uncertified.contains(request.problem.spec)) {

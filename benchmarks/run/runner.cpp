@@ -17,7 +17,6 @@
 #include "benchmarks/run/calls.h"
 #include "benchmarks/run/execute.h"
 #include "benchmarks/run/judge.h"
-#include "benchmarks/run/preview.h"
 #include "core/clock.h"
 #include "core/errors.h"
 #include "core/files.h"
@@ -203,11 +202,7 @@ class Runner {
   }
 
   Outcome run() {
-    std::vector<results::Unreadable> left_out;  // the store names those of its cells
     seconds_per_tick();  // measured once here, or each cell would take a millisecond for it
-    if (options_.progress != Progress::Style::silent && !pending_.queued().empty())
-      earlier_ = EarlierTimes(record_outlines({store_.folder()}, left_out));
-    for (const Request* request : pending_.queued()) progress_.expect(earlier_.of(*request));
     malloc_trim(0);  // return the memory that planning used: a fork copies the tables of all pages
     // From now on memory that is freed stays: each cell would be given new pages otherwise.
     constexpr int kStays = 32 << 20;
@@ -494,7 +489,7 @@ class Runner {
     unwritten_.emplace_back(&request, lacks_state || record.status == Status::interrupted);
     store_.keep(std::move(record), earlier);
     tasks_[slot] = {};
-    if (!was_done) progress_.finished(earlier_.of(request));
+    if (!was_done) progress_.finished();
     if (!can_wait)
       flush();
     else if (unwritten_.size() == 1)
@@ -526,7 +521,6 @@ class Runner {
   DeclaredTimes declared_;  // for their limits
   Pending pending_;
   Progress progress_;
-  EarlierTimes earlier_;
   std::set<std::string> seen_;
   // Cells that run again after a fault of a process, and how the cell of the fault itself ended.
   std::map<const Request*, std::optional<Status>> doubtful_;

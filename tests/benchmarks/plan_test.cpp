@@ -564,62 +564,7 @@ TEST(Predictions, KeepEveryBit) {
   EXPECT_TRUE(predicted_from_text(file_text({}), "it").empty());
 }
 
-// --- the time that is left
-
-constexpr double kShare = 0.25;  // of its prediction that a cell takes
-
-// Cells in order, one at a time: what was told to be left after each.
-std::vector<double> told(const std::vector<double>& predicted) {
-  TimeLeft left;
-  for (const double seconds : predicted) left.expect(seconds);
-  std::vector<double> all;
-  double now = 0;
-  for (const double seconds : predicted) {
-    now += kShare * seconds;
-    left.finish(seconds, now);
-    all.push_back(left.at(now).value_or(-1));
-  }
-  return all;
-}
-
-TEST(TimeLeft, NeverRisesWhenSlowCellsComeAfterFastOnes) {
-  std::vector<double> cells(1000, 0.01);
-  cells.insert(cells.end(), 10, 20);
-  const std::vector<double> all = told(cells);
-  for (std::size_t i = 1; i < all.size(); ++i) EXPECT_LE(all[i], all[i - 1]) << i;
-  EXPECT_GE(all[900], kShare * 200) << "the slow cells are known to come";
-  EXPECT_EQ(all.back(), 0);
-}
-
-TEST(TimeLeft, IsRightWithinAFifthOnceTwoFifthsOfTheRunAreOver) {
-  const std::vector<double> all = told(std::vector<double>(100, 3));
-  for (std::size_t i = 40; i < all.size(); ++i) {
-    const double real = kShare * 3 * static_cast<double>(all.size() - i - 1);
-    EXPECT_NEAR(all[i], real, 0.2 * real + 1e-9) << i;
-  }
-}
-
-TEST(TimeLeft, CountsDownBetweenTwoEndsAndSaysZeroWhereItTakesLonger) {
-  TimeLeft left;
-  left.expect(10);
-  left.expect(10);
-  EXPECT_FALSE(left.at(0).has_value()) << "nothing has ended yet";
-  left.finish(10, 5);
-  const double then = left.at(5).value_or(0);
-  EXPECT_NEAR(left.at(6).value_or(0), then - 1, 1e-12);
-  EXPECT_EQ(left.at(1000).value_or(-1), 0);
-}
-
-TEST(TimeLeft, SaysNothingWhereACellHasNoPrediction) {
-  TimeLeft all, some;
-  for (const double predicted : {1.0, 3.0, 4.0}) all.expect(predicted), some.expect(predicted);
-  some.expect({});
-  all.finish(3, 6);  // twice as long as predicted, and so is the rest
-  some.finish(3, 6);
-  EXPECT_EQ(all.at(6).value_or(0), 2 * (1 + 4));
-  EXPECT_FALSE(some.at(6).has_value());
-  EXPECT_FALSE(TimeLeft().at(1).has_value()) << "nothing is expected";
-}
+// --- progress
 
 std::string shown(Progress& progress) {
   testing::internal::CaptureStderr();
@@ -627,36 +572,14 @@ std::string shown(Progress& progress) {
   return testing::internal::GetCapturedStderr();
 }
 
-// However long the fast cell took, the slow one is 10¹² times as long.
-TEST(Progress, PrintsNoTimeBeforeATenthOfTheWork) {
-  Progress progress(Progress::Style::plain, "cells", 2, 0);
-  progress.expect(1e-3);
-  progress.expect(1e9);
-  progress.finished(1e-3);
-  const std::string text = shown(progress);
-  EXPECT_TRUE(text.starts_with("cells 1/2 ")) << text;
-  EXPECT_EQ(text.find("left"), std::string::npos) << text;
-}
-
-TEST(TimeLeft, IsSteadyFromATenthOnUntilItsPredictionMoves) {
-  TimeLeft left;
-  for (int i = 0; i < 100; ++i) left.expect(1);
-  int now = 0;
-  for (; now < 9; left.finish(1, ++now)) EXPECT_FALSE(left.is_steady()) << now;
-  for (; now < 40; left.finish(1, ++now)) EXPECT_EQ(left.is_steady(), now >= 10) << now;
-  for (int slow = 0; slow < 20; ++slow) left.finish(1, now += 4);
-  EXPECT_FALSE(left.is_steady()) << "the cells take four times as long as before";
-}
-
-TEST(Progress, PrintsNoTimeWhereThePredictedTimeIsOver) {
-  Progress progress(Progress::Style::plain, "cells", 3, 0);
-  progress.expect(1);
-  progress.expect(1);
-  progress.finished(2);
-  EXPECT_FALSE(std::regex_search(shown(progress), std::regex("\\d s left")));
-  progress.finished(1);
-  progress.finished(1);
-  EXPECT_EQ(shown(progress).find("left"), std::string::npos) << "all have ended";
+TEST(Progress, CountsCellsAndPromisesNoTime) {
+  Progress progress(Progress::Style::plain, "cells", 10, 2);
+  const std::regex counts("cells \\d+/10  [^ ]+/s\n");
+  for (int done = 3; done < 10; ++done) {
+    progress.finished();
+    const std::string text = shown(progress);
+    EXPECT_TRUE(std::regex_match(text, counts)) << text;
+  }
 }
 
 }  // namespace
