@@ -75,9 +75,8 @@ std::string Progress::line() const {
   const std::int64_t done = already_ + done_;
   std::string text = total_ > 0 ? fmt::format("{} {}/{}", what_, done, total_) : what_;
   const double elapsed = seconds_since(begun_);
-  if (done_ > 0 && elapsed > 0) {
+  if (done_ > 0 && elapsed > 0)
     text += fmt::format("  {:.3g}/s", static_cast<double>(done_) / elapsed);
-  }
   return current_.empty() ? text : text + "  " + current_;
 }
 

@@ -358,7 +358,7 @@ TEST(PlanSizes, OverAMillionAreRefusedBeforeAnythingIsMade) {
 }
 
 // A plan in shards: the same division in every process, of about equal times, by predictions that
-// are written once; and the time left of a run, weighted by them.
+// are written once.
 
 namespace fs = std::filesystem;
 
