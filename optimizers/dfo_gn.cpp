@@ -6,7 +6,7 @@
 // grows with it, and the method restarts where the losses of all points are within the noise: as in
 // Cartis, Fiala, Marteau, Roberts (2019), ACM TOMS 45:32, most points stay. Before a restart, r and
 // J come from fits to all calls within a radius, as long as the misfit of the fit is that of the
-// noise.
+// noise. All points stay within the bounds, as those of DFO-LS do (same authors).
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -64,6 +64,71 @@ Vector trust_region_step(const Svd& J, const Vector& r, Real radius) {
   return -(J.Vt.transpose() * c);
 }
 
+// The same with x + d within the bounds: the better of the projected gradient and of d in the
+// unknowns that no bound stops.
+Vector trust_region_step(const Svd& svd, const Matrix& J, const Vector& r, Real radius,
+                         const Vector& x, const Bounds* bounds) {
+  const Vector whole = trust_region_step(svd, r, radius);
+  if (bounds == nullptr || bounds->hold(x + whole)) return whole;
+  const Index n = x.size();
+  Vector best = Vector::Zero(n), held = best;
+  Real most = 0;
+  const auto offer = [&](const Vector& to) {
+    const Vector d = bounds->nearest(to) - x, Jd = J * d;
+    const Real gain = -(r.dot(Jd) + 0.5 * Jd.squaredNorm());
+    if (gain > most) {
+      most = gain;
+      best = d;
+    }
+  };
+  const Vector g = J.transpose() * r;
+  constexpr int kHalvings = 30;
+  for (int i = 0; i < kHalvings; ++i) offer(x - std::ldexp(radius / g.norm(), -i) * g);
+  std::vector<Index> free;
+  for (Index i = 0; i < n; ++i)
+    if (!bounds->is_active(x, g, i)) free.push_back(i);
+  while (!free.empty() && held.norm() < radius) {
+    Svd of_free;
+    if (!thin_svd(J(Eigen::all, free), of_free)) break;
+    Vector to = x + held;
+    to(free) +=
+        trust_region_step(of_free, r + J * held, std::sqrt(radius * radius - held.squaredNorm()));
+    offer(to);
+    const Vector nearest = bounds->nearest(to);
+    const auto stopped =
+        std::ranges::stable_partition(free, [&](Index i) { return to[i] == nearest[i]; });
+    if (stopped.empty()) break;
+    for (const Index i : stopped) held[i] = nearest[i] - x[i];
+    free.erase(stopped.begin(), stopped.end());
+  }
+  return best;
+}
+
+// d of this length along a unit direction. Where that leaves the bounds, what leaves them ends on
+// them, the others use up the length, and the side with the longer way along it is taken.
+Vector along_within(const Vector& direction, Real length, const Vector& x, const Bounds* bounds) {
+  if (bounds == nullptr || bounds->hold(x + length * direction)) return length * direction;
+  Vector best = Vector::Zero(x.size());
+  for (const Real sign : {1.0, -1.0}) {
+    Vector d = best, held = Vector::Zero(x.size()), free = sign * direction;
+    for (bool is_inside = false; !is_inside && free.norm() > 0 && held.norm() < length;) {
+      const Vector to =
+          x + held + std::sqrt(length * length - held.squaredNorm()) / free.norm() * free;
+      const Vector nearest = bounds->nearest(to);
+      is_inside = true;
+      for (Index i = 0; i < x.size(); ++i) {
+        if (to[i] == nearest[i]) continue;
+        held[i] = nearest[i] - x[i];
+        free[i] = 0;
+        is_inside = false;
+      }
+      d = nearest - x;
+    }
+    if (std::abs(direction.dot(d)) > (1 + kEqual) * std::abs(direction.dot(best))) best = d;
+  }
+  return best;
+}
+
 struct DfoGn {
   Real radius = 3.6, simplex = 2e-3, noisy_radius = 0.05, least_radius = 1e-14, refinement = 5;
 
@@ -103,6 +168,9 @@ struct DfoGn {
 
   // --- calls
 
+  static Vector inside(const Meter& f, const Vector& theta) {  // rounding may lead outside
+    return f.bounds() ? f.bounds()->nearest(theta) : theta;
+  }
   static Real evaluate(Meter& f, State& s) {  // ½‖r‖² at s.theta
     f.linearize(s.theta, s.at);
     s.r = (s.at.y() - f.target()).reshaped();
@@ -157,18 +225,31 @@ struct DfoGn {
   // The other points along the axes.
   static void spread(Meter& f, State& s, const Vector& center, Real distance) {
     const Index from = s.best, n = center.size();
+    const Bounds* const bounds = f.bounds();
+    const auto is_inside = [&](Index j, Real x) {
+      return bounds == nullptr || (x >= bounds->lower[j] && x <= bounds->upper[j]);
+    };
     Matrix points = center.replicate(1, n);
-    points.diagonal().array() += distance;
+    for (Index j = 0; j < n; ++j) {
+      Real& x = points(j, j);
+      x += distance;
+      if (is_inside(j, x)) continue;
+      x = center[j] - distance;
+      if (is_inside(j, x)) continue;
+      const Real above = bounds->upper[j] - center[j], below = center[j] - bounds->lower[j];
+      x = above >= below ? bounds->upper[j] : bounds->lower[j];
+    }
     f.announce(points);
     for (Index point = 0, j = 0; point < s.X.cols(); ++point) {
       if (point == from) continue;
-      s.theta = center;
-      s.theta[j++] += distance;
+      s.theta = points.col(j);
       Real value = evaluate(f, s);
-      if (!std::isfinite(value)) {  // the other side of the axis may have a value
-        s.theta[j - 1] = center[j - 1] - distance;
+      if (const Real other = center[j] - distance;  // this side of the axis may have a value
+          !std::isfinite(value) && other != s.theta[j] && is_inside(j, other)) {
+        s.theta[j] = other;
         value = evaluate(f, s);
       }
+      ++j;
       put(s, point, value);
     }
   }
@@ -201,7 +282,7 @@ struct DfoGn {
 
   Status advance(Meter& f, State& s) const {
     if (!build(s)) {  // points that coincide, or have no finite residuals
-      if (s.delta <= least_radius * s.first_rho) return Status::stalled;
+      if (s.delta <= least_radius * s.first_rho) return Status::converged;
       s.delta /= 2;
       s.rho = std::min(s.rho, s.delta);
       spread(f, s, s.X.col(s.best), s.delta);
@@ -210,14 +291,14 @@ struct DfoGn {
     if (s.noise > 0 && s.f.maxCoeff() - s.f[s.best] <= s.noise * 2 * s.f[s.best])
       return begin_fits(f, s);
     const Vector r = s.R.col(s.best);
-    const Vector d = trust_region_step(s.svd, r, s.delta);
+    const Vector d = trust_region_step(s.svd, s.J, r, s.delta, s.X.col(s.best), f.bounds());
     const Vector Jd = s.J * d;
     const Real length = d.norm(), predicted = -(r.dot(Jd) + 0.5 * Jd.squaredNorm());
     if (length < s.rho / 2 || !(predicted > 0)) {  // below the resolution of the points
       s.delta = std::max(decrease(s) * s.delta, s.rho);
       return improve_or(f, s, true);
     }
-    s.theta = s.X.col(s.best) + d;
+    s.theta = inside(f, s.X.col(s.best) + d);
     const Real value = evaluate(f, s);
     const Real ratio = (s.f[s.best] - value) / predicted;
     set_radius(s, ratio, length);
@@ -278,7 +359,8 @@ struct DfoGn {
     const Vector r = s.R.col(s.best);
     constexpr Real kRounding = 1e-12;
     if (r.dot(s.J * direction) > kRounding * s.J.norm() * r.norm()) direction = -direction;
-    s.theta = s.X.col(s.best) + distance * direction;
+    s.theta =
+        inside(f, s.X.col(s.best) + along_within(direction, distance, s.X.col(s.best), f.bounds()));
     put(s, point_of(s, column), evaluate(f, s));
   }
   Status reduce(Meter& f, State& s) const {  // Powell (2009), section 3
@@ -306,15 +388,15 @@ struct DfoGn {
     Vector r, direction;
     Real excess = 0;
     if (!fit(s, r, direction, excess)) return restart(f, s);
-    const Vector d = trust_region_step(s.svd, r, s.reach);
+    const Vector d = trust_region_step(s.svd, s.J, r, s.reach, s.center, f.bounds());
     const Real offset = s.reach;
     s.reach *= excess > kMisfit ? kSmaller : kLarger;
     --s.fits;
-    s.theta = s.center + d;
+    s.theta = inside(f, s.center + d);
     if (s.fits % 2 == 0)
       s.center = s.theta;
     else
-      s.theta += (s.fits % 4 == 1 ? -offset : offset) * direction;
+      s.theta = inside(f, s.theta + (s.fits % 4 == 1 ? -offset : offset) * direction);
     evaluate(f, s);
     if (s.fits > 0) return Status::running;
     s.X.col(s.best) = s.center;
@@ -394,6 +476,7 @@ void register_dfo_gn(OptimizerRegistry& registry) {
                "counts as an iteration.",
        .needs = {Oracle::forward},
        .needs_same_samples = true,
+       .keeps_bounds = true,
        .most_unknowns = 256,
        .tunable = {.option = "radius", .below = 4},
        .in_all = false}));  // of the suite forward

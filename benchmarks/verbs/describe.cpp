@@ -229,6 +229,11 @@ int run(const DescribeArguments& given, Session& session) {
     return kGood;
   }
   print(found.sheet);
+  if (found.sheet.kind == "optimizer")
+    say(stdout, fmt::format("Bounds      {}\n",
+                            session.catalog().optimizers.at(spec.name).keeps_bounds
+                                ? "kept"
+                                : "not kept: it does not run on problems that require them"));
   print_conduct(found.sheet);
   print_options(found.table, found.options);
   return kGood;
