@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
 #include <limits>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <utility>
@@ -25,6 +27,7 @@
 #include "optimizers/optimizer.h"
 #include "problems/conformance.h"
 #include "problems/problem.h"
+#include "problems/wrapper.h"
 
 namespace isoline::benchmarks {
 namespace {
@@ -78,12 +81,34 @@ std::string checked(const Catalog& catalog, const Request& request, const Store&
   return broken_property_of(catalog, request, trace);
 }
 
+EvaluationKey key_of(const Request& request) {
+  const OptionValues& options = request.problem.options;
+  return {options.text("command"), declared_values(options), instance_of(request.seed)};
+}
+
+void set_evaluations_aside(Store& store, const EvaluationKey& key) {
+  for (const std::filesystem::path& file : evaluation_files(store.folder(), key.problem))
+    store.set_aside(file, "the program answers differently now at a point in " + file.string());
+}
+
+// Whether y differs from a known one. Where two calls differ as much, the program has noise.
+bool differs(const Matrix& known, const std::function<Matrix()>& ask) {
+  constexpr Real kRelative = 1e-9, kTimesNoise = 10;
+  const Afresh afresh;
+  const auto distance = [](const Matrix& a, const Matrix& b) {
+    if (a.allFinite() != b.allFinite()) return std::numeric_limits<Real>::infinity();
+    return a.allFinite() ? (a - b).cwiseAbs().maxCoeff() : 0;
+  };
+  const Matrix now = ask();
+  const Real change = distance(now, known);
+  return change > kRelative * known.cwiseAbs().maxCoeff() &&
+         change > kTimesNoise * distance(now, ask());
+}
+
 // Whether the program still answers as the store has it, at the start. What the program imports is
-// not in the digest of its files: the store may be of an earlier version. Where two calls differ as
-// much as one from the store, the program has noise.
+// not in the digest of its files: the store may be of an earlier version.
 std::string answers_differently(const Catalog& catalog, const Request& request,
                                 const Store& store) {
-  constexpr Real kRelative = 1e-9, kTimesNoise = 10;
   evaluations().begin({.folder = store.folder()});
   limit_calls(request);
   const Problem problem = make_problem(catalog, request.problem, request.seed);
@@ -93,28 +118,75 @@ std::string answers_differently(const Catalog& catalog, const Request& request,
     return Matrix(at.y);
   };
   const Matrix known = y_at_start();
-  if (call_report().answered == 0) return "";
-  const Afresh afresh;
-  const auto distance = [](const Matrix& a, const Matrix& b) {
-    if (a.allFinite() != b.allFinite()) return std::numeric_limits<Real>::infinity();
-    return a.allFinite() ? (a - b).cwiseAbs().maxCoeff() : 0;
-  };
-  const Matrix now = y_at_start();
-  const Real change = distance(now, known);
-  if (change <= kRelative * known.cwiseAbs().maxCoeff() || change == 0) return "";
-  return change > kTimesNoise * distance(now, y_at_start()) ? "differs" : "";
+  return call_report().answered > 0 && differs(known, y_at_start) ? "differs" : "";
 }
 
-// Each problem of another program of which the store has evaluations computes one of them again.
-// False where that was interrupted.
+// As a record of the fit of a user's data has it, at its returned point, and of the data.
+std::string contradicts(const Catalog& catalog, const Request& request, const Store& store,
+                        const Record& record) {
+  evaluations().begin({.folder = store.folder()});
+  limit_calls(request);
+  const Problem problem = make_problem(catalog, request.problem, request.seed);
+  const problems::Physics* physics = &problem.physics();
+  while (const auto* outer = dynamic_cast<const problems::Wrapper*>(physics))
+    physics = &outer->inside();
+  const FitData& fit = *record.fit;
+  const Eigen::Map<const Vector> y(fit.y.data(), std::ssize(fit.y)),
+      target(fit.target.data(), y.size()),
+      x(record.answer->point(kReturned).data(), record.answer->unknowns);
+  if (physics->inputs() != x.size() || physics->outputs() != y.size()) return "differs";
+  constexpr Real kRounding = 1e-12;
+  Vector data = problem.target().topRows(y.size()).reshaped();
+  const Vector factors = problem.factors_of_data();
+  if (factors.size() == data.size()) data = data.cwiseQuotient(factors);
+  if (!((data - target).norm() <= kRounding * target.norm())) return "differs";
+  const auto y_at_answer = [&] {
+    Workspace w;
+    w.x = x;
+    Matrix found(y.size(), 1);
+    physics->forward(w.x, w.context, found, w);
+    return found;
+  };
+  return differs(y, y_at_answer) ? "differs" : "";
+}
+
+// Each problem of another program that has records of this plan computes what one of them returned
+// again; if it differs, they are set aside, and their cells run again. Adds these problems to
+// `seen`. False where that was interrupted.
+bool confirm_records(const Catalog& catalog, const std::vector<Request>& requests, Store& store,
+                     const RunOptions& options, std::set<std::string>& seen) {
+  std::map<std::string, bool> is_changed;  // by problem
+  for (const Request& request : requests) {
+    const Component& problem = request.problem;
+    if (!is_elsewhere(problem) || options.force) continue;
+    const std::optional<Record> record = store.find(request);
+    if (!record || !record->fit || !record->answer || record->answer->point(kReturned).empty())
+      continue;
+    const auto [at, is_first] = is_changed.try_emplace(problem.spec, false);
+    if (is_first) {
+      seen.insert(key_of(request).problem);
+      const auto found =
+          isolated_text([&] { return contradicts(catalog, request, store, *record); },
+                        text_seconds_of(problem, kForeignSeconds));
+      if (found.is_interrupted || asked_to_end() != Asked::nothing) return false;
+      at->second = found.text && !found.text->empty();
+      if (at->second) set_evaluations_aside(store, key_of(request));
+    }
+    if (at->second)
+      store.set_aside(store.folder() / "runs" / Store::name_of(request),
+                      "its problem answers differently now, or has other data");
+  }
+  return true;
+}
+
+// Each problem of another program of which the store has evaluations computes one of them again,
+// if it is not among those `seen`. False where that was interrupted.
 bool confirm_evaluations(const Catalog& catalog, const std::vector<const Request*>& requests,
-                         Store& store, const RunOptions& options) {
-  std::set<std::string> seen;
+                         Store& store, const RunOptions& options, std::set<std::string> seen) {
   for (const Request* request : requests) {
     const Component& problem = request->problem;
     if (evaluations_of(options, *request, store.folder()).folder.empty() || options.force) continue;
-    const EvaluationKey key(problem.options.text("command"), declared_values(problem.options),
-                            instance_of(request->seed));
+    const EvaluationKey key = key_of(*request);
     if (evaluation_files(store.folder(), key.stem()).empty() || !seen.insert(key.problem).second)
       continue;
     const auto found = isolated_text([&] { return answers_differently(catalog, *request, store); },
@@ -123,9 +195,7 @@ bool confirm_evaluations(const Catalog& catalog, const std::vector<const Request
       store.remark(
           fmt::format("the check of the stored calls of {}: {}", problem.spec, found.failure));
     if (found.is_interrupted || asked_to_end() != Asked::nothing) return false;
-    if (found.text && !found.text->empty())
-      for (const std::filesystem::path& file : evaluation_files(store.folder(), key.problem))
-        store.set_aside(file, "the program answers differently now at a point in " + file.string());
+    if (found.text && !found.text->empty()) set_evaluations_aside(store, key);
   }
   return true;
 }
@@ -146,6 +216,8 @@ std::optional<Certificates> require_certified(const Catalog& catalog,
                                               std::vector<Request>& requests, Store& store,
                                               const RunOptions& options) {
   constexpr double kCertificateSeconds = 120;
+  std::set<std::string> confirmed;
+  if (!confirm_records(catalog, requests, store, options, confirmed)) return std::nullopt;
   Certificates passed;
   std::set<std::string> seen;
   std::vector<const Request*> firsts, to_run;
@@ -158,7 +230,8 @@ std::optional<Certificates> require_certified(const Catalog& catalog,
     if (passed[spec] != build_of(request.problem) && seen.insert(spec).second)
       firsts.push_back(&request);
   }
-  if (!confirm_evaluations(catalog, to_run, store, options)) return std::nullopt;
+  if (!confirm_evaluations(catalog, to_run, store, options, std::move(confirmed)))
+    return std::nullopt;
   std::set<std::string> uncertified;
   if (options.uncertified)
     for (const Request* request : std::exchange(firsts, {})) {

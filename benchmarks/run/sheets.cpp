@@ -43,6 +43,7 @@ constexpr double kOracleSeconds = 4e-3, kLongOracleSeconds = 0.15, kProblemSecon
 constexpr double kLongestMatrixSeconds = 1e-2;  // of a dense matrix that is measured
 constexpr double kClockSeconds = 2e-5;  // a call this long can afford the clock of the processor
 constexpr std::size_t kMostPairs = 1000, kMostRounds = 31, kFewRounds = 3;
+constexpr std::size_t kRoundsElsewhere = 2, kMostCallsElsewhere = 20;  // of another program
 constexpr Real kTail = 0.1;  // on either side of the middle 80 %
 
 // Buffers for the inputs and outputs of a problem's oracles.
@@ -135,7 +136,9 @@ void add_round(const Problem& problem, const Question& of, Rounds& rounds) {
   Room room(problem);
   std::vector<Real> before, asked;
   double spent = 0;
-  for (std::size_t i = 0; i <= kMostPairs && (i < 2 || spent < kRoundSeconds); ++i) {
+  const bool is_elsewhere = problem.is_elsewhere();  // there, a pair is a round
+  for (std::size_t i = is_elsewhere ? 1 : 0;
+       i <= (is_elsewhere ? 1 : kMostPairs) && (i < 2 || spent < kRoundSeconds); ++i) {
     const double solve =
         seconds_of(problem, of.forward, [&] { problem.forward(problem.start(), at); });
     const double call =
@@ -154,7 +157,7 @@ void add_round(const Problem& problem, const Question& of, Rounds& rounds) {
 Rounds rounds_of(const Problem& problem, const Question& of) {
   Rounds rounds;
   const double begin = seconds_by(problem.is_elsewhere());
-  while (rounds.ratios.size() < kMostRounds) {
+  while (rounds.ratios.size() < (problem.is_elsewhere() ? kRoundsElsewhere : kMostRounds)) {
     add_round(problem, of, rounds);
     const double spent = seconds_by(problem.is_elsewhere()) - begin;
     if (spent > kLongOracleSeconds) break;
@@ -332,7 +335,7 @@ class SheetWriter {
     std::optional<Sheet> stored = stored_sheet(component, sheet);
     if (stored && is_elsewhere(component))
       sheet = std::move(*stored);  // without a call
-    else if (replace(sheet, component, [&] { return problem_sheet(catalog_, component); }))
+    else if (replace(sheet, component, [&] { return whole_sheet(component); }) && !sheet.prices)
       sheet.prices = stored ? stored->prices : measured_prices(component);
     const auto passed = certificates_.find(component.spec);
     if (passed != certificates_.end()) sheet.certified = passed->second;
@@ -347,6 +350,14 @@ class SheetWriter {
   }
 
  private:
+  // With the costs of another program, which would count its calls for making the problem twice.
+  Sheet whole_sheet(const Component& component) {
+    const Problem problem = make_problem(catalog_, component, 0);
+    Sheet sheet = problem_sheet(catalog_, component, problem);
+    if (problem.is_elsewhere()) sheet.prices = measure_prices(problem, build_of(component));
+    return sheet;
+  }
+
   // By the whole one, where that can be made.
   bool replace(Sheet& sheet, const Component& component, const std::function<Sheet()>& make) {
     std::string reason;
@@ -457,6 +468,7 @@ MeasuredPrices measure_prices(const Problem& problem, const std::string& build) 
   measured.forward_seconds = forward / unit;
   measured.oracles.push_back(price_of(name_of(Oracle::forward), 1, forward, std::move(alone)));
   if (problem.is_learned()) measured.oracles.push_back(inference_price(problem, forward, unit));
+  std::size_t calls = 2 + kRoundsElsewhere;
   // Products before the dense matrices, which large networks take up the time with.
   for (const bool is_matrix : {false, true})
     for (const OracleRow& row : kOracleTable) {
@@ -464,6 +476,11 @@ MeasuredPrices measure_prices(const Problem& problem, const std::string& build) 
       if (found == kCalls.end() || row.is_dense_matrix != is_matrix ||
           !problem.offers().contains(row.kind))
         continue;
+      if (problem.is_elsewhere()) {
+        if (problem.products().are_differences && row.kind != Oracle::inverse) continue;
+        calls += 2 * kRoundsElsewhere;
+        if (calls > kMostCallsElsewhere) return measured;
+      }
       if (seconds_by(problem.is_elsewhere()) - begin > kProblemSeconds) return measured;
       const std::int64_t declared = problem.prices()[static_cast<std::size_t>(row.kind)];
       const double expected = forward * static_cast<double>(declared);
@@ -499,8 +516,11 @@ Sheet described_optimizer(const Catalog& catalog, const Component& component) {
 }
 
 Sheet problem_sheet(const Catalog& catalog, const Component& component) {
+  return problem_sheet(catalog, component, make_problem(catalog, component, 0));
+}
+
+Sheet problem_sheet(const Catalog& catalog, const Component& component, const Problem& problem) {
   constexpr const char* kInverses[] = {"none", "exact", "damped", "estimate", "approximate"};
-  const Problem problem = make_problem(catalog, component, 0);
   Sheet sheet = described_problem(catalog, component);
   sheet.aim = problem.aim();  // as its entry has it, or as another program says
   sheet.oracles = names_of(problem.offers());

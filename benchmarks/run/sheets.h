@@ -21,8 +21,8 @@ bool is_resolved(const MeasuredPrice& price, double forward_seconds);
 // The cost in forward solves of every oracle that the problem offers, at its start; for a learned
 // problem, also of its network alone. Budgets count nominal costs; these are for reports. Takes
 // some 10 ms per oracle. Omits a dense matrix that would take more than 10 ms by its nominal cost,
-// and everything that is left after one second. If another program takes 0.1 s or longer for a
-// forward solve, measures that one call.
+// and everything that is left after one second. Calls another program at most 20 times, not for
+// products by differences, and once if a forward solve takes 0.1 s or longer.
 MeasuredPrices measure_prices(const Problem& problem, const std::string& build);
 
 // The digest of the sources of a problem alone, to which its certificate and its prices belong.
@@ -33,6 +33,7 @@ Sheet described_problem(const Catalog& catalog, const Component& problem);
 Sheet described_optimizer(const Catalog& catalog, const Component& optimizer);
 
 Sheet problem_sheet(const Catalog& catalog, const Component& problem);
+Sheet problem_sheet(const Catalog& catalog, const Component& component, const Problem& problem);
 // Its extra information is what it would have on any physics, with every kind of inverse.
 Sheet optimizer_sheet(const Catalog& catalog, const Component& optimizer);
 

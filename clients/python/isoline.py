@@ -912,10 +912,21 @@ def _reply(line, points, products, inverse, x_error, n, m):
             import traceback
 
             traceback.print_exc()
-        why = str(error) if isinstance(error, Refused) else f"{type(error).__name__}: {error}"
+        why = str(error) if isinstance(error, Refused) else f"{type(error).__name__}: {error}{_place_of(error)}"
         line.send(verb, FAILED, _text(why))
         return
     line.send(verb, DONE, *answer)
+
+
+def _place_of(error):
+    """The line of the script that raised it, or that called what did: " (mine.py, line 4)"; else an empty text."""
+    frame, place, file = error.__traceback__, "", None
+    while frame:
+        name = frame.tb_frame.f_code.co_filename
+        file = file or (name if name != __file__ else None)
+        place = f" ({os.path.basename(name)}, line {frame.tb_lineno})" if name == file else place
+        frame = frame.tb_next
+    return place
 
 
 def _answer(verb, number, payload, points, products, inverse, n, m):

@@ -53,7 +53,7 @@ class Data:
 
 
 def read_data(source, y="y", sigma="sigma"):
-    """Data from a CSV file with a header (a path) or from a frame of pandas.
+    """Data from a CSV file with a header (a path), below lines that begin with #, or from a frame of pandas.
 
     y: the column of measured values. sigma: that of their standard deviations, in units of y, if there is one.
     Raises Refused, with the line, for a missing value, and for a word that is not a number, in any column.
@@ -75,14 +75,16 @@ def read_data(source, y="y", sigma="sigma"):
 
 def _rows_of_file(path):
     with open(path, newline="", encoding="utf-8-sig", errors="replace") as file:
-        header = file.readline()
+        above, header = 0, file.readline()
+        while header.startswith("#"):
+            above, header = above + 1, file.readline()
         mark = next((mark for mark in ";\t" if mark in header), ",")
         yield [name.strip() for name in header.split(mark)]
         reader = csv.reader(file, delimiter=mark)
         try:
-            yield from ((f"{path}, line {reader.line_num + 1}", row) for row in reader if row)
+            yield from ((f"{path}, line {above + reader.line_num + 1}", row) for row in reader if row)
         except csv.Error:
-            raise Refused(f"{path}, line {reader.line_num + 1}: expected fields of at most {csv.field_size_limit()} characters, "
+            raise Refused(f"{path}, line {above + reader.line_num + 1}: expected fields of at most {csv.field_size_limit()} characters, "
                           "in lines that end by a line feed; an open quote joins lines") from None
 
 
@@ -146,7 +148,11 @@ class _Model:
         self.bounds = np.where(is_free, lower, -math.inf), np.where(is_free, upper, math.inf)
         for which, words in tied.items():
             known = {**vars(math), **dict(zip(self.names, x0))}
-            x0[self.index(which)] = eval(words.replace("^", "**"), {"__builtins__": {}}, known)
+            try:
+                x0[self.index(which)] = eval(words.replace("^", "**"), {"__builtins__": {}}, known)
+            except (NameError, SyntaxError) as error:
+                raise Refused(f"{which} is tied to {words!r}, which cannot be computed: {error}") from None
+        self.tied = {self.index(which) for which in tied}
         self.x0 = x0  # (k); that of the next run
         axis = self.table and isoline._axis(self.table)
         many = starts if starts > 1 else None
@@ -325,7 +331,8 @@ def fit(
     starts: so many starts: x0, and points of a Latin hypercube over the bounds. Fit.basins has their ends.
     work: the most forward solves of each run. call_time: a call that takes more seconds has failed; it still ends by itself.
     out: the result folder. An interrupted fit goes on if it is repeated: finished runs and calls of 0.1 s
-        or more are not made again, as long as forward(x0) and the arguments are the same.
+        or more are not made again, as long as forward gives the same at x0 and at the result, and the arguments
+        are the same.
 
     Raises Refused where arguments are wrong or Isoline refuses them. Ctrl-C raises KeyboardInterrupt after
     Isoline has ended.
@@ -334,6 +341,7 @@ def fit(
         sys.exit(f"isoline.fit requires NumPy, which {sys.executable} does not have: `python3 -m pip install numpy`, or on "
                  "Debian /usr/bin/python3 and `apt-get install python3-numpy`; isoline.problem works without it")
     model = _Model(forward, data, x0, sigma, bounds, names, units, fixed, tied, log, weights, prior, starts, progress)
+    subprocess.run([_program(), "version"], stdout=subprocess.DEVNULL, check=False)  # may build it first, and says so
     y0 = model.answer(model.x0)
     if not np.all(np.isfinite(y0)):
         raise Refused(f"forward(x0) must be finite, got {y0}")
@@ -347,9 +355,10 @@ def fit(
         command = shlex.join([sys.executable or "python3", "-IS", bridge, f"{name}-{model.key(y0)}"])
         spec = f"process[command={json.dumps(command, ensure_ascii=False)},label={name}{more}]"
         code, printed = _run([*words, "--problem", spec, "--optimizer", ",".join(some)], workers, model, described)
-        new = [each for each in _records(out, command, work) if asked or each["request"]["optimizer"]["asked"] in some]
+        new = _of_methods(_records(out, command, work), some)
         if not any("answer" in each for each in new):
-            why = "; ".join(f"{each['request']['optimizer']['spec']} is {each['status']}: {each['message']}" for each in new)
+            why = "; ".join(dict.fromkeys(  # of many starts, one
+                f"{each['request']['optimizer']['spec']} is {each['status']}: {each['message']}" for each in new))
             raise Refused(why or printed or f"isoline ended with exit code {code}")
         records += [(each, described) for each in new if "answer" in each]
         if any(each["status"] in FITS for each in new):
@@ -360,7 +369,21 @@ def fit(
             beside[model.free] *= 1 + 3e-3 * (attempt + 1)
             model.x0 = np.clip(beside, *model.bounds)
     model.show(math.inf, is_last=True)
+    if progress:
+        print(f"`isoline report {shlex.quote(str(out))}` makes a page of this fit", file=sys.stderr)
     return Fit(model, records, str(out), workers)
+
+
+def _of_methods(records, texts):
+    """Those of the methods that texts such as "gd,adam[rate=0.1,beta1=0.8]" name: with these options, or else any."""
+    specs, depth = [""], 0
+    for letter in ",".join(texts).replace(" ", ""):
+        depth += (letter == "[") - (letter == "]")
+        specs = [*specs, ""] if letter == "," and depth == 0 else [*specs[:-1], specs[-1] + letter]
+    all_asked, name_of = [each["request"]["optimizer"]["asked"] for each in records], lambda spec: spec.partition("[")[0]
+    named = [name_of(spec) for spec in specs if spec not in all_asked]
+    is_set = any(spec.startswith("@") for spec in specs)
+    return [each for each, asked in zip(records, all_asked) if is_set or asked in specs or name_of(asked) in named]
 
 
 def _records(out, command, work):
@@ -388,7 +411,7 @@ class Fit:
     p: of the χ² test; None without sigma.
     calls: of forward that this process made. work: forward solves of the best run, as its record counts them.
     status, method: of the run of least loss. message: what one should know; may be empty.
-    y (m): forward(x); NaN if this call fails. residuals (m): y - data.
+    y (m): forward(x). residuals (m): y - data.
     runs: a (method, start, status, loss, x) for each run. basins: a (runs, loss, x) for each minimum found.
     out: the result folder, for `isoline report`.
     """
@@ -405,10 +428,8 @@ class Fit:
         self._record, self.loss, self.x, self._description = best
         self.status, self.work = self._record["status"], self._record["summary"]["work"]
         self.method = self._record["request"]["optimizer"]["spec"]
-        try:
-            self.y = model.y(self.x)
-        except Exception:
-            self.y = np.full(len(model.data), math.nan)
+        kept = self._record.get("fit")
+        self.y = np.array(kept["y"], float) if kept else model.y(self.x)
         self.residuals, found = self.y - model.data, self._solution()
         self.sd = self.interval = self.correlation = self._profile = None
         self.p = found.get("p")
@@ -437,6 +458,8 @@ class Fit:
         """Ends whose losses agree to 1e-4, or by the loss `nothing`, and whose unknowns agree to 1e-2 are one minimum."""
         found, size = [], 1e-9 * max(abs(self._model.x0))
         for *_, loss, x in self.runs:
+            if not math.isfinite(loss):
+                continue  # its start failed
             same = [each for each in found if abs(loss - each[1]) <= 1e-4 * each[1] + nothing and np.allclose(x, each[2], 1e-2, size)]
             found += [] if same else [[0, loss, x]]
             (same or found[-1:])[0][0] += 1
@@ -457,7 +480,8 @@ class Fit:
         """The head, and the parameters, as text."""
         rows = [["name", "unit", "x", f"± t·sd (95 %, ν = {self.degrees_of_freedom})", "sd", "interval"]]
         for i, name in enumerate(self.names):
-            row = ["fixed" if i in self._model.fixed else "at its bound" if i in self._held else "", "", ""]
+            kinds = (self._model.fixed, "fixed"), (self._model.tied, "tied"), (self._held, "at its bound")
+            row = [next((kind for all_of, kind in kinds if i in all_of), ""), "", ""]
             if self.sd is not None and self.sd[i] > 0:
                 low, high = self.interval[i]
                 row = [f"{self._half[i]:.2g}", f"{self.sd[i]:.2g}", f"{low:.5g} … {high:.5g}"]

@@ -266,17 +266,18 @@ std::string ChildProgram::end_in_words() {
 namespace {
 
 // The exception below the last traceback, and the place that raised it; empty without a traceback.
-std::string error_of_python(std::string_view text) {
+std::string error_of_python(std::string_view words) {
+  const std::string text =
+      fmt::format("\n{}", words);  // that of a SyntaxError begins with its place
   const std::size_t place = text.rfind("\n  File \"");
-  if (place == std::string_view::npos) return "";
+  if (place == std::string::npos) return "";
   const std::size_t begin = place + 3;
   std::size_t line = text.find('\n', begin);
-  const std::string_view file = text.substr(begin, line - begin);
-  while (line != std::string_view::npos && text.substr(line, 3) == "\n  ")
+  const std::string file = text.substr(begin, line - begin);
+  while (line != std::string::npos && text.compare(line, 3, "\n  ") == 0)
     line = text.find('\n', line + 1);  // its source
-  if (line == std::string_view::npos) return "";
-  const std::string_view error = text.substr(line + 1, kLastBytes);
-  return valid_utf8(fmt::format("{} ({})", error, file));
+  if (line == std::string::npos) return "";
+  return fmt::format("{} ({})", text.substr(line + 1, kLastBytes), file);
 }
 
 }  // namespace
@@ -288,7 +289,7 @@ std::string ChildProgram::last_words() const {
   const std::size_t end = words.find_last_not_of("\n\r\t ");
   if (end == std::string_view::npos) return "";
   words = words.substr(0, end + 1);
-  if (const std::string error = error_of_python(words); !error.empty()) return error;
+  if (const std::string error = error_of_python(words); !error.empty()) return valid_utf8(error);
   std::size_t begin = words.size();
   for (std::size_t line = 0; line < kLastLines && begin != std::string_view::npos; ++line)
     begin = begin == 0 ? std::string_view::npos : words.rfind('\n', begin - 1);

@@ -529,7 +529,9 @@ TEST_F(SlowProgram, MakesTheAnnouncedCallsThoseOfItsCellAndOneForTheVerifier) {
     EXPECT_EQ(stated->verified, 1);
     EXPECT_EQ(stated->failed, 0);
     EXPECT_EQ(run(request), 0);
-    EXPECT_EQ(calls(), made) << "a second run makes none";
+    std::vector<std::size_t> again = made;
+    again.push_back(1);
+    EXPECT_EQ(calls(), again) << "a second run makes the returned point's";
     EXPECT_EQ(run(request_of(request.problem.spec, "nlopt-neldermead", {.work = 18})), 1);
     const std::optional<Calls> after = stated_calls(18);
     ASSERT_TRUE(after);

@@ -188,6 +188,9 @@ TEST(Programs, OfPythonEndWithTheirExceptionAndItsPlace) {
   EXPECT_NE(failure_of(frame + "exit 1").find("rows[n]"), std::string::npos);
   const std::string place = "echo Traceback:; echo \"  File \\\"a.py\\\", line 4\"; exit 1";
   EXPECT_TRUE(failure_of(place).ends_with("line 4"));
+  const std::string syntax = "printf \"  File \\\"a.py\\\", line 4\\n    y = [\\n        ^\\n\"; ";
+  EXPECT_TRUE(failure_of(syntax + "echo \"SyntaxError: 1\"; exit 1")
+                  .ends_with("output was: SyntaxError: 1 (File \"a.py\", line 4)"));
 }
 
 TEST(Programs, ThatPrintAGigabyteAreReadToTheEndInLittleMemory) {
