@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
 #include <vector>
 
 #include "core/decompose.h"
@@ -43,10 +44,15 @@ std::string doubt_of(const LeastSquaresPoint& at) {
                      : at.is_central       ? step * step
                                            : step;
   if (!(sigma[rank - 1] > least * sigma[0])) {
-    Index largest = 0;  // of the direction that does not change y
-    svd.Vt.row(rank - 1).cwiseAbs().maxCoeff(&largest);
-    return fmt::format("its Jacobian does not have full rank: another value of {} gives the same y",
-                       name_of_unknown(at.names, free[largest]));
+    const auto direction = svd.Vt.row(rank - 1).cwiseAbs();  // which does not change y
+    constexpr Real kSmall = 0.1;
+    std::string names;
+    Index count = 0;
+    for (Index i = 0; i < n; ++i)
+      if (direction[i] >= kSmall * direction.maxCoeff())
+        names += (count++ > 0 ? " and " : "") + name_of_unknown(at.names, free[i]);
+    return fmt::format("its Jacobian does not have full rank: {} of {} give{} the same y",
+                       count > 1 ? "other values" : "another value", names, count > 1 ? "" : "s");
   }
   const Vector along = -(svd.U.transpose() * at.residual).cwiseQuotient(sigma);
   const Vector move = D.cwiseInverse().cwiseProduct(svd.Vt.transpose() * along);

@@ -50,7 +50,11 @@ void print_choice(const results::Study& study, const View& view) {
   const Means means = means_of(view);
   const results::Advice advice = results::advise(comparison, means);
   require(!advice.settings.empty(), [&] {
-    return reports::means_text(means) + ": these results do not have such a problem";
+    const bool are_bounded =
+        !means.has_bounds &&
+        std::ranges::any_of(comparison.problems, &results::ProblemAxis::is_bounded);
+    return reports::means_text(means) + ": these results do not have such a problem" +
+           (are_bounded ? "; for problems with bounds, add --bounds" : "");
   });
   say(stdout, reports::advice_text(comparison, means, advice) + "\n");
   constexpr std::size_t kShown = 10;

@@ -178,7 +178,10 @@ std::string table_text(const Solution& solution) {
                   reports::terminal_text(request.optimizer.spec), request.seed,
                   name_of(record.status), returned);
   if (solution.answer.residual_norm)
-    text += fmt::format(", ‖y − y*‖ {:.6g}", *solution.answer.residual_norm);
+    text += fmt::format(
+        ", {} {:.6g}",
+        solution.record->fit && !solution.record->fit->sigma.empty() ? "‖(y − y*)/σ‖" : "‖y − y*‖",
+        *solution.answer.residual_norm);
   text += best == returned ? "\n" : fmt::format("; best: loss {}\n", best);
   if (!record.message.empty())
     text += fmt::format("  {}\n", reports::terminal_text(record.message));

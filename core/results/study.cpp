@@ -444,7 +444,8 @@ BestKnown::BestKnown(const Study& study) {
     if (record.imported) continue;  // imported values change no other run's targets
     const auto key = std::pair(record.request.problem.spec, instance_of(record.request.seed));
     Real& least = least_.emplace(key, kNever).first->second;
-    const Real best = record.summary.best_loss;
+    // A printed digit may lower the loss of a point that no run returned.
+    const Real best = is_of_own_problem(record) ? record.summary.loss : record.summary.best_loss;
     if (record.status != Status::inapplicable && best < least) least = best;
   }
 }

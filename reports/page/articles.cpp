@@ -40,7 +40,8 @@ std::pair<std::string, std::string> shortfall(const Comparison& c, std::size_t p
                value = is_of_x ? record.summary.x_error / record.x_scale.value_or(1) : gap;
     values.push_back(value);
     if (value <= std::max(tau, is_of_x ? least : 0)) continue;
-    ++causes[is_of_x && gap <= tau ? "deed.undetermined"
+    ++causes[is_of_x && gap <= tau               ? "deed.undetermined"
+             : record.status == Status::diverged ? "deed.diverged"
              : record.status == Status::budget || record.status == Status::running ? "deed.budget"
              : record.status == Status::converged                                  ? "deed.minimum"
                                                   : "deed.stalled"];
@@ -143,6 +144,7 @@ std::string reading(const Comparison& c, std::size_t s) {
   if (standing.typical < kNever)
     text += fmt::format(", with a median slowdown of {:.3g} over all of these (unsolved: infinite)",
                         standing.typical);
+  if (standing.runs == 0) return text + "; it was not applicable to any of these.";
   return text +
          fmt::format(
              "; {} of {} runs reach this tolerance{}.", standing.reached, standing.runs,

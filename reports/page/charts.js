@@ -2,10 +2,11 @@
 // changes the view of this area, and values are read from the path of a line.
 const AREA = 5000;
 
-const axisOf = (chart, key) => {
-  const [low, high, kind] = chart.dataset[key].split(' ');
+const axisFrom = (text) => {
+  const [low, high, kind] = text.split(' ');
   return {low: Number(low), high: Number(high), kind};
 };
+const axisOf = (chart, key) => axisFrom(chart.dataset[key]);
 // A value at a share of the axis as it was drawn, and the share of a value.
 const valueAt = ({low, high, kind}, share) => (kind === 'log' ? low * (high / low) ** share : low + (high - low) * share);
 const shareOf = ({low, high, kind}, value) => (kind === 'log' ? Math.log(value / low) / Math.log(high / low) : (value - low) / (high - low));
@@ -66,12 +67,12 @@ function pointsOf(path) {
   let x = 0, y = 0;
   for (const [, letter, first, second] of path.getAttribute('d').matchAll(/([MLHhvl])(-?\d+)(?: ?(-?\d+))?/g)) {
     const [a, b] = [Number(first), Number(second)];
-    if (letter === 'M') [x, y] = [a, b];
+    if (letter === 'M' || letter === 'L') [x, y] = [a, b];
     else if (letter === 'l') [x, y] = [x + a, y + b];
     else if (letter === 'h') x += a;
     else if (letter === 'H') x = a;
     else y += a;
-    if (points.length === 0 || letter === 'M' || a !== 0 || letter === 'l') points.push([x, y]);
+    if (points.length === 0 || 'MLl'.includes(letter) || a !== 0) points.push([x, y]);
   }
   POINTS.set(path, points);
   return points;
@@ -105,11 +106,13 @@ function lendLines(chart) {
     delete group.dataset.lent;
     group.classList.add('off');
   }
-  if (linesOf(chart).some(isLineShown)) return;
-  for (const group of linesOf(chart).reverse().filter(({dataset}) => dataset.s !== undefined && isShown('s', Number(dataset.s))).slice(0, MOST_LENT)) {
+  const isEmpty = () => !linesOf(chart).some(isLineShown);
+  for (const group of !isEmpty() ? [] : linesOf(chart).reverse().filter(({dataset}) => dataset.s !== undefined && isShown('s', Number(dataset.s))).slice(0, MOST_LENT)) {
     group.dataset.lent = '';
     group.classList.remove('off');
   }
+  chart.note ??= chart.parentElement.appendChild(element('p', {className: 'legend'}, worded('none-drawn')));
+  chart.note.hidden = chart.hidden || !isEmpty();
 }
 
 // The name of a line at its end, and its points, which the report leaves to the page.

@@ -7,17 +7,20 @@ const means = {level: 0, inverse: 0, size: 0, budget: 0, kind: 0};  // kind: of 
 const adviceFor = ({level, inverse, size, budget, kind}) => DATA.advice[(((2 * level + inverse) * SIZES.length + size) * BUDGETS.length + budget) * DATA.dataKinds.length + kind];
 const hasSettings = (size) => DATA.dataKinds.some((_, kind) => adviceFor({level: 0, inverse: 0, size, budget: 0, kind})?.[1] !== 0);
 
+// The first kind of data that this study has: it may have problems with bounds alone.
+const firstKind = () => Math.max(0, DATA.dataKinds.findIndex((_, kind) => SIZES.some((_, size) => adviceFor({level: 0, inverse: 0, size, budget: 0, kind})?.[1] > 0)));
+
 function readMeans(asked) {
   const place = (all, key) => Math.max(0, all.indexOf(asked.get(key)));
   const [level, inverse] = (asked.get('have') ?? '').split(' ');
-  Object.assign(means, {level: Math.max(0, LEVELS.indexOf(level)), inverse: inverse === 'inverse' ? 1 : 0, size: place(SIZES, 'unknowns'), budget: place(BUDGETS, 'budget'), kind: place(DATA.dataKinds, 'data')});
+  Object.assign(means, {level: Math.max(0, LEVELS.indexOf(level)), inverse: inverse === 'inverse' ? 1 : 0, size: place(SIZES, 'unknowns'), budget: place(BUDGETS, 'budget'), kind: asked.has('data') ? place(DATA.dataKinds, 'data') : firstKind()});
 }
 
 function writeMeans(asked) {
   if (means.level + means.inverse > 0) asked.set('have', LEVELS[means.level] + (means.inverse ? ' inverse' : ''));
   if (means.size > 0) asked.set('unknowns', SIZES[means.size]);
   if (means.budget > 0) asked.set('budget', BUDGETS[means.budget]);
-  if (means.kind > 0) asked.set('data', DATA.dataKinds[means.kind]);
+  if (means.kind !== firstKind()) asked.set('data', DATA.dataKinds[means.kind]);
 }
 
 function drawAdvice(place) {

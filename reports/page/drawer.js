@@ -124,7 +124,11 @@ const NUMBERS = 'main td:not(.optimizer td, .prices td), #drawer .settings-of td
 document.addEventListener('click', (event) => {
   if (event.target.closest('button, a') !== null) return;
   const cell = event.target.closest(NUMBERS), chart = event.target.closest('.chart'), point = chart && !isDragged ? nearest(chart, event) : undefined;
-  if (cell !== null) openEvidence(cell);
+  if (cell !== null) {  // arrows lead on from here when the drawer is closed
+    cell.tabIndex = -1;
+    cell.focus({preventScroll: true});
+    openEvidence(cell);
+  }
   if (!point) return;
   const {p, claim} = chart.closest('[data-p], [data-claim]')?.dataset ?? {}, {s} = point.group.dataset;
   if (claim !== undefined) openClaim(claim);

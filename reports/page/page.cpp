@@ -6,10 +6,12 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
 #include <iterator>
 #include <map>
 #include <set>
 #include <string_view>
+#include <utility>
 
 #include "core/compress.h"
 #include "core/results/ranking.h"
@@ -121,6 +123,16 @@ std::string checked_html(const Document& document) {
       html_text(words("page.each-claim")), html_text(words("page.all-figures")));
 }
 
+// The share of settings solved against work, where no published result is shown.
+std::string first_profile_html(const Document& document) {
+  for (Plot plot : document.section("statistics").plots)
+    if (plot.id == "plot-data-profile") {
+      plot.id = "plot-first";
+      return plot_html(plot);
+    }
+  return "";
+}
+
 // A published result that agrees, with the interval that decides its verdict: of the ratios with a
 // stated error that with the most seeds.
 std::string hero_html(const Document& document) {
@@ -130,9 +142,8 @@ std::string hero_html(const Document& document) {
         one.band && one.band->high < kNever && one.band->low < one.band->high &&
         (best == nullptr || one.measured->n > best->measured->n))
       best = &one;
-  if (best == nullptr) return "";
-  const std::vector<Plot> plots = claim_plots(best->evidence, best->id + "-first");
-  if (plots.empty()) return "";
+  const Plots plots = best ? claim_plots(best->evidence, best->id + "-first") : Plots{};
+  if (plots.empty()) return first_profile_html(document);
   const Measurement& measured = *best->measured;
   const Interval band = measured.predicted.value_or(Interval{measured.low, measured.high});
   Drawing drawing = drawing_of(plots[0]);
@@ -185,10 +196,18 @@ std::string findings_html(const Document& document) {
 
 // The first tab of a report on a user's own problem.
 constexpr const char* kFitLink = "<a href=\"#fit\">Fit</a>\n  ";
+// The parameters stand above the plots.
 std::string fit_tab(const Section& fit) {
+  Section values = fit, rest{.id = fit.id, .title = fit.title};
+  const auto is_of_values = [](const Table& table) {
+    return table.id.starts_with("fit-parameters") || table.id.starts_with("fit-values");
+  };
+  rest.plots = std::exchange(values.plots, {});
+  std::ranges::remove_copy_if(fit.tables, std::back_inserter(rest.tables), is_of_values);
+  std::erase_if(values.tables, std::not_fn(is_of_values));
   return fmt::format(
-      "<section id=\"fit\" class=\"tab\" aria-label=\"{0}\">\n<h2>{0}</h2>\n{1}</section>\n",
-      html_text(fit.title), section_html(fit));
+      "<section id=\"fit\" class=\"tab\" aria-label=\"{0}\">\n<h2>{0}</h2>\n{1}{2}</section>\n",
+      html_text(fit.title), section_html(values), rest.is_empty() ? "" : section_html(rest));
 }
 
 std::string endings_html(const Comparison& c) {

@@ -122,7 +122,7 @@ std::string cell_json(const Comparison& c, std::size_t p, std::size_t s) {
   if (!cell.runs.empty() && !cell.is_measured()) return fmt::format("[{}]", s);
   std::vector<std::string> reached;
   for (const std::size_t run : cell.runs)
-    reached.push_back(std::to_string(c.runs[run].targets.size()));
+    reached.push_back(std::to_string(c.runs[run].returned_met));
   constexpr std::size_t kEach = 6;
   const std::size_t most = is_large(c) ? 1 : kEach;
   const std::span runs(cell.runs.data(), std::min(most, cell.runs.size()));

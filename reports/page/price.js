@@ -33,8 +33,8 @@ const sharing = () => new Set(DATA.ranked.filter((_, i) => DATA.calls.some(([, m
 // The method that ranks first from each price of a Jacobian on; kept, since the slider of that price does not change them.
 const LEADERS = new Map();
 function leadersBy(gradient) {
-  const key = `${gradient} ${workers}`, leaders = LEADERS.get(key) ?? [];
-  if (leaders.length > 0) return leaders;
+  const key = `${gradient} ${workers}`, leaders = [];
+  if (LEADERS.has(key)) return LEADERS.get(key);
   LEADERS.set(key, leaders);
   for (let step = 0; step <= PRICE_STEPS; ++step) {
     const [{s}] = standingsAtPrices(gradient, priceOf(step), workers);

@@ -16,21 +16,23 @@ function movedPath(path, across, up) {
   });
 }
 
-// The same numbers on another axis; what is not above 0 stays at the low edge of a logarithm.
+// The same numbers on another axis, always from those that the report drew; what is not above 0 stays at the low edge
+// of a logarithm.
 function setKind(chart, key, kind) {
-  const from = axisOf(chart, key), far = 4 * AREA;
-  const to = {...from, kind, low: kind === 'log' ? Math.max(from.low, 1e-6 * from.high) : from.low};
-  const move = (at) => {
-    const share = shareOf(to, valueAt(from, key === 'x' ? at / AREA : 1 - at / AREA)), end = Number.isNaN(share) || share === -Infinity ? 0 : share;
+  const far = 4 * AREA, drawn = chart.drawn ??= {x: chart.dataset.x, y: chart.dataset.y};
+  const first = axisFrom(drawn[key]);
+  chart.dataset[key] = kind === first.kind ? drawn[key] : `${kind === 'log' ? Math.max(first.low, 1e-6 * first.high) : first.low} ${first.high} ${kind}`;
+  const mover = (key) => (at) => {
+    if (chart.dataset[key] === drawn[key]) return at;
+    const share = shareOf(axisOf(chart, key), valueAt(axisFrom(drawn[key]), key === 'x' ? at / AREA : 1 - at / AREA)), end = Number.isNaN(share) || share === -Infinity ? 0 : share;
     return Math.max(-far, Math.min(far, AREA * (key === 'x' ? end : 1 - end)));
   };
-  const same = (at) => at;
   for (const path of chart.querySelectorAll('.area path')) {
     if (path.matches('.tau')) continue;
-    path.setAttribute('d', key === 'x' ? movedPath(path.getAttribute('d'), move, same) : movedPath(path.getAttribute('d'), same, move));
+    path.drawn ??= path.getAttribute('d');
+    path.setAttribute('d', movedPath(path.drawn, mover('x'), mover('y')));
     POINTS.delete(path);
   }
-  chart.dataset[key] = `${to.low} ${to.high} ${kind}`;
   moveTolerance(chart);
   fitView(chart);
 }
@@ -56,7 +58,7 @@ function svgText(chart) {
     const style = getComputedStyle(originals[i]);
     if (style.display === 'none') return one.remove();
     for (const name of ['fill', 'stroke']) one.setAttribute(name, style[name] === 'none' ? 'none' : plain(style[name]));
-    for (const name of ['stroke-width', 'stroke-dasharray', 'stroke-linecap', 'opacity', 'vector-effect', 'font-size', 'font-family']) one.setAttribute(name, style.getPropertyValue(name));
+    for (const name of ['stroke-width', 'stroke-dasharray', 'stroke-linecap', 'opacity', 'vector-effect', 'font-size', 'font-family', 'paint-order']) one.setAttribute(name, style.getPropertyValue(name));
   });
   return new XMLSerializer().serializeToString(copy);
 }
@@ -87,13 +89,16 @@ function savePng(chart) {
 // A row of buttons for the chart of a place that is not hidden.
 function addTools(place) {
   const chart = () => place.querySelector('.chart:not([hidden])');
-  const turn = (key) => () => setKind(chart(), key, axisOf(chart(), key).kind === 'log' ? 'linear' : 'log');
+  const turn = (key) => ({currentTarget}) => {
+    setKind(chart(), key, axisOf(chart(), key).kind === 'log' ? 'linear' : 'log');
+    currentTarget.setAttribute('aria-pressed', axisOf(chart(), key).kind === 'log');
+  };
   const tools = element('p', {className: 'tools'}, pressable('whole', undefined, () => fitView(chart())), pressable('SVG', undefined, () => download(`${fileOf(chart())}.svg`, 'image/svg+xml', svgText(chart()))),
       pressable('CSV', undefined, () => download(`${fileOf(chart())}.csv`, 'text/csv', csvText(chart()))),
       pressable('PNG', undefined, () => savePng(chart())), pressable('copy', undefined, ({currentTarget}) => copyText(csvText(chart()), currentTarget)));
   if (chart().querySelector('.band') !== null) tools.append(pressable('bands', true, ({currentTarget}) => currentTarget.setAttribute('aria-pressed', !place.classList.toggle('no-bands'))));
   for (const key of ['x', 'y'])
-    if (axisOf(chart(), key).kind !== 'share' && axisOf(chart(), key).low > 0) tools.firstChild.after(pressable(`log ${key}`, undefined, turn(key)));
+    if (axisOf(chart(), key).kind !== 'share' && axisOf(chart(), key).low > 0) tools.firstChild.after(pressable(`log ${key}`, axisOf(chart(), key).kind === 'log', turn(key)));
   place.querySelector('.chart:last-of-type').after(tools);
   oneStop(tools);
 }

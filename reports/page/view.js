@@ -20,7 +20,8 @@ function tauName(target) {
 }
 
 // 1.1 times the floor of the error in x, relative to ‖x*‖, replaces a smaller τ.
-function goalOf({goal = 0}) {
+function goalOf({goal = 0, spec}) {
+  if (spec.includes('goal=fit')) return worded('goal-fit');
   return goal > tauOf(view.target) ? `an error in x of ${goal} ‖x*‖ (1.1 times the floor)` : `τ = ${tauName(view.target)}`;
 }
 

@@ -82,7 +82,17 @@ Window window_of(const Drawing& drawing) {
   const Plot& plot = drawing.plot;
   if (plot.kind == Plot::Kind::steps)
     return {plot.series[0].x.front(), plot.series[0].x.back(), 0, 1};
-  return window_of(shown_lines(drawing));
+  Window window = window_of(shown_lines(drawing));
+  constexpr Real kBeside = 0.03;  // so that the frame cuts no point
+  if (std::ranges::any_of(plot.series, &PlotSeries::are_points)) {
+    const Real wide = kBeside * (window.x_high - window.x_low),
+               high = kBeside * (window.y_high - window.y_low);
+    if (!plot.is_log_x)
+      window = {window.x_low - wide, window.x_high + wide, window.y_low, window.y_high};
+    if (!plot.is_log_y)
+      window = {window.x_low, window.x_high, window.y_low - high, window.y_high + high};
+  }
+  return window;
 }
 
 Drawing drawing_of(const Plot& plot) {

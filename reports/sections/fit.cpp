@@ -44,18 +44,26 @@ std::vector<std::vector<const Run*>> data_sets_of(const Comparison& c, std::size
   return sets;
 }
 
-std::vector<const Run*> by_loss(std::vector<const Run*> fits) {
+// Nothing if the fit was not profiled.
+const std::vector<LikelihoodProfile>* profiles_of(const Comparison& c, const Record& record) {
+  const auto found =
+      std::ranges::find(c.study->profiles, record.cell, &results::ProfiledCell::cell);
+  return found == c.study->profiles.end() ? nullptr : &found->profiles;
+}
+
+std::vector<const Run*> by_loss(const Comparison& c, std::vector<const Run*> fits) {
   std::ranges::stable_sort(fits, {}, [](const Run* run) { return run->record->summary.loss; });
-  // A confirmed minimum comes first of losses that differ by noise.
+  // Where losses differ by noise, confirmed minima come first, among them those with profiles.
   constexpr Real kNoise = 1e-5;
-  for (std::size_t i = 0; i < fits.size(); ++i) {
-    const Record &first = *fits[0]->record, &record = *fits[i]->record;
-    if (record.summary.loss > (1 + kNoise) * first.summary.loss) break;
-    if (doubt_of(record) == Doubt::not_minimum) continue;
-    std::rotate(fits.begin(), fits.begin() + std::ptrdiff_t(i),
-                fits.begin() + std::ptrdiff_t(i) + 1);
-    break;
-  }
+  const Real most = (1 + kNoise) * fits[0]->record->summary.loss;
+  const auto end =
+      std::ranges::find_if(fits, [&](const Run* run) { return run->record->summary.loss > most; });
+  std::stable_sort(fits.begin(), end, [&](const Run* a, const Run* b) {
+    const auto rank = [&](const Run* run) {
+      return doubt_of(*run->record) == Doubt::not_minimum ? 2 : !profiles_of(c, *run->record);
+    };
+    return rank(a) < rank(b);
+  });
   return fits;
 }
 
@@ -117,6 +125,7 @@ Table basins_table(const std::string& problem, const std::vector<const Run*>& fi
   constexpr std::size_t kShown = 12;  // minima, and unknowns
   std::vector<std::pair<const Record*, std::size_t>> basins;
   for (const Run* run : fits) {
+    if (doubt_of(*run->record) == Doubt::not_minimum) continue;
     const auto same = std::ranges::find_if(
         basins, [&](const auto& basin) { return are_one_minimum(*basin.first, *run->record); });
     if (same == basins.end())
@@ -135,13 +144,6 @@ Table basins_table(const std::string& problem, const std::vector<const Run*>& fi
                           joined(values, ", ") + (x.size() > kShown ? ", …" : "")});
   }
   return table;
-}
-
-// Nothing if the fit was not profiled.
-const std::vector<LikelihoodProfile>* profiles_of(const Comparison& c, const Record& record) {
-  const auto found =
-      std::ranges::find(c.study->profiles, record.cell, &results::ProfiledCell::cell);
-  return found == c.study->profiles.end() ? nullptr : &found->profiles;
 }
 
 Table profiles_table(const std::string& problem, const std::vector<LikelihoodProfile>& profiles) {
@@ -284,7 +286,8 @@ void add_data_set(Section& section, const Comparison& c, const std::vector<const
     tables.push_back(correlation_table(problem, record));
   const auto* const profiles = doubt == Doubt::none ? profiles_of(c, record) : nullptr;
   if (profiles) tables.push_back(profiles_table(problem, *profiles));
-  if (fits.size() > 1) tables.push_back(basins_table(problem, fits));
+  if (Table basins = basins_table(problem, fits); fits.size() > 1 && !basins.rows.empty())
+    tables.push_back(std::move(basins));
   if (Table failures = failures_table(problem, runs); !failures.rows.empty())
     tables.push_back(std::move(failures));
   for (Table& table : tables) {
@@ -313,7 +316,7 @@ Section fit_section(const Comparison& c) {
       const std::string problem =
           problem_name(c.problems[p]) +
           (sets.size() > 1 ? words("fit.data-set", seed_text(sets[d][0]->seed)) : "");
-      add_data_set(section, c, by_loss(sets[d]), sets.size() > 1 ? sets[d] : runs, problem,
+      add_data_set(section, c, by_loss(c, sets[d]), sets.size() > 1 ? sets[d] : runs, problem,
                    sets.size() > 1 ? fmt::format("-{}-{}", p, d) : fmt::format("-{}", p));
     }
     if (sets.size() > kMostSets)

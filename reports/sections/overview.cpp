@@ -67,6 +67,7 @@ Leading leaders(const Comparison& c, const Profile& profile, Real factor) {
 // "solves this setting to 1e-6", or what replaces it where 1.1 times the floor is larger.
 std::string goal_text(const Comparison& c, std::size_t problem, std::size_t methods) {
   const Real least = c.problems[problem].least_goal;
+  if (is_judged_by_fit(c, problem)) return words("curve.fit", methods);
   return least > c.yardstick.tightest().tau
              ? words("curve.floor", methods, least)
              : words("curve.solve", methods, setting_noun(c), tau_name(c));

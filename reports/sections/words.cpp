@@ -15,6 +15,7 @@
 #include "core/seeds.h"
 #include "core/shell.h"
 #include "core/spec.h"
+#include "reports/sections/sections.h"
 
 namespace isoline::reports {
 
@@ -410,7 +411,15 @@ std::string success_text(const Comparison& c) {
   const char* key = in_x == 0                   ? "success.loss"
                     : in_x == c.problems.size() ? "success.x"
                                                 : "success.both";
-  return words(key, tau_name(c), counted_settings(c, in_x));
+  std::size_t by_fit = 0;
+  for (std::size_t p = 0; p < c.problems.size(); ++p) by_fit += is_judged_by_fit(c, p);
+  return words(key, tau_name(c), counted_settings(c, in_x)) +
+         (by_fit > 0 ? " " + words("success.fit", counted_settings(c, by_fit)) : "");
+}
+
+bool is_judged_by_fit(const Comparison& c, std::size_t problem) {
+  const OptionValues* const options = options_of(c, problem);
+  return options != nullptr && options->contains("goal") && options->text("goal") == "fit";
 }
 
 // Origins of rates, by the records that used them.

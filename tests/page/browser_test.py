@@ -655,15 +655,19 @@ class Page(InBrowser):
         self.assertEqual(self.browser.run(ends), whole)
         points = "const [x, y] = [axisOf(chart, 'x'), axisOf(chart, 'y')];" \
                  "return linesOf(chart).filter(isLineShown).map((line) => pointsOf(pathOf(line))" \
-                 ".map((at) => valueAt(x, at[0] / AREA)).filter((v) => v > 20))"
-        before = self.browser.run(chart + points)
+                 ".map((at) => valueAt(x, at[0] / AREA)))"
+        before, high = self.browser.run(chart + points), self.browser.run(chart + "return axisOf(chart, 'x').high")
         after = self.browser.run(chart + "setKind(chart, 'x', 'linear');" + points)
         for one, other in zip(before, after):
             for a, b in zip(one, other):
-                self.assertAlmostEqual(a / b, 1, delta=0.02)
+                self.assertAlmostEqual(a, b, delta=0.02 * a + high / 5000)  # a unit of the area
+        self.browser.run(chart + "setKind(chart, 'y', 'linear'); setKind(chart, 'x', 'log'); setKind(chart, 'y', 'log')")
+        self.assertEqual(self.browser.run(ends), whole)
+        self.assertEqual(self.browser.run(chart + points), before)
         svg = self.browser.run(chart + "return svgText(chart)")
         self.assertEqual(xml.etree.ElementTree.fromstring(svg).tag, "{http://www.w3.org/2000/svg}svg")
         self.assertNotIn("var(", svg)
+        self.assertIn('paint-order="stroke', svg)  # else the edge of a name would cover it
         rows = self.browser.run(chart + "return csvText(chart)").splitlines()
         self.assertEqual(rows[0], "line,x,y")
         self.assertGreater(len(rows), 20)
@@ -971,6 +975,14 @@ class Forward(InBrowser):
     def made(cls, folder):
         run("run", "quick-forward", "--out", folder, "--quiet")
         return pathlib.Path(folder, "report", "index.html")
+
+    def test_without_a_race_the_share_of_solved_settings_stands_beside_the_ranking(self):
+        self.open("")
+        self.browser.wait("return document.querySelector('#standings-table td')")
+        place = self.browser.run("const {top, bottom} = document.querySelector('#plot-first svg').getBoundingClientRect();"
+                                 "return [document.getElementById('motion').childElementCount, top, bottom]")
+        self.assertEqual(place[0], 0)
+        self.assertTrue(0 < place[1] < place[2] < 900, place)
 
     def test_an_engineer_with_noisy_data_finds_method_runs_and_certainty_in_two_clicks(self):
         self.open("")
