@@ -159,6 +159,8 @@ bool confirm_records(const Catalog& catalog, const std::vector<Request>& request
   for (const Request& request : requests) {
     const Component& problem = request.problem;
     if (!is_elsewhere(problem) || options.force) continue;
+    const auto known = is_changed.find(problem.spec);
+    if (known != is_changed.end() && !known->second) continue;
     const std::optional<Record> record = store.find(request);
     if (!record || !record->fit || !record->answer || record->answer->point(kReturned).empty())
       continue;

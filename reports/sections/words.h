@@ -125,9 +125,9 @@ std::string_view setting_noun(const Comparison& comparison);
 std::string_view common_noun(const Comparison& comparison);  // of the settings of the common order
 std::string n_column(const Comparison& comparison);  // "n settings", the heading of their number
 std::string counted_settings(const Comparison& comparison, std::size_t count);  // "22 settings"
-// The meaning of success by this measure, as a sentence; with a single criterion, for that only.
 // By the distance from the least-squares solution.
 bool is_judged_by_fit(const Comparison& comparison, std::size_t problem);
+// The meaning of success by this measure, as a sentence; with a single criterion, for that only.
 std::string success_text(const Comparison& comparison);
 
 // Where the options of a method came from on a problem.
