@@ -140,7 +140,15 @@ Real noise_of_calls(const Vector& y0, const std::function<Vector(Real t)>& y, co
   constexpr std::size_t kMostRows = 1000;
   const Real size = y0.norm();
   Real noise = std::numeric_limits<Real>::epsilon();
-  if (!(size > 0) || !std::isfinite(size)) return noise;
+  if (size == 0) {  // as of an amplitude that starts at 0: what is printed shows beside it
+    constexpr Real kBeside = kNoiseStep / 5;
+    const Vector beside = y(kBeside);
+    const bool shows = is_finite(beside) && !beside.isZero(0);
+    return shows ? noise_of_calls(
+                       beside, [&](Real t) { return y(kBeside + t); }, factors)
+                 : noise;
+  }
+  if (!std::isfinite(size)) return noise;
   std::vector<Vector> values{y0, y(far), y(2 * far), y(near)};
   const auto difference = [&](const Vector& once, const Vector& two) -> Vector {
     return two - 2 * once + y0;

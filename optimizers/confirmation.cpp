@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "core/foreign/line.h"
 #include "optimizers/differences.h"
 #include "optimizers/examination.h"
 #include "optimizers/meter.h"
@@ -16,9 +17,9 @@ void InARow::add_outcome(const FailedEvaluations& all) {
       all.most_in_a_row > 0 ? all.most_in_a_row : std::max<std::int64_t>(100, 10 * x.size());
   if (failed < most) return;
   const bool is_kept = all.kept > 0 && all.kept == all.total;
-  throw std::runtime_error(fmt::format("{} evaluations in a row failed{}{}", failed,
-                                       is_kept ? "; the last: " : "",
-                                       is_kept ? all.reason[all.kept - 1] : ""));
+  throw CallsFailed(fmt::format("{} evaluations in a row failed{}{}", failed,
+                                is_kept ? "; the last: " : "",
+                                is_kept ? all.reason[all.kept - 1] : ""));
 }
 
 // No run ends at a point whose evaluation failed while it has one with a value.

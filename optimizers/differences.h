@@ -41,6 +41,13 @@ class DifferenceJacobian {
       line.cwiseQuotient(sizes_).cwiseAbs().maxCoeff(&known);
     y_ = at.y().reshaped();
     J_.setZero(y_.size(), n);
+    if (!y_.allFinite()) {  // there is nothing to compare other calls with
+      J_.setConstant(std::numeric_limits<Real>::quiet_NaN());
+      theta_ = theta;
+      is_fresh_ = true;
+      at.set_jacobian(J_);
+      return;
+    }
     const Real step = is_central ? central_step(noise_) : forward_step(noise_);
     std::vector<std::array<Real, 2>> offsets;
     Matrix points(n, is_central ? 2 * n : n);

@@ -32,9 +32,12 @@ std::string doubt_of(const LeastSquaresPoint& at) {
   const auto size_of = [&](Index i) {
     return std::max(std::abs(at.theta[free[i]]), at.sizes[free[i]]);
   };
+  std::string without;
   for (Index i = 0; i < n; ++i)
     if (!(D[i] * size_of(i) * step > 2 * at.noise * at.size_of_y))
-      return fmt::format("{} has no effect here", name_of_unknown(at.names, free[i]));
+      without += (without.empty() ? "" : " and ") + name_of_unknown(at.names, free[i]);
+  if (const bool are_several = without.find(" and ") != std::string::npos; !without.empty())
+    return without + (are_several ? " have" : " has") + " no effect here";
   Svd svd;
   if (!thin_svd(J * D.cwiseInverse().asDiagonal(), svd))
     return "its Jacobian has no singular values";

@@ -281,7 +281,7 @@ Vector Meter::finish(VectorRef theta, Status verdict) {
   if (verdict == Status::running) verdict = Status::converged;
   if (goals_.is_target_met(judged_.at.loss, trace_.last.x_error)) verdict = Status::target;
   if (goals_.is_at_noise(trace_.last.discrepancy)) verdict = Status::discrepancy;
-  if (!std::isfinite(judged_.at.loss)) verdict = Status::diverged;
+  if (!std::isfinite(judged_.at.loss) && verdict != Status::failed) verdict = Status::diverged;
   if (verdict == Status::converged && !problem_.is_learned())
     if (const std::string why = doubt(); !why.empty()) {
       verdict = Status::unconfirmed;
@@ -326,9 +326,12 @@ void Meter::measure(VectorRef theta) {
   last.gradient_norm = last.kkt_residual = TracePoint::kAbsent;
   if (problem_.noise_level()) last.discrepancy = problem_.discrepancy(judged_.at);
   // A second pass over the network for a validation of many samples would cost more than the step,
-  // and differences would cost calls that the method does not make.
+  // and differences, or products of another program, calls that the method does not make.
   const problems::Products has = problem_.products();
-  if (judged_.has_gradient && !problem_.is_learned() && has.has_pullback && !has.are_differences) {
+  const bool is_by_method = is_granted(Oracle::pullback) || is_granted(Oracle::jacobian);
+  const bool is_dear = has.are_differences ||
+                       (problem_.is_elsewhere() && !is_by_method && problem_.is_least_squares());
+  if (judged_.has_gradient && !problem_.is_learned() && has.has_pullback && !is_dear) {
     judged_.g.resize(problem_.outputs(), problem_.samples());
     judged_.gradient.resize(problem_.unknowns());
     problem_.cotangent(judged_.at, judged_.g);

@@ -29,6 +29,7 @@ struct Steps {
   int count;  // after the first
 };
 constexpr Steps kSteps = {1e-2, 0.5, 16}, kFewSteps = {1e-2, 0.125, 3};
+constexpr Real kRoom = 0.05;  // of a box, between the point and a bound
 constexpr Real kEpsilon = std::numeric_limits<Real>::epsilon();
 constexpr const char* kRounding = "rounding in double precision, with a margin for cancellation";
 constexpr const char* kDifferences =
@@ -43,8 +44,8 @@ class Examination {
       : problem_(problem), scale_(scale), stream_(stream), sink_(*failures_) {
     sizes_ = scale == StartScale::own ? sizes_of_unknowns(problem.start())
                                       : Vector::Ones(problem.unknowns());
-    if (const Bounds* bounds = problem.bounds())  // an unknown that its bounds fix does not move
-      sizes_ = (bounds->lower.array() < bounds->upper.array()).select(sizes_, 0);
+    if (const Bounds* bounds = problem.bounds())  // steps stay inside; a fixed unknown has none
+      sizes_ = sizes_.cwiseMin(kRoom / kSteps.first * (bounds->upper - bounds->lower));
     constexpr int kTries = 20;  // a problem may have no value here and there
     if (problem.is_elsewhere()) {
       const double begin = call_clock();
@@ -97,7 +98,8 @@ class Examination {
     const bool has_values = has_start && at_.y.size() > 0 && at_.y.allFinite();
     if (!has_start)
       add("y is finite at the start", 1, 0,
-          "each method begins there, so the call at the starting point must succeed");
+          "each method begins there, so the call at the starting point must succeed" +
+              first_not_finite(start().y));
     else if (!has_values)
       add("y is finite near the start", 1, 0, "20 sampled points near the start have no finite y");
     if (!has_target) add("y* is finite", 1, 0, "the target must consist of finite numbers");
@@ -142,7 +144,10 @@ class Examination {
       found = (sigma.array() > error * sigma[0]).count();
     }
     add(fmt::format("rank of J near the start: {} of {}{}", found, n,
-                    without.empty() ? "" : fmt::format("; {} has no effect on y", without)),
+                    without.empty() ? ""
+                    : without.find(", ") == std::string::npos
+                        ? "; " + without + " has no effect on y"
+                        : "; " + without + " have no effect on y"),
         static_cast<Real>(std::min(n, J.rows()) - found), static_cast<Real>(n),
         "an unknown without effect keeps its value");
   }
@@ -224,7 +229,7 @@ class Examination {
     const Real difference = (loss(theta_ + h_ * v) - loss(theta_ - h_ * v)) / (2 * h_);
     const Real scale = sized(g).norm() + std::abs(at_.loss);
     add("⟨∇L, v⟩ equals the change of L along v", relative(std::abs(difference - g.dot(v)), scale),
-        problem_.products().are_differences ? 1e-3 : std::max(1e-6, quotient_error()),
+        std::max(problem_.products().are_differences ? 1e-3 : 1e-6, quotient_error()),
         kDifferences);
   }
 
@@ -383,6 +388,12 @@ class Examination {
                      slopes.end());
     return slopes.empty() ? 2 : slopes[slopes.size() / 2];
   }
+  static std::string first_not_finite(const Matrix& y) {
+    for (Index i = 0; i < y.size(); ++i)
+      if (!std::isfinite(y.reshaped()[i]))
+        return fmt::format("; y{} is {}", i + 1, y.reshaped()[i]);
+    return "";
+  }
   static bool same_bits(const Matrix& a, const Matrix& b) {
     return a.size() == b.size() &&
            std::memcmp(a.data(), b.data(), sizeof(Real) * static_cast<std::size_t>(a.size())) == 0;
@@ -395,7 +406,7 @@ class Examination {
   }
   // Below, the remainder of Taylor's formula shows the error of y and of J v.
   Real remainder_floor() const {
-    const bool is_noisy = noise_ > 10 * kEpsilon;
+    const bool is_noisy = noise_ > 10 * kEpsilon || problem_.products().are_differences;
     return is_noisy ? 10 * (noise_ + quotient_error() * kSteps.first) : 1e4 * kEpsilon;
   }
   // The error of central differences with steps by the noise of y, with a margin for its direction.
@@ -476,7 +487,7 @@ class Examination {
         .reshaped(problem_.outputs(), problem_.samples());
   }
   Vector near_start() {
-    constexpr Real kRoom = 0.05, kOfSize = 0.02;  // of the box, and of the size of an unknown
+    constexpr Real kOfSize = 0.02;  // of an unknown
     Vector x = near(problem_.start(), scale_, stream_);
     const Bounds* const bounds = problem_.bounds();
     for (Index i = 0; bounds && i < x.size(); ++i) {

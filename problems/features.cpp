@@ -521,14 +521,21 @@ Vector scales_of_unknowns(const Problem& problem) {
     if (problem.bounds()) scales[i] = problem.bounds()->upper[i] - problem.bounds()->lower[i];
     if (scales[i] > 0 && std::isfinite(scales[i])) continue;
     if (at.batch == nullptr) problem.forward(start, at);
-    const Real step = 1e-3 * sizes_of_unknowns(start)[i];
-    const bool is_at_top = problem.bounds() && problem.bounds()->upper[i] < step;
-    Vector x = start;
-    x[i] = is_at_top ? -step : step;
-    Point moved;
-    problem.forward(x, moved);
-    const Real change = (moved.y - at.y).norm() / step;
-    scales[i] = change > 0 && std::isfinite(change) ? 1 / change : 1000 * step;
+    constexpr int kTries = 4;
+    constexpr Real kSmall = 0.1;  // of y: a step that changes more of it is no derivative
+    const Real longest = 1e-3 * sizes_of_unknowns(start)[i];
+    const bool is_at_top = problem.bounds() && problem.bounds()->upper[i] < longest;
+    scales[i] = 1000 * longest;
+    Real step = longest, change = 0;
+    for (int tried = 0; tried < kTries; ++tried, step *= 1e-3) {
+      Vector x = start;
+      x[i] = is_at_top ? -step : step;
+      Point moved;
+      problem.forward(x, moved);
+      change = (moved.y - at.y).norm();
+      if (change > 0 && std::isfinite(change)) scales[i] = step / change;
+      if (!(at.y.norm() > 0) || change <= kSmall * at.y.norm()) break;
+    }
   }
   return scales;
 }
@@ -545,11 +552,18 @@ Problem with_features(Problem plain, const OptionValues& options, const Draw& dr
           "and difference-step require mode=direct");
   Problem featured =
       with_model(with_other_data(std::move(plain), features, draw, target), features, draw);
-  if (features.jitter == 0 && features.derivatives == "exact") return featured;
+  const bool has_step = !features.difference_step.empty();
+  if (features.jitter == 0 && features.derivatives == "exact" && !has_step) return featured;
   ProblemParts parts = std::move(featured).parts();
   if (features.jitter > 0) parts.jitter = {features.jitter, draw.stream("jitter")};
-  if (features.derivatives != "exact")
+  if (features.derivatives != "exact") {
     replace_derivatives(parts, features.derivatives, false, features.difference_step);
+  } else if (has_step) {  // of a script that has asked for differences
+    require(remove_differences(parts).has_value(),
+            "difference-step is the step of derivatives=forward, derivatives=central or a script's "
+            "differences=True");
+    replace_derivatives(parts, "central", true, features.difference_step);
+  }
   return Problem(std::move(parts));
 }
 

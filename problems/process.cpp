@@ -26,6 +26,7 @@ Inverse inverse_of(const std::string& kind) {
 }
 
 constexpr Real kNaN = std::numeric_limits<Real>::quiet_NaN();
+constexpr const char* kNotFinite = "y is not finite";
 
 // The programs, and the points that the first one remembers, by number: one for every workspace
 // that is linearized at. A program that ended, or was late, is started again and remembers no
@@ -46,7 +47,7 @@ class Session {
   const ProblemHandshake& said() const { return workers_.said(); }
   int starts() const { return workers_.starts(); }
 
-  // Why the call failed; empty if it did not. LineError where too many of its kind have in a row.
+  // Why the call failed; empty if it did not.
   // From the store of evaluations, if it has this one; else from a program, after `prepare(start)`,
   // which says why it failed: start of the first program, or kNowhere where another one may answer,
   // and no program knows the point. `x` is the point of a product.
@@ -60,7 +61,7 @@ class Session {
     Evaluations& store = evaluations();
     if (!Afresh::is_on())
       if (const auto why = store.find(key_, verb, request, answer, workers_.most_seconds())) {
-        count_failure(verb, *why);
+        count_failure(verb, *why, answer);
         has_answered_ = has_answered_ || why->empty();
         return *why;
       }
@@ -68,7 +69,7 @@ class Session {
     if (std::string why = prepare(is_announced ? kNowhere : starts()); !why.empty()) return why;
     const std::int64_t begin = monotonic_nanoseconds();
     is_late_ = false;
-    const std::string why = is_announced ? answered(verb, [&] { workers_.take(answer); })
+    const std::string why = is_announced ? answered(verb, answer, [&] { workers_.take(answer); })
                                          : ask_program(verb, number, sent, answer);
     if (!is_announced)
       keep(verb, request, answer, why, 1e-9 * static_cast<double>(monotonic_nanoseconds() - begin),
@@ -84,7 +85,8 @@ class Session {
   std::string ask_program(Verb verb, std::uint32_t number,
                           std::span<const std::span<const Real>> numbers, std::span<Real> answer) {
     ++call_report().made;
-    const std::string why = answered(verb, [&] { workers_.ask(verb, number, numbers, answer); });
+    const std::string why =
+        answered(verb, answer, [&] { workers_.ask(verb, number, numbers, answer); });
     workers_.restart_if_lost();
     return why;
   }
@@ -110,6 +112,15 @@ class Session {
     return point;
   }
   void give_back(std::uint32_t point) { free_points_.push_back(point); }
+
+  // CallsFailed where too many of this kind have failed in a row.
+  void require_answers(Verb verb) const {
+    const Index in_a_row = failures_.at(static_cast<std::size_t>(verb));
+    if (in_a_row < failures_allowed_) return;
+    throw CallsFailed(in_a_row == 1 ? last_failure_
+                                    : fmt::format("{} calls in a row failed; the last: {}",
+                                                  in_a_row, last_failure_));
+  }
 
   static constexpr int kNowhere = -1;
   static std::string nothing(int) { return ""; }  // to prepare
@@ -149,10 +160,10 @@ class Session {
     return error.reason.empty() ? "the program names no reason" : error.reason;
   }
 
-  std::string answered(Verb verb, const auto& ask) {
+  std::string answered(Verb verb, std::span<const Real> answer, const auto& ask) {
     try {
       ask();
-      count_failure(verb, "");
+      count_failure(verb, "", answer);
       has_answered_ = true;
       return "";
     } catch (const FailedCall& error) {
@@ -162,17 +173,19 @@ class Session {
             "{}; process[…,call-time=SECONDS] sets another limit, and lets such calls fail where "
             "the program answers others",
             error.what()));
-      count_failure(verb, error.what());
+      count_failure(verb, error.what(), {});
       return reason_of(error);
     }
   }
-  void count_failure(Verb verb, const std::string& why) {  // empty: none
+  // `why`: empty where the program answered. A y that is not finite counts like any other failure.
+  void count_failure(Verb verb, const std::string& why, std::span<const Real> answer) {
     if (failure_sink() != nullptr) failure_sink()->most_in_a_row = failures_allowed_;
+    const auto is_finite = [](Real value) { return std::isfinite(value); };
+    const bool has_value =
+        why.empty() && (verb != Verb::linearize || std::ranges::all_of(answer, is_finite));
     Index& in_a_row = failures_.at(static_cast<std::size_t>(verb));
-    in_a_row = why.empty() ? 0 : in_a_row + 1;
-    if (in_a_row < failures_allowed_) return;
-    throw LineError(
-        in_a_row == 1 ? why : fmt::format("{} calls in a row failed; the last: {}", in_a_row, why));
+    in_a_row = has_value ? 0 : in_a_row + 1;
+    last_failure_ = why.empty() ? kNotFinite : why;
   }
 
   bool has_several_, has_call_time_, has_answered_ = false;
@@ -181,6 +194,7 @@ class Session {
   EvaluationKey key_;
   Index failures_allowed_;
   std::array<Index, static_cast<std::size_t>(Verb::x_error) + 1> failures_{};  // in a row, by verb
+  std::string last_failure_;
   std::uint32_t points_ = 0;
   std::vector<std::uint32_t> free_points_;
   std::uint32_t announced_point_;
@@ -266,8 +280,10 @@ class ProcessPhysics final : public ByJacobian {
     Vector answer(x.size() + y.cols());     // x, then one success flag per sample
     const std::array<std::span<const Real>, 2> given = {numbers_of(targets), numbers_of(starts)};
     const std::span<Real> numbers(answer.data(), static_cast<std::size_t>(answer.size()));
-    if (!session_->call(Verb::inverse, 0, given, given, numbers, Session::nothing).empty())
-      return Success::Constant(y.cols(), false);
+    const std::string why =
+        session_->call(Verb::inverse, 0, given, given, numbers, Session::nothing);
+    session_->require_answers(Verb::inverse);
+    if (!why.empty()) return Success::Constant(y.cols(), false);
     x = answer.head(x.size()).reshaped(x.rows(), x.cols());
     return answer.tail(y.cols()).array() == 1;
   }
@@ -311,11 +327,12 @@ class ProcessPhysics final : public ByJacobian {
       add_failure(numbers_of(bounds_ ? point.within : w.x),
                   is_forward ? why : fmt::format("{}: {}", name_of(verb), why));
       answer.setConstant(kNaN);
-      return;
+    } else {
+      if (!is_direct) answer = point.out;
+      if (is_forward && !answer.allFinite())
+        add_failure(numbers_of(bounds_ ? point.within : w.x), kNotFinite);
     }
-    if (!is_direct) answer = point.out;
-    if (is_forward && !answer.allFinite())
-      add_failure(numbers_of(bounds_ ? point.within : w.x), "y is not finite");
+    session_->require_answers(verb);
   }
 
   std::span<const Real> point_x(const OwnPoint& point, const Workspace& w) const {
@@ -348,8 +365,8 @@ class ProcessPhysics final : public ByJacobian {
   std::optional<Bounds> bounds_;
 };
 
-ProblemParts process_parts(const SimulatorOptions& given, const ProblemHandshake& said,
-                           const std::shared_ptr<Session>& session, const Draw& draw) {
+ProblemParts process_parts(const ProblemHandshake& said, const std::shared_ptr<Session>& session,
+                           const Draw& draw) {
   const Vector standard = vector_of(said.start);
   const StartScale scale = said.has_own_scale ? StartScale::own : StartScale::at_least_one;
   ProblemParts parts{.physics = std::make_unique<ProcessPhysics>(session, said),
@@ -370,14 +387,14 @@ ProblemParts process_parts(const SimulatorOptions& given, const ProblemHandshake
       const std::span<const Real> numbers = numbers_of(whole);
       const std::string why =
           session->call(Verb::x_error, 0, numbers, std::span(&error, 1), Session::nothing);
+      session->require_answers(Verb::x_error);
       return why.empty() ? error : kNaN;
     };
   if (!said.truth.empty()) parts.truth = vector_of(said.truth);
   const bool has_products = said.oracles.contains(Oracle::pushforward) ||
                             said.oracles.contains(Oracle::pullback) ||
                             said.oracles.contains(Oracle::jacobian);
-  if (said.are_differences && !has_products)
-    replace_derivatives(parts, "central", true, given.difference_step);
+  if (said.are_differences && !has_products) replace_derivatives(parts, "central", true, "");
   return parts;
 }
 
@@ -389,7 +406,7 @@ Problem make_process(const OptionValues& options, const Draw& draw) {
   if (!said.drawn.empty() && draw.start_seed() != draw.instance_seed()) {  // it samples its starts
     said.drawn = Session(given, draw.start_seed(), declared).said().drawn;
   }
-  return Problem(process_parts(given, said, session, draw));
+  return Problem(process_parts(said, session, draw));
 }
 
 Foreign introduce(const OptionValues& options) {

@@ -404,6 +404,12 @@ Vector drive(Optimizer& method, Meter& meter, Vector theta, Checkpoint& checkpoi
   } catch (const optimizers::BudgetSpent&) {  // during a step
     theta = before;
     verdict = Status::budget;
+  } catch (const CallsFailed& error) {  // the run ends at the best point, if it has any
+    const Trace& trace = meter.trace();
+    if (!trace.has_best || trace.unknowns != theta.size()) throw;
+    theta = Eigen::Map<const Vector>(trace.best, trace.unknowns);
+    verdict = Status::failed;
+    meter.remark(error.what());
   }
   return meter.finish(theta, verdict);
 }

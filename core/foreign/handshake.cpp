@@ -223,7 +223,10 @@ class Said {
     const Json& both = json_[name];
     if (!both.is_array() || both.size() != 2) refuse(name, law);
     std::pair found(reals(both[0], count, name, law), reals(both[1], count, name, law));
-    if (!std::ranges::equal(found.first, found.second, std::less_equal())) refuse(name, law);
+    const auto [low, high] = std::ranges::mismatch(found.first, found.second, std::less_equal());
+    if (low != found.first.end())
+      refuse(name, fmt::format("{}; those of unknown {} are {} and {}", law,
+                               low - found.first.begin() + 1, *low, *high));
     return found;
   }
 

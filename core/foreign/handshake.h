@@ -7,7 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "core/differences.h"
 #include "core/foreign/foreign.h"
 #include "core/foreign/line.h"
 #include "core/options.h"
@@ -33,7 +32,6 @@ struct SimulatorOptions : ProcessOptions {
   Real call_time = 0;
   Index failures = 0, workers = 1;
   bool scales_unknowns = true;
-  std::string difference_step;
 };
 
 void fields(SimulatorOptions& o, auto& field) {
@@ -49,7 +47,6 @@ void fields(SimulatorOptions& o, auto& field) {
   field("scale-unknowns", o.scales_unknowns,
         "methods see each unknown divided by its size at the start, where the program declares "
         "bounds or scales of its own");
-  field("difference-step", o.difference_step, {}, kStepHelp);
 }
 
 // The values of the options that a program has declared, out of all of a component.

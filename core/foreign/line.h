@@ -70,6 +70,11 @@ struct LineError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+// So many calls in a row failed that the run ends.
+struct CallsFailed : LineError {
+  using LineError::LineError;
+};
+
 // Somebody killed the other program, or edited its files: it may be asked again.
 struct KilledProgram : LineError {
   using LineError::LineError;

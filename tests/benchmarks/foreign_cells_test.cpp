@@ -140,24 +140,50 @@ TEST_F(ForeignCells, GoOnAfterAFailedCallHoweverItFailed) {
 TEST_F(ForeignCells, EndAfterTooManyFailedCallsInARow) {
   const auto script = folder.path() / "fails.py";
   write_text(script,
-             "import isoline\n"
+             "import isoline, math, sys\n"
              "def forward(x):\n"
-             "    if list(x) != [1.0, 2.0]: raise KeyError('mesh')\n"
-             "    return x\n"
-             "isoline.problem(forward, [1.0, 2.0])\n");
+             "    if list(x) == [1.0, 2.0]: return x\n"
+             "    if sys.argv[1] == 'raise': raise KeyError('mesh')\n"
+             "    return [math.nan, x[1]]\n"
+             "isoline.problem(forward, [1.0, 2.0], target=[0, 0], differences=True)\n");
   const std::string command = "python3 " + script.string();
-  for (const int limit : {100, 10}) {  // the first is the default
-    const std::string option = limit == 10 ? ",failures=10" : "";
-    const Record ended = record_of(request_of(process_of(command, option), "nlopt-neldermead"));
-    EXPECT_EQ(ended.status, Status::failed);
-    ASSERT_TRUE(ended.failures);
-    EXPECT_EQ(ended.failures->total, limit - 1) << "of those that did not end it";
-    EXPECT_NE(ended.message.find(std::to_string(limit) + " calls in a row"), std::string::npos)
-        << ended.message;
-  }
-  const Record one = record_of(request_of(process_of(command, ",failures=1"), "nlopt-neldermead"));
+  for (const std::string kind : {" raise", " nan"})
+    for (const char* method : {"nlopt-neldermead", "nlopt-lbfgs", "levenberg-marquardt"})
+      for (const int limit : {100, 10}) {  // the first is the default, which few make
+        if (limit == 100 && std::string_view(method) != "nlopt-neldermead") continue;
+        const std::string option = limit == 10 ? ",failures=10" : "";
+        const Record ended = record_of(request_of(process_of(command + kind, option), method));
+        EXPECT_EQ(ended.status, Status::failed) << method << kind;
+        ASSERT_TRUE(ended.failures) << method << kind;
+        EXPECT_EQ(ended.failures->total, limit) << method << kind;
+        EXPECT_EQ(ended.summary.loss, 2.5) << "the best point is that of the start";
+        EXPECT_NE(ended.message.find(std::to_string(limit) + " calls in a row"), std::string::npos)
+            << ended.message;
+      }
+  const Record one =
+      record_of(request_of(process_of(command + " raise", ",failures=1"), "nlopt-neldermead"));
   EXPECT_EQ(one.status, Status::failed);
   EXPECT_NE(one.message.find("KeyError"), std::string::npos) << one.message;
+}
+
+TEST_F(ForeignCells, TakeTheStepOfDifferencesThatTheirOptionNames) {
+  const auto script = folder.path() / "line.py", log = folder.path() / "calls";
+  write_text(
+      script,
+      "import isoline, sys\n"
+      "def forward(x):\n"
+      "    print(*x, file=open(sys.argv[1], 'a'))\n"
+      "    return [x[0], x[1]]\n"
+      "isoline.problem(forward, [1.0, 2.0], target=[3, 4], differences=len(sys.argv) > 2)\n");
+  const std::string command = fmt::format("python3 {} {}", script.string(), log.string());
+  for (const std::string words : {"", " differences"}) {
+    write_text(log, "");
+    const std::string kind = words.empty() ? ",derivatives=central" : "";
+    record_of(
+        request_of(process_of(command + words, kind + ",difference-step=0.25:0.125"), "ceres-lm"));
+    EXPECT_NE(read_text(log).find("1.25 2.0"), std::string::npos) << words;
+    EXPECT_NE(read_text(log).find("1.0 2.25"), std::string::npos) << words;
+  }
 }
 
 // Two of Rosenbrock's valleys, with a part that fails. Writes a letter per call, and kills
@@ -265,6 +291,13 @@ TEST_F(ForeignCells, OfAFeatureThatFailsEndNoMethodAtAFailedPoint) {
       EXPECT_NE(record.status, Status::diverged) << method << " " << seed;
       EXPECT_LE(record.summary.loss, record.summary.start_loss) << method << " " << seed;
     }
+  for (const std::string kind :
+       {"differences", "central"}) {  // columns at a failed point cost no call
+    const Record record = record_of(
+        named(request_of("wood[fail=0.2]", "gauss-newton[jacobian=" + kind + "]", {.work = 2000})));
+    EXPECT_FALSE(is_failure(record.status)) << kind << ": " << record.message;
+    EXPECT_LE(record.summary.loss, record.summary.start_loss) << kind;
+  }
 }
 
 TEST_F(ForeignCells, HaveTheNamesAndUnitsThatTheirScriptGives) {

@@ -507,6 +507,15 @@ TEST(NoiseOfCalls, SeesPrintedDigitsBehindFactors) {
   EXPECT_NEAR(std::log10(noise_of_calls(y(0), y, factors)), -6, 0.7);
 }
 
+// As of an amplitude that starts at 0: six digits show beside it.
+TEST(NoiseOfCalls, IsMeasuredBesideAYOfZeros) {
+  const auto y = [](Real t) -> Vector {
+    return calls_of(0, [&](Real value) { return std::round(1e9 * t * value) / 1e9; });
+  };
+  ASSERT_TRUE(y(0).isZero(0));
+  EXPECT_GT(noise_of_calls(y(0), y, Vector::Ones(30)), 1e-8);
+}
+
 // Of the calls at 1, 2 and 3, then at 0.75, 1.5 and 2.25 steps.
 TEST(NoiseOfCalls, IsMeasuredBesideFailedCalls) {
   const auto y = [](Real t) -> Vector {

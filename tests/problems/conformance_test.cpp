@@ -11,6 +11,7 @@
 #include "core/workspace.h"
 #include "make.h"
 #include "problems/dense_physics.h"
+#include "problems/features.h"
 #include "tests/clients/programs.h"
 #include "tests/refusal.h"
 
@@ -276,6 +277,14 @@ TEST(Conformance, TakesAPublishedMinimumWithTheErrorDeclaredOfIt) {
 }
 
 // The loss at the start is 0 then, and nothing can be relative to it.
+// Their remainder falls with the first power of the step, as that of a wrong J does.
+TEST(Conformance, AllowsDifferencesOfALinearProblem) {
+  for (const std::string kind : {"forward", "central"})
+    EXPECT_TRUE(holds(
+        with_features(make("linear-chain"), {{"derivatives", kind}}, Draw(0, "linear-chain"))))
+        << kind;
+}
+
 TEST(Conformance, AStartThatIsTheTruthIsAllowedAndNaNIsNamed) {
   const auto of = [](const Vector& start, const Vector& target) {
     return Problem({.physics = std::make_unique<TwoScales>(),
@@ -451,6 +460,8 @@ TEST(Process, OfUnknownsOfUnlikeSizesIsCertifiedByStepsOfTheirSizes) {
     EXPECT_EQ(make(misra(words)).start_scale() == StartScale::own,
               std::string(words).ends_with("own"));
   }
+  for (const char* words : {"exact box", "differences box", "differences rounded"})
+    expect_certified(misra(words), 0);
   expect_certified(misra("exact own"), 1);
   for (const char* words : {"wrong", "wrong own"}) EXPECT_FALSE(holds(make(misra(words)))) << words;
   const Problem exact = make(misra("exact"));

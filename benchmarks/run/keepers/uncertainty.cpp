@@ -2,6 +2,8 @@
 // its covariance. Those that a bound holds are constants, and have none. By the singular values of
 // A = J D⁻¹, D the norms of J's columns: (JᵀJ)⁻¹ = D⁻¹ V Σ⁻² Vᵀ D⁻¹, without the squares of their
 // condition number. Where J does not have full rank, x has no such covariance.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -23,11 +25,15 @@ struct Covariance {
   void end(Meter& f, Status verdict) {
     const problems::Problem& problem = f.problem();
     const Index m = problem.residuals(), all = problem.unknowns();
-    if (verdict == Status::unconfirmed || !problem.is_least_squares() || problem.is_learned() ||
-        !problem.has_identity_network() || problem.samples() != 1 || m <= all || all > kUnknowns ||
-        !std::isfinite(f.judged_point().loss) ||
+    if (verdict == Status::unconfirmed || verdict == Status::failed ||
+        !problem.is_least_squares() || problem.is_learned() || !problem.has_identity_network() ||
+        problem.samples() != 1 || all > kUnknowns || !std::isfinite(f.judged_point().loss) ||
         (!problem.offers().contains(Oracle::jacobian) && !f.knows_jacobian()))
       return;
+    if (m < all && problem.is_elsewhere())  // a user reads it
+      f.remark(
+          fmt::format("{} data do not determine {} unknowns: others explain them as well", m, all));
+    if (m <= all) return;
     const Matrix* const known = f.jacobian_at_end();
     if (known == nullptr) return f.remark("no calls were left for standard deviations");
     const Vector r = (f.judged_point().y - problem.target()).reshaped(),
