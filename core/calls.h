@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <cstdio>
+#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -35,13 +36,12 @@ class CallSink {
   CallReport* before_;
 };
 
-// A sentence for the user, once in a process. The line goes to the output of a cell, from
+// A sentence for the user, each once in a process. The line goes to the output of a cell, from
 // where the process that runs the cells passes it on.
 inline constexpr std::string_view kRemark = "isoline: ";
 inline void remark_on_calls(const std::string& sentence) {
-  static std::string before;
-  if (before.empty()) say(stderr, std::string(kRemark) + sentence + "\n");
-  before = sentence;
+  static std::set<std::string> before;
+  if (before.insert(sentence).second) say(stderr, std::string(kRemark) + sentence + "\n");
 }
 
 }  // namespace isoline

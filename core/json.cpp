@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <string_view>
 
 #include "core/errors.h"
@@ -63,10 +64,17 @@ static std::string place_of_error(const std::string& text, std::size_t byte) {
 Json parse_json(const std::string& text, const std::string& origin) {
   // Trees are copied, compared and written by recursion: each level takes of the stack.
   constexpr int kMostNesting = 200;
-  const auto is_kept = [&](int depth, Json::parse_event_t, const Json&) {
+  std::vector<std::set<std::string>> names;  // of the objects that are open
+  const auto is_kept = [&](int depth, Json::parse_event_t event, const Json& parsed) {
     require(depth <= kMostNesting, [&] {
       return fmt::format("{} is nested deeper than {} levels, the limit for JSON", origin,
                          kMostNesting);
+    });
+    if (event == Json::parse_event_t::object_start) names.emplace_back();
+    if (event == Json::parse_event_t::object_end) names.pop_back();
+    // Readers differ in which of the two they take.
+    require(event != Json::parse_event_t::key || names.back().insert(parsed).second, [&] {
+      return fmt::format("{} has two members {} in one object", origin, json_text(parsed));
     });
     return true;
   };

@@ -8,8 +8,10 @@
 #include <cctype>
 #include <charconv>
 #include <cmath>
+#include <utility>
 
 #include "core/errors.h"
+#include "core/text.h"
 
 namespace isoline::problems {
 namespace {
@@ -41,12 +43,20 @@ bool is_letter(char c) {
 }
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
+// Each level, and each term of a sum, takes of the stack.
+constexpr int kMostNesting = 200;
+constexpr std::size_t kMostBytes = 4096, kMostQuoted = 60;
+
 class Parser {
  public:
   Parser(std::string_view text, const std::vector<std::string>& names)
       : text_(text), names_(names) {}
 
   Node whole() {
+    require(text_.size() <= kMostBytes, [&] {
+      return fmt::format("the expression '{}…' has {} bytes; at most {} are allowed",
+                         cut(text_, kMostQuoted), text_.size(), kMostBytes);
+    });
     Node node = sum();
     if (at_ < text_.size()) refuse("an operator");
     return node;
@@ -92,9 +102,16 @@ class Parser {
     return a;
   }
   Node signed_power() {
-    if (take('+')) return signed_power();
-    if (!take('-')) return power();
-    return [a = signed_power()](const Vector& x) {
+    require(++depth_ <= kMostNesting, [&] {
+      return fmt::format("the expression '{}…' is nested deeper than {} levels",
+                         cut(text_, kMostQuoted), kMostNesting);
+    });
+    Node node = take('+') ? signed_power() : take('-') ? negative(signed_power()) : power();
+    --depth_;
+    return node;
+  }
+  static Node negative(Node a) {
+    return [a = std::move(a)](const Vector& x) {
       const Value g = a(x);
       return Value{-g.value, -g.by};
     };
@@ -153,6 +170,7 @@ class Parser {
   std::string_view text_;
   const std::vector<std::string>& names_;
   std::size_t at_ = 0;
+  int depth_ = 0;
 };
 
 }  // namespace

@@ -201,11 +201,13 @@ PlannedRun planned_run(const RunArguments& given, const Catalog& catalog) {
   if (!given.target_data.empty()) suite.problem_options.set(kTargetOption, given.target_data);
   Rates rates = Rates::named(given.rates);
   const std::uint64_t most = given.allow_large ? kMostWhereLarge : kMostCells;
-  const PlanSize size = size_of(catalog, suite);
-  require(size.cells <= most, [&] {
-    return too_large(size, most) + (given.allow_large ? "" : "; --allow-large lifts the limit");
-  });
-  const auto cells = [&] { return expand(catalog, suite, rates, most); };
+  const auto cells = [&] {
+    const PlanSize size = size_of(catalog, suite);
+    require(size.cells <= most, [&] {
+      return too_large(size, most) + (given.allow_large ? "" : "; --allow-large lifts the limit");
+    });
+    return expand(catalog, suite, rates, most);
+  };
   const bool is_of_file = is_suite && given.instead.empty() && fs::is_regular_file(given.suite);
   PlannedRun all{suite.label(), is_of_file ? read_as(given.suite, cells) : cells(), given.out,
                  std::move(rates)};

@@ -228,7 +228,11 @@ Suite suite_from_json(const Json& json, const std::string& origin) {
               .title = json.value("title", ""),
               .version = amount_in(json, "version", 0),
               .blocks = {}};
-  if (json.contains("cells_of")) suite.blocks = builtin_suite(json["cells_of"]).blocks;
+  if (json.contains("cells_of")) try {
+      suite.blocks = builtin_suite(json["cells_of"]).blocks;
+    } catch (const UsageError& error) {
+      throw UsageError(fmt::format("{}: cells_of: {}", origin, error.what()));
+    }
   try {
     for (const Json& block : json.value("matrix", Json::array()))
       suite.blocks.push_back(block_from(block));

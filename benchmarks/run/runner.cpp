@@ -237,7 +237,7 @@ class Runner {
     bool is_shared = false;        // its process has run others, or may
     bool is_being_judged = false;  // the cell itself has ended
     Verdict verdict = {};
-    bool has_remark = false;  // which was said
+    std::size_t remarks = 0;  // that were said
   };
   // The cells that the process of a worker is kept ready for, and those that it has finished.
   struct Kept {
@@ -442,11 +442,10 @@ class Runner {
     look_for_remarks_at_ = now + kNanoseconds;
     for (std::size_t i = 0; i < tasks_.size(); ++i) {
       Task& task = tasks_[i];
-      if (!task.request || task.has_remark || !is_elsewhere(task.request->problem)) continue;
+      if (!task.request || !is_elsewhere(task.request->problem)) continue;
       const auto remarks = remarks_in(workers_[i].output().text());
-      task.has_remark = !remarks.empty();
-      for (const std::string& remark : remarks)
-        say(stderr, fmt::format("{}: {}\n", title_of(*task.request), remark));
+      for (; task.remarks < remarks.size(); ++task.remarks)
+        say(stderr, fmt::format("{}: {}\n", title_of(*task.request), remarks[task.remarks]));
     }
   }
 

@@ -199,12 +199,17 @@ void compare_doubles(std::vector<RecordIdentity> records, Wrong& wrong) {
   for (std::size_t i = 1; i < records.size(); ++i) {
     const RecordIdentity &first = records[i - 1], &second = records[i];
     if (first.place() != second.place()) continue;
-    Json record = read_json(first.file);
-    const std::string difference = unite_records(record, read_json(second.file));
-    if (!difference.empty())
-      wrong[second.file].push_back(fmt::format("{} is of the same cell and build and differs at {}",
-                                               fs::path(first.file).filename().string(),
-                                               difference));
+    try {
+      Json record = read_json(first.file);
+      const std::string difference = unite_records(record, read_json(second.file));
+      if (!difference.empty())
+        wrong[second.file].push_back(
+            fmt::format("{} is of the same cell and build and differs at {}",
+                        fs::path(first.file).filename().string(), difference));
+    } catch (const std::exception& error) {
+      wrong[second.file].push_back(
+          fmt::format("it cannot be compared with {}: {}", first.file, reason_of(error)));
+    }
   }
 }
 

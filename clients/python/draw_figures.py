@@ -160,13 +160,16 @@ def field_plots(folders, plots, methods):
         record = path.with_suffix(".json")
         if path.name.endswith(".x.npy") or not record.is_file():
             continue
-        record = json.loads(record.read_text(encoding="utf-8"))
-        request = record["request"]
-        key = request["seed"], record["summary"].get("best_loss") or math.inf
-        mine = runs.setdefault(request["problem"]["spec"], {})
-        name = request["optimizer"]["name"]
-        if name not in mine or key < mine[name][0]:
-            mine[name] = key, path, record["fields"]
+        try:
+            record = json.loads(record.read_text(encoding="utf-8"))
+            request = record["request"]
+            key = int(request["seed"]), float(record["summary"].get("best_loss") or math.inf)
+            mine = runs.setdefault(str(request["problem"]["spec"]), {})
+            name = str(request["optimizer"]["name"])
+            if name not in mine or key < mine[name][0]:
+                mine[name] = key, path, record["fields"]
+        except (OSError, ValueError, LookupError, TypeError, AttributeError, RecursionError):
+            print(f"left out: {path}: its record cannot be read", file=sys.stderr)
     for plot in [plot for plot in plots if plot["name"].startswith("curves-") and plot.get("problem") in runs]:
         names = dict.fromkeys(name for line in shown_lines(plot, methods) for name in sorted(names_of(line), key=len)[:1])
         found = {name: runs[plot["problem"]][name] for name in names if name in runs[plot["problem"]]}
@@ -182,7 +185,7 @@ def drawn_fields(pyplot, plot, width, text):
     for method, (_, path, fields) in plot["found"].items():
         try:
             planes = numpy.load(path).reshape(fields["shape"])
-        except (OSError, ValueError):
+        except Exception:  # of a damaged header, numpy raises whatever its parser raises
             sys.exit(f"{path} cannot be read as an array of the shape that its record states")
         count, last = len(fields["iterations"]), len(planes)
         first = 1 if last == count + 1 else 2

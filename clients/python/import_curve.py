@@ -110,6 +110,7 @@ def described(path):
                 else dict if name == "columns" else None)
         require(kind, f"unknown member {name}")
         require(isinstance(value, kind) and not isinstance(value, bool), f"{name} has the wrong type")
+        require(kind is not str or "\0" not in value, f"{name} has a zero byte")
     for name in ("problem", "optimizer", "source", "date", "columns"):
         require(told.get(name), f"{name} is missing")
     for name in ("problem", "optimizer"):

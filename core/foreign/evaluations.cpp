@@ -126,6 +126,10 @@ struct Evaluations::Head {
     return fnv1a({reinterpret_cast<const char*>(this), offsetof(Head, sum)}, fnv1a(stem));
   }
   std::uint64_t size() const { return request + answer + why; }
+  // Each alone, since a hostile file's may wrap in their sum.
+  bool is_within(std::uint64_t most) const {
+    return request <= most && answer <= most && why <= most && size() <= most;
+  }
 };
 
 // A file of one problem and seed, as far as it was read.
@@ -150,7 +154,7 @@ struct Evaluations::Stored {
   bool read_entry(int file, std::int64_t at, Head& head, std::string& bytes) const {
     const std::int64_t left = size_of(file) - at - static_cast<std::int64_t>(sizeof head);
     if (left < 0 || !read_at(file, &head, sizeof head, at) || head.marker != kMarker ||
-        head.computed_sum(stem) != head.sum || head.size() > static_cast<std::uint64_t>(left))
+        head.computed_sum(stem) != head.sum || !head.is_within(static_cast<std::uint64_t>(left)))
       return false;
     bytes.resize(head.size());
     return read_at(file, bytes.data(), bytes.size(), at + static_cast<std::int64_t>(sizeof head)) &&
@@ -320,11 +324,12 @@ void Evaluations::keep(const EvaluationKey& key, Verb verb, Numbers request,
   head.sum_of_bytes = fnv1a(bytes);
   head.sum = head.computed_sum(of.stem);
   const std::string entry = std::string(reinterpret_cast<const char*>(&head), sizeof head) + bytes;
-  if (write(of.writer.get(), entry.data(), entry.size()) != std::ssize(entry))
-    remark_on_calls(
-        fmt::format("{} cannot be written ({}): finished calls are not kept, and are lost with a "
-                    "run that is killed",
-                    (settings_.folder / of.writer_name).string(), std::strerror(errno)));
+  const ssize_t written = write(of.writer.get(), entry.data(), entry.size());
+  if (written != std::ssize(entry))
+    remark_on_calls(fmt::format(
+        "{} cannot be written ({}): finished calls are not kept, and are lost with a run that is "
+        "killed",
+        (settings_.folder / of.writer_name).string(), std::strerror(written < 0 ? errno : ENOSPC)));
   constexpr std::int64_t kSecond = 1'000'000'000;
   const std::int64_t now = monotonic_nanoseconds();
   if (now - of.synced < kSecond) return;

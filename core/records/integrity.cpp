@@ -8,10 +8,13 @@
 #include <functional>
 #include <vector>
 
+#include "core/errors.h"
 #include "core/files.h"
 #include "core/oracle.h"
 #include "core/records/record.h"
+#include "core/spec.h"
 #include "core/status.h"
+#include "core/text.h"
 
 namespace isoline {
 namespace {
@@ -25,6 +28,17 @@ constexpr Real kSquares = 1e-6;  // sums of squares in another order, in single 
 constexpr Real kBelowMinimum = 1e-6;
 
 bool are_same(Real a, Real b) { return a == b || (std::isnan(a) && std::isnan(b)); }
+
+constexpr std::size_t kMostQuoted = 60;  // bytes
+
+// Whether it reads as a specification of that name; an older record has none as typed.
+bool is_of(const std::string& spec, const std::string& name) {
+  try {
+    return spec.empty() || parse_spec(spec).name == name;
+  } catch (const UsageError&) {
+    return false;
+  }
+}
 
 std::string number_text(const std::optional<Real>& value) {
   return value ? fmt::format("{}", *value) : "unknown";
@@ -42,6 +56,10 @@ class Invariants {
     hold(record.criterion.empty() || record.criterion == digest_of(criterion_of(record)),
          "its criterion is not the digest of its f_L, scale, x_scale, x_floor, aim and nominal "
          "costs");
+    for (const Component* component : {&record.request.problem, &record.request.optimizer})
+      for (const std::string* spec : {&component->spec, &component->asked})
+        hold(is_of(*spec, component->name), "'{}' is no specification of {}",
+             cut(*spec, kMostQuoted), cut(component->name, kMostQuoted));
     check_signs();
     if (!is_own) return;
     hold(std::ranges::adjacent_find(curve_.iteration, std::greater_equal()) ==

@@ -181,6 +181,23 @@ simdjson::error_code parse_all(simdjson::dom::parser& parser, const std::string&
   return parser.parse(longer).get(root);
 }
 
+// Whether an object has two members of one name, of which this parser would take the first.
+bool has_twins(const element& value) {
+  if (simdjson::dom::object object; value.get(object) == simdjson::SUCCESS) {
+    std::vector<std::string_view> names;
+    for (const auto& [name, member] : object) {
+      if (has_twins(member)) return true;
+      names.push_back(name);
+    }
+    std::ranges::sort(names);
+    if (std::ranges::adjacent_find(names) != names.end()) return true;
+  }
+  if (simdjson::dom::array list; value.get(list) == simdjson::SUCCESS)
+    for (const element each : list)
+      if (has_twins(each)) return true;
+  return false;
+}
+
 // Texts that are longer than their schema allows. They are found before any pattern is applied: a
 // regular expression takes of the stack for each character.
 void add_long_texts(const Json& value, const Json& schema, const Json& root,
@@ -219,7 +236,8 @@ Json outline_of(const std::string& text, const std::string& origin) {
   static thread_local simdjson::dom::parser parser;
   std::string longer;
   element root;
-  if (parse_all(parser, text, longer, root) == simdjson::SUCCESS) return outline(root);
+  if (parse_all(parser, text, longer, root) == simdjson::SUCCESS && !has_twins(root))
+    return outline(root);
   return parse_json(text, origin);
 }
 
@@ -317,7 +335,8 @@ JsonReader::~JsonReader() = default;
 // The slow parser reports the error and its place.
 JsonView JsonReader::parse(const std::string& text, const std::string& origin) {
   element root;
-  if (parse_all(parser_->parser, text, parser_->longer, root) == simdjson::SUCCESS)
+  if (parse_all(parser_->parser, text, parser_->longer, root) == simdjson::SUCCESS &&
+      !has_twins(root))
     return view_of(root);
   parse_json(text, origin);
   throw UsageError(origin + " is not JSON: it is not valid UTF-8, or has a number out of range");

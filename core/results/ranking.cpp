@@ -402,7 +402,7 @@ std::vector<Ranked> standings_over(const Comparison& c, const Order& order, Meas
       doublings.push_back(std::log2(ratio));
       const Cell& cell = c.cell(p, s);
       if (!cell.is_measured()) continue;
-      const auto has_met = [&](const Run& run) { return run.targets.size() > target; };
+      const auto has_met = [&](const Run& run) { return run.returned_met > target; };
       standing.runs += cell.runs.size();
       standing.reached += c.where(cell.runs, has_met).size();
     }

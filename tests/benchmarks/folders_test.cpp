@@ -67,6 +67,8 @@ std::vector<std::pair<std::string, std::string>> damages_of(const std::string& s
       {"no UTF-8", replaced(sound, "\"message\":\"", "\"message\":\"\xff")},
       {"never ended", replaced(sound, "\"status\":\"budget\"", "\"status\":\"running\"")},
       {"another cell", replaced(sound, "\"cell\":\"", "\"cell\":\"0")},
+      {"two seeds", replaced(sound, seed, seed + "," + seed)},
+      {"no specification", replaced(sound, "\"spec\":\"", "\"spec\":\"[")},
       {"nested", std::string(200'000, '[')}};
 }
 

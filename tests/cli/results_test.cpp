@@ -107,6 +107,12 @@ TEST(WrongValues, NameTheirFile) {
              {"problem": "rosenbrock", "optimizer": "adam", "options": {"rate": ["a"]}}]})");
   shell("mkfifo pipe.bz2; echo torn > torn.bz2");
   shell.expect("./isoline run s.json --dry-run", {.exit_code = 1, .err = {"s.json: heat"}});
+  for (const std::string wrong : {R"("matrix": [{"problems": ["heat["], "optimizers": ["gd"]}])",
+                                  R"("cells_of": "zzzz", "rates": "none")"}) {
+    write_text(shell.folder() / "w.json",
+               R"({"schema": "isoline.suite/1", "name": "w", )" + wrong + "}");
+    shell.expect("./isoline run w.json --dry-run", {.exit_code = 1, .err = {"w.json: "}});
+  }
   const std::string run = "./isoline run --out out --optimizer adam --problem ";
   shell.expect(run + "rosenbrock --rates r.json --dry-run", {.exit_code = 1, .err = {"r.json"}});
   for (const std::string name : {"pipe.bz2", "torn.bz2"})

@@ -482,6 +482,15 @@ class Alone(unittest.TestCase):
                 self.assertEqual(found.returncode, text in texts, found.stderr)
                 self.assertEqual(found.stderr.startswith(path), text in texts, found.stderr)
                 self.assertLessEqual(found.stderr.count("\n"), 1)
+            os.mkdir(os.path.join(folder, "runs"))
+            open(os.path.join(folder, "runs", "a.npy"), "w").close()
+            for text in (b"", b"[]", b"{}", b"\xb8", b"[" * 60_000):
+                with open(os.path.join(folder, "runs", "a.json"), "wb") as file:
+                    file.write(text)
+                found = subprocess.run([sys.executable, CLIENT + "/draw_figures.py", path, "--list", "--records", folder],
+                                       capture_output=True, text=True, timeout=60, check=False)
+                self.assertRegex(found.stderr, "^left out: .*a.npy")
+                self.assertEqual(found.returncode, 0, found.stderr)
             array = os.path.join(folder, "x.npy")
             for data in (b"", b"\x93NUMPY\1\0\4\0{'a'", b"\x93NUMPY\1\0\2\0\0\0"):
                 with open(array, "wb") as file:

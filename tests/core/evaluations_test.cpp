@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 
 #include <array>
+#include <cstring>
 #include <limits>
 #include <random>
 
@@ -124,6 +125,28 @@ TEST_F(StoreOfEvaluations, LosesDamagedEntriesAlone) {
   Evaluations store = opened();
   keep(store, 51);
   EXPECT_EQ(known(51), 50) << "what was cut short stays, and the next follows it";
+}
+
+// As in a folder of somebody else: all sums are right, and the lengths wrap to the right total.
+TEST_F(StoreOfEvaluations, RefusesLengthsBeyondTheFile) {
+  keep_first(3);
+  std::string bytes = read_text(file());
+  constexpr std::size_t kLengths = 16, kSum = 56;  // in an entry
+  const std::size_t entry = bytes.find('\n') + 1;
+  const std::array<std::uint64_t, 2> lengths = {~std::uint64_t{0} - 4095, 24 + 4096};
+  std::memcpy(bytes.data() + entry + kLengths, lengths.data(), sizeof lengths);
+  const std::uint64_t sum = fnv1a({bytes.data() + entry, kSum}, fnv1a(key.stem()));
+  std::memcpy(bytes.data() + entry + kSum, &sum, sizeof sum);
+  write_text(file(), bytes);
+  EXPECT_EQ(known(3), 2);
+}
+
+TEST(RemarksOnCalls, AreSaidOnceEach) {
+  testing::internal::CaptureStderr();
+  for (const char* sentence : {"one is damaged", "the disk is full", "one is damaged"})
+    remark_on_calls(sentence);
+  EXPECT_EQ(testing::internal::GetCapturedStderr(),
+            "isoline: one is damaged\nisoline: the disk is full\n");
 }
 
 TEST_F(StoreOfEvaluations, HasOneWriterPerFileAndManyReaders) {

@@ -452,6 +452,16 @@ TEST(Json, ThatNestsWithoutEndIsRefused) {
   EXPECT_EQ(complaint_of_json(std::string(150, '[') + std::string(150, ']')), "");
 }
 
+// Of which the parsers of other programs take the first or the last.
+TEST(Json, WithTwoMembersOfOneNameIsRefused) {
+  const std::string twins = R"([{"a": 1, "b": {"a": 2, "c": 3, "a": 4}}])";
+  EXPECT_NE(complaint_of_json(twins).find("two members \"a\""), std::string::npos);
+  EXPECT_NE(refusal([&] { JsonReader().parse(twins, "it"); }).find("two members"),
+            std::string::npos);
+  EXPECT_NE(refusal([&] { outline_of(twins, "it"); }).find("two members"), std::string::npos);
+  EXPECT_EQ(complaint_of_json(R"([{"a": 1}, {"a": {"a": 2}}])"), "");
+}
+
 TEST(Json, OfNumbersThatNoDoubleHoldsIsAUsageError) {
   EXPECT_NE(complaint_of_json("[1e400]").find("given.json"), std::string::npos);
   EXPECT_NE(complaint_of_json("{\"a\": ").find("given.json"), std::string::npos);

@@ -176,6 +176,7 @@ class Import(unittest.TestCase):
                 ({"columns": {**loss, "work": 9}}, "must be in column 9"),
                 ({"columns": {**loss, "work": 0}}, "columns: work must be"),
                 ({"seed": -1}, "seed must be"), ({"source": ""}, "source is missing"),
+                ({"source": "\0"}, "source has a zero"),
                 ({"colour": "red"}, "unknown member colour"), ({"status": "solved"}, "status must be"),
                 ({"schema": "isoline.import/2"}, "schema must be")]:
             self.assertIn(sentence, self.refusal(**members))

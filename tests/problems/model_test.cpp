@@ -141,5 +141,17 @@ TEST(Expressions, HaveTheirValuesAndGradients) {
     EXPECT_THROW(value(wrong), UsageError) << wrong;
 }
 
+// A text of any length takes a bounded part of the stack.
+TEST(Expressions, HaveAGreatestLengthAndDepth) {
+  const std::vector<std::string> names = {"a"};
+  const auto nested = [](std::size_t n) { return std::string(n, '(') + "a" + std::string(n, ')'); };
+  EXPECT_EQ(Expression(nested(100), names)(Vector::Ones(1)).value, 1);
+  EXPECT_THROW(Expression(nested(1000), names), UsageError);
+  EXPECT_THROW(Expression(std::string(1000, '-') + "a", names), UsageError);
+  std::string sum = "a";
+  while (sum.size() <= 4096) sum += "+a";
+  EXPECT_THROW(Expression(sum, names), UsageError);
+}
+
 }  // namespace
 }  // namespace isoline::problems

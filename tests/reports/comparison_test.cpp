@@ -348,6 +348,15 @@ Record lost_in_x() {
   return record;
 }
 
+// A method that reports the solution and returns another point.
+TEST(Yardstick, ARunThatReturnsABadPointHasNotReachedTheTolerance) {
+  Record record = record_of({.status = Status::unconfirmed});
+  record.summary.loss = 0.5;
+  const Compared c({record});
+  EXPECT_EQ(c.runs[0].loss_met, 51U);
+  EXPECT_EQ(c.optimizers[0].standings[0].reached, 0U);
+}
+
 TEST(Yardstick, AProblemThatWantsXIsNotSolvedByASmallLoss) {
   const Compared c({lost_in_x()});
   const reports::Run& run = c.runs[0];
