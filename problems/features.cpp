@@ -376,10 +376,11 @@ Fit fit_from(const Problem& problem, Vector x) {
   return {at.loss, x};
 }
 
-// The least distance from x* of a truncated-SVD solution with the Jacobian at x*, from x₀:
-//   e_c = Σ_{i ≤ c} (uᵢᵀ e / σᵢ) vᵢ − Σ_{i > c} (vᵢᵀ (x* − x₀)) vᵢ,   e = y* − P(x*)
+// The least error in x, as the problem measures it, of a truncated-SVD solution with the Jacobian
+// at x*, from the standard start x₀:
+//   x_c = x₀ + Σ_{i ≤ c} (vᵢᵀ (x* − x₀) + uᵢᵀ e / σᵢ) vᵢ,   e = y* − P(x*)
+// The run's own start is no worse than itself.
 Real truncated_floor(const Problem& problem, const Vector& truth) {
-  const Vector& start = problem.standard_start();
   Point at;
   Matrix J;
   problem.forward(truth, at);
@@ -387,14 +388,18 @@ Real truncated_floor(const Problem& problem, const Vector& truth) {
   const Vector e = (problem.target() - at.y).reshaped();
   Svd svd;
   require(thin_svd(J, svd), "the Jacobian at x* has no singular value decomposition");
-  const Vector data = svd.U.transpose() * e;
-  const Vector missing = svd.Vt * (truth - start);
-  Real squared = (truth - start).squaredNorm(), least = squared;
+  const auto error = [&](const Vector& x) {
+    const Real own = problem.x_error(x);
+    return std::isfinite(own) ? own : (x - truth).norm();
+  };
+  Vector x = problem.standard_start();
+  const Vector data = svd.U.transpose() * e, missing = svd.Vt * (truth - x);
+  Real least = std::min(error(problem.start()), error(x));
   for (Index i = 0; i < data.size() && svd.sigma[i] > 0; ++i) {
-    squared += std::pow(data[i] / svd.sigma[i], 2) - std::pow(missing[i], 2);
-    least = std::min(least, squared);
+    x += (missing[i] + data[i] / svd.sigma[i]) * svd.Vt.row(i).transpose();
+    least = std::min(least, error(x));
   }
-  return std::sqrt(std::max<Real>(least, 0));
+  return least;
 }
 
 }  // namespace

@@ -115,7 +115,8 @@ Cell started_at_solution(Runs& runs) {
   const bool has_derivatives = all > forwards(run);
   const std::int64_t n = 3, most = has_derivatives ? n + 2 : 2 * n + 10;
   return {run.status == Status::converged && forwards(run) <= most,
-          fmt::format("{}, {} calls", name_of(run.status), forwards(run))};
+          fmt::format("{}, {} call{}", name_of(run.status), forwards(run),
+                      forwards(run) == 1 ? "" : "s")};
 }
 
 Cell trial_without_value(Runs& runs) {

@@ -27,7 +27,7 @@ using results::Means;
 // --- the methods that suit a simulator
 
 Means means_of(const View& view) {
-  Means means{.noise = view.noise, .has_bounds = view.bounds};
+  Means means{.noise = view.noise, .has_bounds = view.bounds, .has_failures = view.failures};
   for (const std::string& one : view.have) {
     const auto at = std::ranges::find(results::kDerivativeNames, one);
     if (at == results::kDerivativeNames.end()) means.has_inverse = true;
@@ -163,6 +163,7 @@ void declare_choice(VerbArguments& verb, const Argument& choice, View& view) {
             "Noise in the data, relative to the root mean square of the data")
       .needs(choice);
   verb.flag("--bounds", view.bounds, "The unknowns have bounds").needs(choice);
+  verb.flag("--failures", view.failures, "Some calls of the simulator fail").needs(choice);
   verb.whole("--budget", view.budget, "Number of forward solves that a run may cost (default: any)")
       .needs(choice);
 }

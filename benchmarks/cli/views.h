@@ -14,7 +14,7 @@ struct View {
   std::vector<std::string> have = {"forward"};  // what a user's simulator computes
   int unknowns = 0;                             // 0: any
   double noise = 0, tolerance = 1e-6;
-  bool bounds = false;
+  bool bounds = false, failures = false;
   std::int64_t budget = kMostAmount;
 };
 

@@ -72,7 +72,7 @@ std::vector<std::size_t> settings_of_size(const Comparison& c, const Means& mean
     const Index unknowns = problem.sheet == nullptr ? 0 : problem.sheet->unknowns;
     if (!problem.is_learned && !problem.is_ill_posed() && unknowns >= means.least_unknowns &&
         unknowns <= means.most_unknowns && has_noise(problem, means.noise) &&
-        problem.is_bounded == means.has_bounds)
+        problem.is_bounded == means.has_bounds && problem.has_failures == means.has_failures)
       settings.push_back(p);
   }
   std::set<std::string> physics;
@@ -165,6 +165,8 @@ std::vector<Means> kinds_of_data(const Comparison& c) {
     if (noise > kNear * kinds.back().noise) kinds.push_back({.noise = noise});
   if (std::ranges::any_of(c.problems, &ProblemAxis::is_bounded))
     kinds.push_back({.has_bounds = true});
+  if (std::ranges::any_of(c.problems, &ProblemAxis::has_failures))
+    kinds.push_back({.has_failures = true});
   return kinds;
 }
 
@@ -188,6 +190,10 @@ Advice advise(const Comparison& c, const Means& means) {
     trial = trial_of(c, means, advice.settings, methods);
     places = ranked();
   }
+  const auto is_missing = [&](const Run& run) {
+    return std::ranges::find(advice.settings, run.problem) != advice.settings.end();
+  };
+  if (std::ranges::any_of(c.absent, is_missing)) return advice;  // nothing is tested
   for (const Place& place : places) {
     advice.ranked.push_back(trial.all[place.method]);
     advice.ranked.back().score = place.score;

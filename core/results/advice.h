@@ -22,14 +22,15 @@ struct Means {
   Index least_unknowns = 0, most_unknowns = std::numeric_limits<Index>::max();
   Real budget = kNever;  // of work, in forward solves
   Real noise = 0;  // in the data, over their rms: settings with up to three times less or more
-  bool has_bounds = false;  // on the unknowns
+  bool has_bounds = false;    // on the unknowns
+  bool has_failures = false;  // some calls fail
 };
 // The classes of unknowns that a reader chooses from: up to 10, 11 to 100, more than 100.
 inline constexpr std::array<std::array<Index, 2>, 3> kSizeClasses = {
     {{0, 10}, {11, 100}, {101, Means{}.most_unknowns}}};
 
 // The data that a reader can choose from, by the settings there are: exact without bounds, with
-// noise of each size, with bounds.
+// noise of each size, with bounds, with calls that fail.
 std::vector<Means> kinds_of_data(const Comparison& comparison);
 
 // A method under one name, whatever it saw on each setting.

@@ -35,7 +35,7 @@ Contrast contrast_of(const std::vector<Real>& differences) {
                .interval = {}};
   constexpr Real kTwoSided = 0.975;
   const Real half = student_quantile(kTwoSided, all.size() - 1) * deviation_of(all) / std::sqrt(n);
-  out.interval = {out.mean - half, out.mean + half};
+  out.interval = {std::max(-1.0, out.mean - half), std::min(1.0, out.mean + half)};
   const Real margin = score_margin();
   out.outcome = out.interval.low > margin                                    ? Outcome::better
                 : out.interval.high < -margin                                ? Outcome::worse

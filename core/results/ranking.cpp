@@ -202,8 +202,13 @@ std::vector<OtherCosts> costs_by_other_choices(const Comparison& c) {
 // In a study with more runs than this, only families are resampled.
 constexpr std::size_t kMostResampled = 20'000;
 
+// Nothing where a run is missing, or where the times to rank by are not told.
 std::optional<Decision> decision_of(const Comparison& c, const std::vector<OtherCosts>& others,
                                     bool is_open) {
+  const auto is_ranked = [&](const Run& run) { return c.order.has_setting(run.problem); };
+  if (std::ranges::any_of(c.absent, is_ranked) ||
+      (c.yardstick.by == Measure::time && !are_times_told(c)))
+    return std::nullopt;
   Evidence evidence{.costs = decision_costs(c, common_costs(c, kTightest), is_open)};
   for (std::size_t i = 0; i < c.order.settings.size(); ++i) {
     const std::size_t p = c.order.settings[i];

@@ -272,11 +272,15 @@ std::vector<ProblemAxis> problem_axis(const Study& study) {
     at->is_learned = record.request.problem.is_learned;
     at->noise = record.request.problem.options.number("noise", 0);
     at->is_bounded |= !record.curve.kkt_residual.empty();
+    at->has_failures = record.request.problem.options.number("fail", 0) > 0;
     if (at->aim == Aim::x && record.x_scale && could_declare)
       goals[at->spec].emplace(record.request.seed, x_goal(0, 1, record.x_floor / *record.x_scale));
     if (!record.foreign.problem) continue;
-    at->is_foreign = true;
+    constexpr std::string_view kUnchecked = " (uncertified)";
     at->label = record.foreign.problem->label;
+    at->is_unchecked = at->label.ends_with(kUnchecked);
+    at->is_foreign = !at->is_unchecked;
+    if (at->is_unchecked) at->label.resize(at->label.size() - kUnchecked.size());
   }
   std::map<std::string, int> of_label;
   for (ProblemAxis& problem : axis) {
@@ -372,6 +376,12 @@ Run run_of(const Record& record, const ProblemAxis& problem, const BestKnown& be
                                   ? std::vector<Reached>()
                                   : targets_met(record, problem.prices, Aim::loss, best),
                        x = targets_met(record, problem.prices, Aim::x, best);
+  // A run that is below a declared f_L by more than rounding in single precision refutes it.
+  constexpr Real kRounding = 1e-6;
+  if (record.minimum && !record.is_best_known &&
+      record.summary.best_loss <
+          *record.minimum - kRounding * std::max(std::abs(*record.minimum), run.scale))
+    loss.clear();
   run.loss_met = loss.size();
   run.x_met = x.size();
   run.targets = std::move(run.aim == Aim::x ? x : loss);

@@ -65,14 +65,16 @@ struct ProblemAxis {
   std::string spec, name;
   std::string label = {};        // of what another program computes: what it calls itself, or empty
   bool is_foreign = false;       // another program computes it
+  bool is_unchecked = false;     // so does one that was not checked before the runs: a user's own
   const Sheet* sheet = nullptr;  // none where the folder has none
   Prices prices = {};            // measured only where the sheet is of this very spec
   bool is_minimum_known = true;  // otherwise its runs have distances from the best of them alone
   bool is_least_of_runs = false;  // and the best of them counts as the least loss: a user's own
   Aim aim = Aim::loss;            // what its user wants, as its records say
   bool is_learned = false;
-  Real noise = 0;           // in its data, over their rms
-  bool is_bounded = false;  // its unknowns have bounds
+  Real noise = 0;             // in its data, over their rms
+  bool is_bounded = false;    // its unknowns have bounds
+  bool has_failures = false;  // some of its calls fail
   // For an aim in x: the least error that counts as solved, 1.1 of the floor, over ‖x*‖; the median
   // over seeds.
   Real least_goal = 0;

@@ -71,8 +71,7 @@ std::string deeds_html(const Comparison& c, std::size_t s) {
       continue;
     }
     const Spread& work = cell.headline[kTightest];
-    if (cell.is_best[kTightest])
-      add(won, fmt::format("{} {}", amount(c, work.median), unit_name(c)));
+    if (cell.is_best[kTightest]) add(won, amount_in_units(c, work.median));
     if (cell.failed > 0) {
       std::string message;  // of the last
       for (const std::size_t run : cell.runs)
@@ -138,9 +137,6 @@ std::string reading(const Comparison& c, std::size_t s) {
   if (standing.settings == 0) return place_text(c, s) + ".";
   std::string text = fmt::format("{}: solves {} of {} to {}", place_text(c, s), standing.solved,
                                  standing.settings, tau_name(c));
-  if (standing.wins > 0)
-    text +=
-        fmt::format(", {} with the least {} of all ranked methods", standing.wins, counted_name(c));
   if (standing.typical < kNever)
     text += fmt::format(", with a median slowdown of {:.3g} over all of these (unsolved: infinite)",
                         standing.typical);
@@ -148,7 +144,7 @@ std::string reading(const Comparison& c, std::size_t s) {
   return text +
          fmt::format(
              "; {} of {} runs reach this tolerance{}.", standing.reached, standing.runs,
-             axis.failed > 0 ? fmt::format("; {} runs on any problem failed", axis.failed) : "");
+             axis.failed > 0 ? "; " + counted(axis.failed, "run") + " on any problem failed" : "");
 }
 
 std::string optimizer_html(const Comparison& c, std::size_t s) {

@@ -5,7 +5,8 @@
 const DATA = JSON.parse(document.getElementById('data').textContent);
 
 // The sentence of a key, its names filled by values.
-const worded = (key, values = {}) => DATA.words[key].replace(/\{(\w+)\}/g, (_, name) => values[name]);
+const worded = (key, values = {}) => DATA.words[key].replace(/\{(\w+)(?:\|([^|}]*)\|([^}]*))?\}/g,
+    (_, name, one, many) => (one === undefined ? values[name] : Number(values[name]) === 1 ? one : many));
 
 // −k in a list of the report stands for k more of the number before it.
 function inFull(list) {
@@ -20,7 +21,7 @@ for (const problem of DATA.problems) {
   problem.cells = problem.cells.map(([s, reached = [], medians = [], failed = 0, missing = 0, records = [], answer = null, command]) =>
     ({s, reached: inFull(reached), medians, failed, missing, records: records.map((name) => (name.includes('-') ? name : name + records[0].slice(records[0].indexOf('-')))), answer, command, origin: problem.origins?.[s]}));
   if (problem.learned !== undefined)
-    problem.learned.rows = problem.learned.rows.map(([s, error, low, high, loss, runs, diverged]) => ({s, error, low, high, loss, runs, diverged}));
+    problem.learned.rows = problem.learned.rows.map(([s, error, low, high, loss, runs, diverged, solves, ms]) => ({s, error, low, high, loss, runs, diverged, solves, ms}));
 }
 
 const isMeasured = (cell) => cell.reached.length > 0;

@@ -120,7 +120,7 @@ const nameOf = (group) => (group.dataset.s === undefined ? group.querySelector('
 function endOf(chart, group) {
   const ends = chart.querySelector('.ends'), there = lineIn(ends, lineOf(group));
   if (there !== undefined) return there;
-  const made = svgElement('text', {'data-s': lineOf(group)}, (group.matches('[data-bound]') ? '≤ ' : '') + nameOf(group).replace(/(.{23}).{2,}/, '$1…') + (group.matches('[data-worse]') ? ' ✗' : ''));
+  const made = svgElement('text', {'data-s': lineOf(group)}, (group.matches('[data-bound]') ? '≤ ' : '') + nameOf(group).replace(/^(.{12}).{2,}(.{11})$/, '$1…$2') + (group.matches('[data-worse]') ? ' ✗' : ''));
   ends.append(made);
   if (chart.matches('.marked')) group.append(svgElement('path', {class: 'points', d: pointsOf(pathOf(group)).map(([x, y]) => `M${x} ${y}h0`).join('')}));
   return made;

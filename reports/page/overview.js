@@ -86,10 +86,20 @@ function bestFirst() {
   return DATA.allLearned ? all.sort((a, b) => nearest(b) - nearest(a)) : all;
 }
 
-// A long name loses its end before the options that tell it from others.
-function brief({spec, name}) {
-  const most = 19, options = spec.startsWith(name) ? spec.slice(name.length) : '';
-  return spec.length <= most || options === '' ? spec : `${name.slice(0, Math.max(4, most - 1 - options.length))}…${options}`;
+// A long name loses the options without which it can be told from the others, then the middle of what stands
+// before them.
+const optionsIn = (spec) => [...spec.matchAll(/[[,]([^=\],]+)=([^\],]*)/g)];
+const without = (spec, idle) => spec.replace(/\[.*\]/, () => {
+  const kept = optionsIn(spec).filter(([, key]) => !idle.has(key)).map(([, key, value]) => `${key}=${value}`);
+  return kept.length === 0 ? '' : `[${kept.join(',')}]`;
+});
+const IDLE = [...new Set(DATA.problems.flatMap(({spec}) => optionsIn(spec).map(([, key]) => key)))].reverse().reduce((idle, key) => {
+  const more = new Set([...idle, key]), count = (of) => new Set(DATA.problems.map(({spec}) => without(spec, of))).size;
+  return count(more) === DATA.problems.length ? more : idle;
+}, new Set());
+function brief({spec}) {
+  const most = 24, text = spec.length <= most ? spec : without(spec, IDLE), [name, rest] = text.split(/(?=\[)/), room = Math.max(8, most - (rest ?? '').length);
+  return name.length <= room ? text : `${name.slice(0, Math.ceil(room / 2) - 1)}…${name.slice(-Math.floor(room / 2))}${rest ?? ''}`;
 }
 
 function heatHeads(columns) {
@@ -105,11 +115,12 @@ function heatHeads(columns) {
     }))];
 }
 
+const heatColumns = () => ['physics', 'learned', 'other', 'toy', 'classical'].flatMap((group) => [...DATA.problems.keys()].filter((p) => DATA.problems[p].group === group));
+
 // The best of each kind is shown, the rest of its kind below it on demand.
-function drawHeat(table) {
+function drawHeat(table, columns = heatColumns()) {
   const {counted, unit} = measureNow(), solved = new Map(standingsNow().map((standing) => [standing.s, standing]));
   const leastOf = (cells) => cells.reduce((low, cell) => Math.min(low, takenBy(cell)), Infinity);
-  const columns = ['physics', 'learned', 'other', 'toy', 'classical'].flatMap((group) => [...DATA.problems.keys()].filter((p) => DATA.problems[p].group === group));
   const least = DATA.problems.map(({cells}) => leastOf(cells));
   const best = DATA.problems.map(({cells}, p) =>  // on common settings of the ranked ones
     leastOf(DATA.common.includes(p) ? cells.filter((cell) => DATA.ranked.includes(cell.s)) : cells));
@@ -132,6 +143,17 @@ function drawHeat(table) {
   filledTable(table, worded('heat', {measure: counted, tau: tauName(view.target), unit: unit === counted ? '' : worded('unit', {unit})}),
       heatHeads(columns), rows);
   addCopies(table);
+}
+
+// Paper has room for so many columns; the others follow below.
+const MOST_ON_PAPER = 12;
+function layOnPaper(heat) {
+  const all = heatColumns();
+  for (let at = all.length; at > 0 && all.length > MOST_ON_PAPER; at -= MOST_ON_PAPER) {
+    const part = element('table', {className: 'matrix on-paper'});
+    heat.after(part);
+    drawHeat(part, all.slice(Math.max(0, at - MOST_ON_PAPER), at));
+  }
 }
 
 // Rows of class `rest` are shown on demand.
@@ -159,5 +181,8 @@ function liveOverview() {
   const standings = document.getElementById('standings-table'), heat = document.getElementById('heat');
   live(standings, makeMore(standings, drawStandings));
   live(heat, makeMore(heat, drawHeat));
+  soon(heat, () => refresh(heat));  // it stands a little below the first screen
   explainMatrix(heat);
+  addEventListener('beforeprint', () => layOnPaper(heat));
+  addEventListener('afterprint', () => document.querySelectorAll('.on-paper').forEach((part) => part.remove()));
 }

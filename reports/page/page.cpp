@@ -152,12 +152,18 @@ std::string hero_html(const Document& document) {
     const Real unit = published[0].y[0] / best->evidence.published, x = published[0].x[0] * kBeside;
     drawing.ground.push_back({{}, "", {x, x}, {unit * band.low, unit * band.high}, {}, {}});
   }
+  const bool is_listed = std::ranges::any_of(
+      ratio_claims(document.comparison, document.claims),
+      [&](const auto& ratio) { return std::ranges::count(ratio.second, best) > 0; });
   return fmt::format(
-      "<figure class=plot data-claim=\"{0}\"><figcaption><a href=\"#claim-{0}\">{1}</a> {2}"
-      "</figcaption>{3}{4}</figure>",
+      "<figure class=plot data-claim=\"{0}\"><figcaption><a href=\"#claim-{0}\">{1}</a> {2} {3}"
+      "</figcaption>{4}{5}</figure>",
       best->id, html_text(best->sentence),
       html_text(words(measured.predicted ? "page.hero" : "page.hero-seeds", figure(measured.value),
                       figure(band.low), figure(band.high), verdict_text(*best))),
+      html_text(joined(best->caveats, " ")) +
+          (is_listed ? " <a href=\"#ratio-readings\">" + words("script.other-readings") + "</a>"
+                     : ""),
       drawing_svg(drawing), names_html(drawing));
 }
 
@@ -194,9 +200,22 @@ std::string findings_html(const Document& document) {
   return html + "</dl>" + checked_html(document) + "</details>\n";
 }
 
-// The first tab of a report on a user's own problem.
-constexpr const char* kFitLink = "<a href=\"#fit\">Fit</a>\n  ";
-// The parameters stand above the plots.
+// Links to parts of the page that have something to show: a method alone is not compared.
+std::string links_html(const Document& document,
+                       const std::vector<std::pair<std::string_view, std::string>>& links) {
+  const auto is_empty = [&](std::string_view part) {
+    if (part == "fit") return std::ranges::count(document.sections, "fit", &Section::id) == 0;
+    if (part == "claims") return document.claims.empty() && document.figures.empty();
+    return document.comparison.optimizers.size() < 2 &&
+           (part == "choose" || part == "compare" || part == "statistics");
+  };
+  std::string html;
+  for (const auto& [part, text] : links)
+    if (!is_empty(part)) html += fmt::format("<a href=\"#{}\">{}</a>\n  ", part, html_text(text));
+  return html;
+}
+
+// The first tab of a report on a user's own problem. The parameters stand above the plots.
 std::string fit_tab(const Section& fit) {
   Section values = fit, rest{.id = fit.id, .title = fit.title};
   const auto is_of_values = [](const Table& table) {
@@ -310,6 +329,7 @@ std::string kind_title(std::string_view kind) {
 std::string kind_rules(const Comparison& c) {
   std::string rules;
   std::map<std::string, std::size_t> counts;
+  std::set<std::string> looks;
   std::map<std::string_view, std::string> of_shape;
   for (std::size_t s = 0; s < c.optimizers.size(); ++s) {
     std::string kind = c.optimizers[s].mathematics();
@@ -317,9 +337,12 @@ std::string kind_rules(const Comparison& c) {
     const std::size_t place = counts[kind]++;
     const auto& [share, mixed] = kShadesOfKind[place % kShadesOfKind.size()];
     const Look look = look_of(c.optimizers[s].method);
-    rules += fmt::format(
-        "[data-s=\"{}\"]{{--series:color-mix(in oklab,var(--{}) {}%,var(--{}));--dash:{}}}\n", s,
-        kind, share, mixed, look.dash);
+    const std::string rule =
+        fmt::format("{{--series:color-mix(in oklab,var(--{}) {}%,var(--{}));--dash:{}}}\n", kind,
+                    share, mixed, look.dash);
+    rules += fmt::format("[data-s=\"{}\"]", s) + rule;
+    if (looks.insert(c.optimizers[s].method).second)  // of its best row
+      rules += fmt::format("[data-look=\"{}\"]", html_text(c.optimizers[s].method)) + rule;
     of_shape[look.shape] +=
         fmt::format("{}[data-s=\"{}\"]", of_shape[look.shape].empty() ? "" : ",", s);
   }
@@ -331,7 +354,7 @@ std::string kind_rules(const Comparison& c) {
 std::string marks_html(const OptimizerAxis& axis) {
   std::string marks;
   if (!axis.privileges.empty())
-    marks = fmt::format("<sup><a href=\"#privileges\" title=\"{}\">†</a></sup>",
+    marks = fmt::format("<sup title=\"{}\">†</sup>",
                         html_text(words("page.given", joined(axis.privileges))));
   if (axis.is_imported)
     marks += fmt::format("<sup title=\"{}\">§</sup>", html_text(words("page.imported")));
@@ -358,7 +381,18 @@ std::string readable_html(const Document& document) {
               {"page.ranking",
                html_text(words("page.ranking", counted_name(c), setting_noun(c), tau_name(c)))},
               {"page.heat", html_text(words("page.heat", unit_name(c), success_text(c)))},
-              {"fit-link", own == document.sections.end() ? "" : kFitLink},
+              {"tabs", links_html(document, {{"fit", "Fit"},
+                                             {"overview", "Overview"},
+                                             {"choose", "Choose a method"},
+                                             {"compare", "Compare"},
+                                             {"problems", "Problems"},
+                                             {"claims", "Claims"},
+                                             {"methods", "Methods"},
+                                             {"statistics", "Statistics"},
+                                             {"runs", "All runs"}})},
+              {"ways", links_html(document, {{"choose", words("page.simulator")},
+                                             {"claims", words("page.paper")},
+                                             {"details", words("page.doubt")}})},
               {"fit-tab", own == document.sections.end() ? "" : fit_tab(*own)},
               {"overview", overview_html(document)},
               {"hero", hero_html(document)},

@@ -77,12 +77,13 @@ document.addEventListener('click', ({target}) => {
 });
 
 document.documentElement.classList.add('js');
+document.documentElement.style.setProperty('--keys', JSON.stringify(worded('keys')));
 readAddress();
 makeBar(document.getElementById('view'));
 offerThemes(document.getElementById('theme'));
 document.querySelectorAll('table.sortable').forEach(makeSortable);
 document.querySelectorAll('main table:not(#standings-table, #heat)').forEach(addCopies);
-document.querySelectorAll('.first figure').forEach((place) => ON_UNPACK.forEach((made) => made(place)));
+document.querySelectorAll('.first figure, #fit figure').forEach((place) => ON_UNPACK.forEach((made) => made(place)));
 liveOverview();
 livePair(document.getElementById('pair'));
 liveChoose(document.getElementById('means'));

@@ -157,16 +157,19 @@ std::vector<Real> values_of(const AtEqualWork& method) {
 }
 
 // What is learned, at equal work: [optimizer, error in x, its least, its greatest, loss, runs, how
-// many of them diverged]; and of two methods how many times larger the error of the second is, its
-// 95 % interval, 0 and null of too few runs, and the p of Mann and Whitney.
-std::string learned_json(const Comparison& c, std::size_t p) {
+// many of them diverged, the forward solves and the milliseconds of a step]; and of two methods how
+// many times larger the error of the second is, its 95 % interval, 0 and null of too few runs, the
+// p of Mann and Whitney, and whether a table reads the ratio in other ways too.
+std::string learned_json(const Comparison& c, const RatioClaims& claims, std::size_t p) {
   if (!c.problems[p].is_learned) return "";
   const EqualWork equal = equal_work(c, p);
   const auto row = [&](std::size_t s) {
     const AtEqualWork& at = *equal.methods[s];
-    return fmt::format("[{},{},{},{},{},{},{}]", s, number(at.x_error.median),
+    const auto [work, milliseconds] = step_costs(c, c.cell(p, s));
+    return fmt::format("[{},{},{},{},{},{},{},{},{:.3g}]", s, number(at.x_error.median),
                        number(at.x_error.low), number(at.x_error.high), number(at.loss.median),
-                       at.x_error.n, at.diverged);
+                       at.x_error.n, at.diverged, number(std::isfinite(work) ? work : 0),
+                       std::isfinite(milliseconds) ? milliseconds : 0);
   };
   const std::vector<std::size_t> order = equal.nearest_first();
   std::vector<std::string> pairs;
@@ -177,10 +180,12 @@ std::string learned_json(const Comparison& c, std::size_t p) {
         continue;
       const TimesLarger times = times_larger(first, second);
       const bool has_interval = times.interval && !times.is_range();
-      pairs.push_back(fmt::format("[{},{},{},{},{},{:.2g}]", a, b, number(times.times),
+      const bool is_listed = claims.contains({p, a, b}) || claims.contains({p, b, a});
+      pairs.push_back(fmt::format("[{},{},{},{},{},{:.2g},{}]", a, b, number(times.times),
                                   number(has_interval ? times.interval->low : 0),
                                   number(has_interval ? times.interval->high : kNever),
-                                  mann_whitney_p(values_of(first), values_of(second))));
+                                  mann_whitney_p(values_of(first), values_of(second)),
+                                  is_listed ? 1 : 0));
     }
   return fmt::format(",\"learned\":{{\"work\":{},\"rows\":{},\"pairs\":[{}]}}", number(equal.work),
                      json_list(order, row), joined(pairs, ","));
@@ -214,7 +219,7 @@ std::string race_json(const Comparison& c, std::size_t p,
   return "[" + joined(runners, ",") + "]";
 }
 
-std::string problem_json(const Comparison& c, std::size_t p,
+std::string problem_json(const Comparison& c, const RatioClaims& claims, std::size_t p,
                          const std::optional<FoundFields>& fields) {
   const ProblemAxis& problem = c.problems[p];
   std::vector<std::size_t> asked;
@@ -227,7 +232,7 @@ std::string problem_json(const Comparison& c, std::size_t p,
              json_quoted(problem_name(problem)), json_quoted(problem.name), problem.group(),
              is_ordered(c, p), json_list(asked, [&](std::size_t s) { return cell_json(c, p, s); }),
              indices(ranked), indices(shown_at_first(c, ranked))) +
-         origins_json(c, p) + learned_json(c, p) +
+         origins_json(c, p) + learned_json(c, claims, p) +
          (problem.lacks_least_loss() ? ",\"isUnknown\":true" : "") +
          (problem.least_goal > 0 && problem.least_goal < kNever
               ? fmt::format(",\"goal\":{:.4g}", problem.least_goal)
@@ -398,9 +403,10 @@ constexpr std::array<Real, 4> kBudgets = {kNever, 10'000, 1'000, 100};
 
 std::string kinds_json(const Comparison& c) {
   return json_list(kinds_of_data(c), [](const Means& kind) {
-    return json_quoted(kind.has_bounds  ? words("data.bounds")
-                       : kind.noise > 0 ? words("data.noise", 100 * kind.noise)
-                                        : words("data.exact"));
+    return json_quoted(kind.has_bounds     ? words("data.bounds")
+                       : kind.has_failures ? words("data.failures")
+                       : kind.noise > 0    ? words("data.noise", 100 * kind.noise)
+                                           : words("data.exact"));
   });
 }
 
@@ -419,7 +425,8 @@ std::string advice_json(const Comparison& c) {
                       .most_unknowns = most,
                       .budget = kBudgets[i / kinds.size() % kBudgets.size()],
                       .noise = kind.noise,
-                      .has_bounds = kind.has_bounds};
+                      .has_bounds = kind.has_bounds,
+                      .has_failures = kind.has_failures};
     const Advice advice = advise(c, means);
     const std::size_t shown = std::min(kMost, advice.ranked.size());
     all[i] = fmt::format(
@@ -454,8 +461,9 @@ std::string page_data(const Document& document, const AllFields& fields) {
       indices(c.decision ? c.decision->group() : std::vector<std::size_t>()), kinds_json(c),
       advice_json(c), script_words("script."), script_words("glossary."), calls_json(c),
       standings_json(c), json_quoted(std::string(embedded_guide())), figure_lines_json(document));
+  const RatioClaims claims = ratio_claims(c, document.claims);
   for (std::size_t p = 0; p < c.problems.size(); ++p)
-    text += (p > 0 ? "," : "") + problem_json(c, p, fields[p]);
+    text += (p > 0 ? "," : "") + problem_json(c, claims, p, fields[p]);
   return text + "]}";
 }
 

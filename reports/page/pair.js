@@ -136,10 +136,10 @@ function settingRows() {
 function learnedSentence(p, a, b) {
   const {pairs, rows} = DATA.problems[p].learned, one = pairs.find(([less, more]) => (less === a && more === b) || (less === b && more === a));
   if (one === undefined) return [];
-  const [less, more, ratio, low, high, chance] = one, runsOf = (s) => rows.find((row) => row.s === s).runs;
-  const others = document.getElementById('learned').textContent.includes('id="ratio-readings"') || document.getElementById('ratio-readings') !== null;
-  return [element('p', {}, worded('learned-ratio', {problem: DATA.problems[p].spec, a: DATA.optimizers[more], b: DATA.optimizers[less], ratio: multiple(ratio), seeds: `${runsOf(more)} : ${runsOf(less)}`, p: chance,
-    interval: low > 0 && high !== null ? worded('learned-interval', {low: multiple(low), high: multiple(high)}) : worded('learned-few')}), chance > 0.05 ? ` ${worded('pair-open')}` : '', ...others ? [' ', element('a', {href: '#ratio-readings'}, worded('other-readings'))] : [])];
+  const [less, more, ratio, low, high, chance, isListed] = one, rowOf = (s) => rows.find((row) => row.s === s);
+  const costOf = (s) => worded('step-cost', {work: figure(rowOf(s).solves), ms: `${DATA.isTimedTogether ? '≈ ' : ''}${figure(rowOf(s).ms)}`});
+  return [element('p', {}, worded('learned-ratio', {problem: DATA.problems[p].spec, a: DATA.optimizers[more], b: DATA.optimizers[less], ratio: multiple(ratio), work: figure(DATA.problems[p].learned.work), seeds: `${rowOf(more).runs} : ${rowOf(less).runs}`, p: chance, costA: costOf(more), costB: costOf(less),
+    interval: low > 0 && high !== null ? worded('learned-interval', {low: multiple(low), high: multiple(high)}) : worded('learned-few')}), chance > 0.05 ? ` ${worded('pair-open')}` : '', ...isListed ? [' ', element('a', {href: '#ratio-readings'}, worded('other-readings'))] : [])];
 }
 
 // Learned problems by the error in x at equal work: with the row that a method has there, whatever it was given.

@@ -110,6 +110,6 @@ function livePrices(place) {
   if (DATA.calls.length === 0 || DATA.ranked.length < 2) return place.previousElementSibling.remove();
   const list = element('ol', {className: 'bars-of placed'}), sentence = element('p', {className: 'verdict'}), shares = sharing(), draw = () => drawPrices(list, sentence, shares);
   sentence.setAttribute('aria-live', 'polite');
-  place.append(element('p', {className: 'lead'}, worded('price-lead', {tau: tauName(DEFAULT_TARGET)})), element('p', {className: 'steps'}, priceSlider('gradient', draw), ' ', priceSlider('jacobian', draw), ' ', workerSwitch(draw)), sentence, list);
+  place.append(element('p', {className: 'lead'}, worded('price-lead', {tau: tauName(DEFAULT_TARGET), settings: DATA.calls.length})), element('p', {className: 'steps'}, priceSlider('gradient', draw), ' ', priceSlider('jacobian', draw), ' ', workerSwitch(draw)), sentence, list);
   live(list, draw);
 }

@@ -55,7 +55,8 @@ const MOST_ROWS = 14;  // more on demand
 
 function captionOf(problem, count, all) {
   if (problem.learned !== undefined) return `At equal work, ${figure(problem.learned.work)} forward solves: error in x, loss in y. Select a name to show or hide its line.`;
-  return `Median ${measureNow().counted} needed to reach ${goalOf(problem)}: ${count} of ${all} methods reach this. Select a name to show or hide its line.`;
+  const isWorse = document.querySelector(`#problem-${DATA.problems.indexOf(problem)} [data-worse]`) !== null;
+  return `Median ${measureNow().counted} needed to reach ${goalOf(problem)}: ${count} of ${all} methods reach this. Select a name to show or hide its line.${isWorse ? ` ${worded('worse')}` : ''}`;
 }
 
 function drawLegend(place, problem, lines) {

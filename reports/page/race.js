@@ -160,8 +160,7 @@ function drawRace(place, races) {
     draw();
   };
   const seeds = new Set(runners.map(({seed}) => seed)), told = DATA.problems[p].fields === undefined ? 'race-median' : 'race-seed';
-  place.replaceChildren(element('style', {}, huesOf(runners.map(({s}) => s), '#motion ')),
-      element('p', {className: 'steps'}, element('a', {href: `#problem-${p}`}, worded('motion', {problem: ''})), problems, ' ', ...selects.flatMap((select) => [select, ' ']), button, ' ', clock, ' ',
+  place.replaceChildren(element('p', {className: 'steps'}, element('a', {href: `#problem-${p}`}, worded('motion', {problem: ''})), problems, ' ', ...selects.flatMap((select) => [select, ' ']), button, ' ', clock, ' ',
           pressable(worded('race-frames'), undefined, kept(() => download(`${file}.tar`, 'application/x-tar', tarOf(framesOf(scene))))), ' ',
           pressable(worded('race-animated'), undefined, kept(() => download(`${file}.svg`, 'image/svg+xml', animatedText(scene))))),
       svg, element('p', {className: 'legend'}, worded(told, {seed: [...seeds].join(', ')})));

@@ -213,14 +213,18 @@ std::string gaps_of(const Frame& area, const PlotSeries& line, Join join) {
   return path.empty() ? "" : fmt::format("<path class=gap d=\"{}\"/>", path);
 }
 
-// Which line a button is of: of an optimizer in all drawings the same.
-std::string line_attributes(const PlotSeries& line, std::size_t place, std::string classes) {
+// Which line a button is of: of an optimizer in all drawings the same. A method that has one line
+// alone has the colour that it has elsewhere.
+std::string line_attributes(const Drawing& drawing, std::size_t place, std::string classes) {
+  const PlotSeries& line = drawing.plot.series[place];
   if (!line.optimizer) classes += fmt::format("{}c{}", classes.empty() ? "" : " ", place % 8);
   std::string tag =
       fmt::format(" data-{}={}", line.optimizer ? "s" : "line", line.optimizer.value_or(place));
   if (!classes.empty()) tag += fmt::format(" class=\"{}\"", classes);
-  if (!line.optimizer && !line.method.empty())
-    tag += fmt::format(" style=\"--dash:{}\"", look_of(line.method).dash);
+  if (line.optimizer || line.method.empty()) return tag;
+  tag += fmt::format(" style=\"--dash:{}\"", look_of(line.method).dash);
+  if (std::ranges::count(drawing.plot.series, line.method, &PlotSeries::method) == 1)
+    tag += fmt::format(" data-look=\"{}\"", html_text(line.method));
   return tag;
 }
 
@@ -232,7 +236,7 @@ std::string series_svg(const Drawing& drawing, const Frame& area, std::size_t pl
   constexpr std::size_t kFewPoints = 16;  // are marked
   const PlotSeries& line = drawing.plot.series[place];
   const bool is_off = is_hidden(drawing, line);
-  std::string svg = fmt::format("<g{}{}", line_attributes(line, place, is_off ? "off" : ""),
+  std::string svg = fmt::format("<g{}{}", line_attributes(drawing, place, is_off ? "off" : ""),
                                 line.is_worse_at_end ? " data-worse" : "") +
                     (is_bound(drawing, line) ? " data-bound>" : ">");
   if (line.are_points) {
@@ -245,8 +249,7 @@ std::string series_svg(const Drawing& drawing, const Frame& area, std::size_t pl
                      "</title></path></g>",
                      bars, path_of(area, line.x, line.y, Join::none), html_text(line.name));
   }
-  if (!line.low.empty() && line.low != line.high && !is_off)
-    svg += band_of(area, line, drawing.join);
+  if (!line.low.empty() && line.low != line.high) svg += band_of(area, line, drawing.join);
   std::string path = path_of(area, line.x, line.y, drawing.join);
   if (drawing.plot.kind == Plot::Kind::steps) path += fmt::format("H{:.0f}", kArea);
   svg += fmt::format("<path class={} d=\"{}\"",
@@ -304,7 +307,7 @@ std::string marks_svg(const Drawing& drawing, const Frame& frame) {
     for (const auto& [step, i] : marked)
       path += fmt::format("M{:.1f} {:.1f}{}", frame.x(line.x[i]), frame.y(line.y[i]),
                           look_of(line.method).shape);
-    svg += fmt::format("<path{} d=\"{}\"/>", line_attributes(line, place, "mark"), path);
+    svg += fmt::format("<path{} d=\"{}\"/>", line_attributes(drawing, place, "mark"), path);
   }
   return "<g class=marks>" + svg + "</g>";
 }
@@ -332,7 +335,8 @@ std::string end_names(const Drawing& drawing, const Frame& frame) {
     while (last > 0 && !std::isfinite(line.y[last - 1])) --last;
     if (last == 0 || is_hidden(drawing, line)) continue;
     std::string text = line.name;
-    if (text.size() > kLongest) text = text.substr(0, kLongest - 1) + "…";
+    if (text.size() > kLongest)
+      text = text.substr(0, kLongest / 2) + "…" + text.substr(text.size() - kLongest / 2 + 1);
     if (is_bound(drawing, line)) text = "≤ " + text;
     if (line.is_worse_at_end) text += " ✗";
     const Real x = drawing.plot.kind == Plot::Kind::steps ? frame.window.x_high : line.x[last - 1],
@@ -355,8 +359,7 @@ std::string end_names(const Drawing& drawing, const Frame& frame) {
     for (std::size_t j = i + 1; j < ends.size(); ++j)
       if (meet(end, ends[j])) end.y = std::min(end.y, ends[j].y - kHeight);
     svg += fmt::format("<text x={:.0f} y={:.0f}{}>{}</text>", end.x, end.y + 4,
-                       line_attributes(drawing.plot.series[end.place], end.place, ""),
-                       html_text(end.text));
+                       line_attributes(drawing, end.place, ""), html_text(end.text));
   }
   return "<g class=ends>" + svg + "</g>";
 }
@@ -421,7 +424,7 @@ std::string names_html(const Drawing& drawing) {
     count += is_off;
     (is_off ? others : shown) +=
         fmt::format("<button type=button aria-pressed={}{}>{}{}</button>", !is_off,
-                    line_attributes(line, i, "name"), swatch(line.method), html_text(line.name));
+                    line_attributes(drawing, i, "name"), swatch(line.method), html_text(line.name));
   }
   if (!drawing.plot.published.empty())
     shown += fmt::format("<span class=goal>{} published, with its error</span>", swatch());

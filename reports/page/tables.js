@@ -125,9 +125,15 @@ function oneStop(group) {
   });
 }
 
+// A table that goes on at the right fades there.
+const fade = (place) => place.classList.toggle('goes-on', place.scrollLeft + place.clientWidth < place.scrollWidth - 2);
+const WIDTHS = new ResizeObserver((changes) => changes.forEach(({target}) => fade(target.closest('.scroll') ?? target)));
+document.addEventListener('scroll', ({target}) => { if (target !== document && target.matches('.scroll')) fade(target); }, {capture: true, passive: true});
+
 // Buttons that copy a table, below it.
 function addCopies(table) {
   const place = table.closest('.scroll') ?? table;
+  if (place !== table) [table, place].forEach((one) => WIDTHS.observe(one));
   if (table.tBodies.length === 0 || place.nextElementSibling?.matches('.tools')) return;
   const buttons = Object.entries(TABLE_TEXTS).map(([name, textOf]) => Object.assign(pressable(name, undefined, ({currentTarget}) => copyText(`${textOf(gridOf(table))}\n`, currentTarget)), {title: worded('copy-table', {format: name})}));
   place.after(element('p', {className: 'tools'}, ...buttons));

@@ -46,7 +46,27 @@ function download(name, type, text) {
 const fileOf = (chart) => chart.querySelector('title').textContent.replaceAll(/[^A-Za-z0-9]+/g, '-');
 
 // With the colours of the moment in each element, as programs that know no style sheet read them.
+// A chart has its title above and, where they do not stand at their ends, the names of its lines below.
 function svgText(chart) {
+  if (!chart.matches('.chart')) return plainText(chart);
+  const {width, height} = chart.viewBox.baseVal, ends = chart.querySelector('.ends'), caption = svgElement('g', {}), whole = chart.getAttribute('viewBox');
+  const lines = ends !== null && getComputedStyle(ends).display !== 'none' ? [] : linesOf(chart).filter(isLineShown);
+  caption.append(svgElement('text', {x: 4, y: -10}, chart.querySelector('title').textContent));
+  lines.forEach((group, i) => {
+    const entry = group.cloneNode(false), y = height + 12 + 18 * i;
+    entry.classList.add('swatch');
+    entry.append(svgElement('path', {d: `M4 ${y - 4}h24`}), svgElement('text', {x: 34, y}, nameOf(group)));
+    caption.append(entry);
+  });
+  chart.append(caption);
+  chart.setAttribute('viewBox', `0 -26 ${width} ${height + 26 + 18 * lines.length}`);
+  const text = plainText(chart);
+  chart.setAttribute('viewBox', whole);
+  caption.remove();
+  return text;
+}
+
+function plainText(chart) {
   const copy = chart.cloneNode(true), originals = [chart, ...chart.querySelectorAll('*')], pixel = new OffscreenCanvas(1, 1).getContext('2d', {willReadFrequently: true});
   const plain = (colour) => {
     pixel.clearRect(0, 0, 1, 1);
@@ -65,14 +85,19 @@ function svgText(chart) {
 
 function csvText(chart) {
   const [x, y] = [axisOf(chart, 'x'), axisOf(chart, 'y')], quoted = (text) => `"${text.replaceAll('"', '""')}"`;
-  const number = (value) => String(Number(value.toPrecision(4)));
-  return ['line,x,y', ...linesOf(chart).filter(isLineShown).flatMap((group) => pointsOf(pathOf(group)).map(
-      ([across, up]) => `${quoted(nameOf(group))},${number(valueAt(x, across / AREA))},${number(valueAt(y, 1 - up / AREA))}`))].join('\n') + '\n';
+  const scale = Number(chart.querySelector('.tau')?.dataset.scale), problem = DATA.problems[chart.closest('article')?.dataset.p], isExact = scale > 0 && problem !== undefined;
+  const goals = isExact ? TARGETS.map((target) => scale * Math.max(tauOf(target), problem.goal ?? 0)) : [];
+  const number = (axis, exact, at) => exact.find((value) => Math.abs(shareOf(axis, value) * AREA - at) <= 1) ?? Number(valueAt(axis, at / AREA).toPrecision(4));
+  return ['line,x,y', ...linesOf(chart).filter(isLineShown).flatMap((group) => {
+    const medians = isExact ? mediansOf(cellOf(problem, lineOf(group)), MEASURES.indexOf(chart.dataset.by)) : [];
+    return pointsOf(pathOf(group)).map(([across, up]) => `${quoted(nameOf(group))},${number(x, medians, across)},${number(y, goals, AREA - up)}`);
+  })].join('\n') + '\n';
 }
 
 // The chart as pixels, two for each of the screen.
 function savePng(chart) {
-  const {width, height} = chart.viewBox.baseVal, picture = new Image(), canvas = element('canvas', {width: 2 * width, height: 2 * height});
+  const copy = new DOMParser().parseFromString(svgText(chart), 'image/svg+xml').documentElement, [, , width, height] = copy.getAttribute('viewBox').split(' ').map(Number);
+  const picture = new Image(), canvas = element('canvas', {width: 2 * width, height: 2 * height});
   picture.onload = () => {
     const paper = canvas.getContext('2d');
     paper.fillStyle = getComputedStyle(document.body).backgroundColor;
@@ -80,7 +105,6 @@ function savePng(chart) {
     paper.drawImage(picture, 0, 0, canvas.width, canvas.height);
     canvas.toBlob((bytes) => download(`${fileOf(chart)}.png`, 'image/png', bytes));
   };
-  const copy = new DOMParser().parseFromString(svgText(chart), 'image/svg+xml').documentElement;
   copy.setAttribute('width', width);
   copy.setAttribute('height', height);
   picture.src = `data:image/svg+xml;charset=utf-8,${encodeURIComponent(new XMLSerializer().serializeToString(copy))}`;
@@ -88,14 +112,14 @@ function savePng(chart) {
 
 // A row of buttons for the chart of a place that is not hidden.
 function addTools(place) {
-  const chart = () => place.querySelector('.chart:not([hidden])');
+  const chart = () => place.querySelector('.chart:not([hidden])'), resolution = worded('resolution', {steps: AREA});
   const turn = (key) => ({currentTarget}) => {
     setKind(chart(), key, axisOf(chart(), key).kind === 'log' ? 'linear' : 'log');
     currentTarget.setAttribute('aria-pressed', axisOf(chart(), key).kind === 'log');
   };
   const tools = element('p', {className: 'tools'}, pressable('whole', undefined, () => fitView(chart())), pressable('SVG', undefined, () => download(`${fileOf(chart())}.svg`, 'image/svg+xml', svgText(chart()))),
-      pressable('CSV', undefined, () => download(`${fileOf(chart())}.csv`, 'text/csv', csvText(chart()))),
-      pressable('PNG', undefined, () => savePng(chart())), pressable('copy', undefined, ({currentTarget}) => copyText(csvText(chart()), currentTarget)));
+      Object.assign(pressable('CSV', undefined, () => download(`${fileOf(chart())}.csv`, 'text/csv', csvText(chart()))), {title: resolution}),
+      pressable('PNG', undefined, () => savePng(chart())), Object.assign(pressable('copy', undefined, ({currentTarget}) => copyText(csvText(chart()), currentTarget)), {title: resolution}));
   if (chart().querySelector('.band') !== null) tools.append(pressable('bands', true, ({currentTarget}) => currentTarget.setAttribute('aria-pressed', !place.classList.toggle('no-bands'))));
   for (const key of ['x', 'y'])
     if (axisOf(chart(), key).kind !== 'share' && axisOf(chart(), key).low > 0) tools.firstChild.after(pressable(`log ${key}`, axisOf(chart(), key).kind === 'log', turn(key)));

@@ -32,7 +32,7 @@ function hiddenMethods() {
 }
 
 // A hue for each of these methods, in their order.
-const huesOf = (methods, place = '') => methods.map((s, i) => `${place}[data-s="${s}"] { --series: var(--s${i}); }`).join('\n');
+const huesOf = (methods, place = '') => methods.map((s, i) => `${place}[data-s="${s}"], ${place}[data-look="${CSS.escape(DATA.methods[s])}"] { --series: var(--s${i}); }`).join('\n');
 
 const RULES = document.body.appendChild(document.createElement('style'));
 

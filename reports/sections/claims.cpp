@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/seeds.h"
+#include "reports/sections/sections.h"
 #include "reports/sections/words.h"
 
 namespace isoline::reports {
@@ -194,8 +195,11 @@ std::vector<Reading> claim_notes(const Judgement& judgement) {
   if (judgement.alone)
     notes.push_back({"This reading", words("claim.alone", name_of(*judgement.alone))});
   for (const OtherReading& other : judgement.others)
-    notes.push_back({"Other reading", words("claim.otherwise", other.how, other.measured.value,
-                                            name_of(other.verdict))});
+    notes.push_back(
+        {"Other reading",
+         is_error_ratio(judgement)  // one table has all values
+             ? words("claim.listed", other.how, name_of(other.verdict))
+             : words("claim.otherwise", other.how, other.measured.value, name_of(other.verdict))});
   if (const auto& measured = judgement.measured;
       measured && measured->predicted && judgement.is_of_one_run)
     notes.push_back({"One published run",

@@ -68,10 +68,8 @@ TableCell failures_cell(const Comparison& c, const std::vector<std::size_t>& set
           {{"failed", Real(failed)}, {"runs", Real(runs)}, {"families", Real(with)}}};
 }
 
-// Work of the first over that of the second: 64^(−difference). More digits where two do not show on
-// which side of 1 it is.
-std::string factor_text(Real difference) {
-  const Real factor = std::pow(kProfileEnd, -difference);
+// More digits where two do not show on which side of 1 it is.
+std::string factor_text(Real factor) {
   const std::string text = fmt::format("{:.2g}", factor);
   return text == "1" ? fmt::format("{:.3g}", factor) : text;
 }
@@ -135,6 +133,9 @@ Sequence add_sequence(Table& table, const Comparison& c, const std::vector<Pair>
   constexpr std::array<const char*, 4> kOutcomes = {"contrasts.better", "contrasts.worse",
                                                     "contrasts.equal", "contrasts.undecided"};
   out.contrasts = contrasts_in_order(differences);
+  const auto index = [](Real difference) {  // work of the first over that of the second
+    return factor_text(std::pow(kProfileEnd, -difference));
+  };
   for (std::size_t i = 0; i < out.contrasts.size(); ++i) {
     const results::Contrast& contrast = out.contrasts[i];
     out.outcomes.push_back(
@@ -155,9 +156,9 @@ Sequence add_sequence(Table& table, const Comparison& c, const std::vector<Pair>
            {"low", contrast.interval.low},
            {"high", contrast.interval.high}}},
          {fmt::format("{:.2f}", contrast.deviation), {{"deviation", contrast.deviation}}},
-         fmt::format("{} ({} to {})", factor_text(contrast.mean),
-                     factor_text(contrast.interval.high), factor_text(contrast.interval.low)),
-         ratio.both == 0 ? "– (0)" : fmt::format("{:.2g} ({})", ratio.median, ratio.both),
+         fmt::format("{} ({} to {})", index(contrast.mean), index(contrast.interval.high),
+                     index(contrast.interval.low)),
+         ratio.both == 0 ? "– (0)" : fmt::format("{} ({})", factor_text(ratio.median), ratio.both),
          failures_cell(c, settings, methods[places[i][0]]),
          failures_cell(c, settings, methods[places[i][1]]),
          decision});

@@ -97,7 +97,12 @@ Window window_of(const Drawing& drawing) {
 
 Drawing drawing_of(const Plot& plot) {
   const bool is_steps = plot.kind == Plot::Kind::steps;
-  return {.plot = plot, .join = is_steps ? Join::steps : Join::straight, .has_names = is_steps};
+  Drawing out{.plot = plot, .join = is_steps ? Join::steps : Join::straight, .has_names = is_steps};
+  std::set<std::size_t> first;
+  for (const PlotSeries& line : plot.series)
+    if (line.optimizer && first.size() < kMostLines) first.insert(*line.optimizer);
+  if (!first.empty()) out.shown = std::move(first);
+  return out;
 }
 
 std::set<std::size_t> shown_at_first(const Comparison& c, const std::vector<std::size_t>& ranking) {

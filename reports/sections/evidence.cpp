@@ -173,6 +173,10 @@ std::string quantity_text(const Json& claim) {
   const std::string kind = quantity.at("kind");
   std::vector<std::string> terms;
   for (const Json& term : quantity.at("terms")) terms.push_back(term_text(term));
+  if (std::set(terms.begin(), terms.end()).size() < terms.size())  // the problem tells them apart
+    for (std::size_t i = 0; i < terms.size(); ++i)
+      if (const Json& term = quantity["terms"][i]; term.contains("problem"))
+        terms[i] += " on " + shown_spec(term["problem"].get<std::string>());
   const std::string column = column_words(quantity.at("column")),
                     when = iteration_text(quantity, quantity.contains("clock")
                                                         ? "at equal processor time"
@@ -466,8 +470,9 @@ std::string break_even_text(const Judgement& judged, const Measured& from) {
     if (steps > 0) ratios.push_back(needed / steps);
   }
   if (ratios.empty()) return "";
+  const std::string steps = fmt::format("{:.2g}", median_of(std::move(ratios)));
   return words(is_reached ? "claim.break-even" : "claim.break-even-at-least", terms[1].method,
-               terms[0].method, median_of(std::move(ratios)));
+               terms[0].method, steps == "1" ? "" : steps + " × ");
 }
 
 // Why runs are too short to decide a claim; empty where they are not. `length` may state what was

@@ -322,6 +322,8 @@ Section fit_section(const Comparison& c) {
     if (sets.size() > kMostSets)
       section.readings.push_back({"", words("fit.more-sets", sets.size() - kMostSets)});
   }
+  if (const std::string unchecked = unchecked_text(c); !section.is_empty() && !unchecked.empty())
+    section.readings.push_back({"", unchecked});
   return section;
 }
 

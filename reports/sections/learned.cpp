@@ -12,6 +12,10 @@
 namespace isoline::reports {
 namespace {
 
+Rows steppers(const Comparison& c, const Cell& cell) {
+  return c.where(cell.runs, [](const Run& run) { return run.record->summary.iterations > 0; });
+}
+
 Table learned_table(const Comparison& c, std::size_t p, const std::vector<std::size_t>& order) {
   const Sheet* sheet = c.problems[p].sheet;
   Table table = worded_table("learned-table", problem_name(c.problems[p]));
@@ -39,68 +43,94 @@ Table learned_table(const Comparison& c, std::size_t p, const std::vector<std::s
   }
   for (const std::size_t s : order) {
     const Cell& cell = c.cell(p, s);
-    const Rows steppers =
-        c.where(cell.runs, [](const Run& run) { return run.record->summary.iterations > 0; });
     const auto count = [](const Run& run) { return Real(run.record->summary.iterations); };
-    const Real iterations = c.aggregate(steppers, count).median,
-               milliseconds_each = c.aggregate(steppers, [&](const Run&run) {
-                                      return 1e3 * run.record->summary.wall_seconds / count(run);
-                                    }).median;
+    const Real iterations = c.aggregate(steppers(c, cell), count).median;
     const Marks marks{.has_extra_information = !cell.privileges.empty(),
                       .is_imported = c.optimizers[s].is_imported};
     table.rows.push_back({setting_text(c, p, s) + marks_text(marks), figure(cell.x_error),
                           figure(cell.loss), figure(iterations == kNever ? 0 : iterations),
-                          (cell.is_timed_alone ? "" : "≈ ") + figure(milliseconds_each),
+                          (cell.is_timed_alone ? "" : "≈ ") + figure(step_costs(c, cell)[1]),
                           std::to_string(cell.runs.size()), std::to_string(cell.failed)});
     table.row_topics.push_back({.optimizer = s});
   }
   return table;
 }
 
-// Ratios of errors in x that claims read too: the text of a report has the first row of each, this
-// table the others.
+// The text of a report has the first row of each ratio, this table the others.
 Table ratio_readings(const Comparison& c, const std::vector<Judgement>& claims) {
   Table table = worded_table("ratio-readings");
-  for (std::size_t p = 0; p < c.problems.size(); ++p) {
-    const EqualWork equal = c.problems[p].is_learned ? equal_work(c, p) : EqualWork{};
-    const std::vector<std::size_t> order = equal.nearest_first();
-    for (const std::size_t b : order) {
-      const std::size_t a = order[0];
-      std::vector<const Judgement*> others;
-      for (const Judgement& claim : claims) {
-        const std::vector<EvidenceTerm>& terms = claim.evidence.terms;
-        if (claim.evidence.kind == "ratio" && claim.measured && terms.size() == 2 &&
-            claim.evidence.column.find("x_error") != std::string::npos &&
-            terms[0].problem == c.problems[p].spec && terms[0].method == c.optimizers[b].method &&
-            terms[1].method == c.optimizers[a].method)
-          others.push_back(&claim);
-      }
-      if (others.empty()) continue;
-      const auto add = [&](const std::string& read, Real ratio, Real low, Real high,
-                           std::size_t seeds) {
-        const std::string names = setting_text(c, p, b) + " / " + setting_text(c, p, a);
-        const bool is_known = low > 0 && high < kNever;
-        table.rows.push_back({problem_name(c.problems[p]), names, read, multiple(ratio),
-                              is_known ? multiple(low) + " to " + multiple(high) : "",
-                              std::to_string(seeds)});
-        table.row_topics.push_back({.optimizer = b, .problem = p});
+  for (const auto& [methods, readings] : ratio_claims(c, claims)) {
+    const auto& [p, under, over] = methods;
+    const auto add = [&](const std::string& read, Real ratio, Real low, Real high,
+                         std::size_t seeds) {
+      const std::string names = setting_text(c, p, over) + " / " + setting_text(c, p, under);
+      const bool is_known = low > 0 && high < kNever;
+      table.rows.push_back({problem_name(c.problems[p]), names, read, multiple(ratio),
+                            is_known ? multiple(low) + " to " + multiple(high) : "",
+                            std::to_string(seeds)});
+      table.row_topics.push_back({.optimizer = over, .problem = p});
+    };
+    const EqualWork equal = equal_work(c, p);
+    const AtEqualWork &least = *equal.methods[under], &other = *equal.methods[over];
+    const TimesLarger times = times_larger(least, other);
+    const bool has_interval = times.interval && !times.is_range();
+    add(words("ratio-readings.text"), times.times, has_interval ? times.interval->low : 0,
+        has_interval ? times.interval->high : kNever, times.seeds);
+    add(words("ratio-readings.end"),
+        c.cell(p, over).x_error.median / c.cell(p, under).x_error.median, 0, kNever,
+        other.errors.size());
+    for (const Judgement* claim : readings) {
+      const auto add_measured = [&](const std::string& how, const Measurement& one) {
+        add(claim->id + ": " + claim->quantity + how, one.value, one.low, one.high, one.n);
       };
-      const AtEqualWork &least = *equal.methods[a], &other = *equal.methods[b];
-      const TimesLarger times = times_larger(least, other);
-      const bool has_interval = times.interval && !times.is_range();
-      add(words("ratio-readings.text"), times.times, has_interval ? times.interval->low : 0,
-          has_interval ? times.interval->high : kNever, times.seeds);
-      add(words("ratio-readings.end"), c.cell(p, b).x_error.median / c.cell(p, a).x_error.median, 0,
-          kNever, other.errors.size());
-      for (const Judgement* claim : others)
-        add(claim->id + ": " + claim->quantity, claim->measured->value, claim->measured->low,
-            claim->measured->high, claim->measured->n);
+      add_measured("", *claim->measured);
+      for (const OtherReading& one : claim->others) add_measured("; " + one.how, one.measured);
     }
   }
   return table;
 }
 
 }  // namespace
+
+std::array<Real, 2> step_costs(const Comparison& c, const Cell& cell) {
+  const auto each = [&](auto spent) {
+    const auto of = [=](const Run& run) {
+      return Real(spent(run.record->summary)) / Real(run.record->summary.iterations);
+    };
+    return c.aggregate(steppers(c, cell), of).median;
+  };
+  return {each([](const auto& summary) { return summary.work; }),
+          each([](const auto& summary) { return 1e3 * summary.wall_seconds; })};
+}
+
+bool is_error_ratio(const Judgement& claim) {
+  const auto is_named = [&](const EvidenceTerm& term) {  // else it is the best of several
+    return claim.quantity.find(term.method) != std::string::npos;
+  };
+  return claim.evidence.kind == "ratio" && claim.measured && claim.evidence.terms.size() == 2 &&
+         std::ranges::all_of(claim.evidence.terms, is_named) &&
+         claim.evidence.column.find("x_error") != std::string::npos;
+}
+
+RatioClaims ratio_claims(const Comparison& c, const std::vector<Judgement>& claims) {
+  RatioClaims all;
+  for (std::size_t p = 0; p < c.problems.size(); ++p) {
+    if (!c.problems[p].is_learned) continue;
+    const std::vector<std::size_t> order = equal_work(c, p).nearest_first();
+    for (const Judgement& claim : claims) {
+      if (!is_error_ratio(claim)) continue;
+      const auto row = [&](const EvidenceTerm& term) {
+        return std::ranges::find_if(order, [&](std::size_t s) {
+          return term.problem == c.problems[p].spec && term.method == c.optimizers[s].method;
+        });
+      };
+      const auto over = row(claim.evidence.terms[0]), under = row(claim.evidence.terms[1]);
+      if (over != order.end() && under != order.end() && over != under)
+        all[{p, *under, *over}].push_back(&claim);
+    }
+  }
+  return all;
+}
 
 Section learned_section(const Comparison& c, const std::vector<Judgement>& claims) {
   Section section = worded_section("learned");

@@ -26,7 +26,9 @@ bool are_both_known(const Run& run) {
 
 std::optional<Outcome> outcome_of(const Comparison& c, std::size_t p, std::size_t s) {
   const Cell& cell = c.cell(p, s);
-  if (!cell.is_measured() || c.where(cell.runs, are_both_known) != cell.runs) return std::nullopt;
+  if (!cell.is_measured() || is_judged_by_fit(c, p) ||  // whose error is the distance from the fit
+      c.where(cell.runs, are_both_known) != cell.runs)
+    return std::nullopt;
   const std::size_t target = c.yardstick.tightest().rung,
                     near = rung_of(std::sqrt(c.yardstick.tightest().tau));
   const auto holds_in_the_median = [&](auto holds) {
@@ -77,6 +79,12 @@ std::string names_of(const Comparison& c, std::vector<std::size_t> problems) {
   return joined(names);
 }
 
+std::string without_text(const Tally& all, std::string_view near) {
+  if (all.without == 0) return "";
+  return " " + words("loss-without-x.without", all.without,
+                     all.far == 0 ? "" : words("loss-without-x.far", all.far, near));
+}
+
 }  // namespace
 
 Table loss_without_x_table(const Comparison& c) {
@@ -102,7 +110,7 @@ Table loss_without_x_table(const Comparison& c) {
   }
   table.reading = all.n == 0 ? words("loss-without-x.none")
                              : words("loss-without-x.reading", all.n, all.reached, tau, all.found,
-                                     all.without, all.far, near);
+                                     without_text(all, near));
   return table;
 }
 

@@ -109,10 +109,11 @@ struct Stop {
   bool is_reached() const { return work < kNever; }
 };
 
-std::optional<Stop> stop_of(const Run& run) {
+std::optional<Stop> stop_of(const Comparison& c, const Run& run) {
   const Record& record = *run.record;
   const std::vector<Real>&y = record.curve.discrepancy, &x = record.curve.x_error;
-  if (!record.noise_level || !record.x_scale || y.empty() || is_failure(record.status))
+  if (!record.noise_level || !record.x_scale || y.empty() || is_failure(record.status) ||
+      is_judged_by_fit(c, run.problem))  // whose errors are distances from the fit
     return std::nullopt;
   const Real stated = record.request.budget.discrepancy;
   const Real most = (stated > 0 ? stated : kNoiseFactor) * *record.noise_level;
@@ -190,7 +191,7 @@ Table discrepancy_table(const Comparison& c) {
     Stops own;
     for (const auto& cells : c.cells)
       for (const std::size_t row : cells[s].runs)
-        if (const auto stop = stop_of(c.runs[row])) {
+        if (const auto stop = stop_of(c, c.runs[row])) {
           own.add(*stop);
           all.add(*stop);
         }
@@ -230,7 +231,7 @@ Plots noise_plot(const Comparison& c) {
       std::vector<Real> errors;
       for (const auto& [plain, sweep] : sweeps)
         for (const std::size_t row : c.cell(sweep.at(noise), s).runs)
-          if (const auto stop = stop_of(c.runs[row])) errors.push_back(stop->at_noise);
+          if (const auto stop = stop_of(c, c.runs[row])) errors.push_back(stop->at_noise);
       const Real error = errors.empty() ? kNever : median_of(std::move(errors));
       if (error == kNever) continue;
       line.x.push_back(noise);
@@ -240,7 +241,6 @@ Plots noise_plot(const Comparison& c) {
   }
   if (plot.series.empty()) return {};
   std::ranges::stable_sort(plot.series, {}, [](const PlotSeries& line) { return line.y.back(); });
-  if (plot.series.size() > kMostLines) plot.series.resize(kMostLines);
   const PlotSeries& first = plot.series[0];
   const Real slope =
       std::log(first.y.back() / first.y.front()) / std::log(first.x.back() / first.x.front());

@@ -73,6 +73,13 @@ std::string goal_text(const Comparison& c, std::size_t problem, std::size_t meth
              : words("curve.solve", methods, setting_noun(c), tau_name(c));
 }
 
+// "adam 0.011 to 0.029", or one number.
+std::string range_of(const Comparison& c, std::size_t method, const Spread& spread) {
+  const std::string low = reached_figure(spread.low), high = reached_figure(spread.high);
+  const std::string name = name_in_sentence(c.optimizers[method]);
+  return low == high ? name + " " + low : words("learned.range", name, low, high);
+}
+
 std::string unsolved_reading(const Comparison& c, std::size_t problem,
                              const std::vector<std::size_t>& order) {
   const bool is_in_x = c.problems[problem].aim == Aim::x;
@@ -94,21 +101,26 @@ std::string unsolved_reading(const Comparison& c, std::size_t problem,
                      ? ""
                      : words("curve.next-loss", name_in_sentence(c.optimizers[order[1]]),
                              reached_figure(end_of(order[1]))));
-  if (const Spread first = spread_at_end(best); nearest.size() > 1 && least < kNever &&
-                                                first.n > 1 && first.n < kFewestForInterval &&
-                                                first.high >= spread_at_end(nearest[1]).low) {
+  if (const std::size_t seeds = spread_at_end(best).n;
+      least < kNever && (nearest.size() == 1 || seeds < kFewestForInterval)) {
     std::vector<std::string> ranges;
-    for (const std::size_t s : {best, nearest[1]})
-      ranges.push_back(words("learned.range", name_in_sentence(c.optimizers[s]),
-                             reached_figure(spread_at_end(s).low),
-                             reached_figure(spread_at_end(s).high)));
-    return words(is_in_x ? "curve.errors-overlap" : "curve.losses-overlap",
-                 goal_text(c, problem, 1), first.n, joined(ranges, "; "));
+    for (std::size_t i = 0; i < std::min<std::size_t>(nearest.size(), 2); ++i)
+      ranges.push_back(range_of(c, nearest[i], spread_at_end(nearest[i])));
+    return words(is_in_x ? "curve.errors" : "curve.losses", goal_text(c, problem, 1), seeds,
+                 joined(ranges, "; "));
   }
   return words(!(least < kNever) ? "curve.none-finite"
                : is_in_x         ? "curve.least-error"
                                  : "curve.least-loss",
                goal_text(c, problem, 1), name_in_sentence(c.optimizers[best]), least);
+}
+
+// " (90–300 over seeds)"
+std::string range_note(const Comparison& c, std::size_t problem, std::size_t method) {
+  const std::string range =
+      range_figure(c.cell(problem, method).headline[kTightest],
+                   c.yardstick.by == Measure::time ? milliseconds : reached_figure);
+  return range.empty() ? "" : words("curve.range", range);
 }
 
 // "; next is adam, with 1.3× the median work", and on how many of the seeds that both ran the first
@@ -122,8 +134,11 @@ std::string runner_up(const Comparison& c, std::size_t problem, std::size_t one,
     return c.taken(c.runs[pair.first], c.yardstick.by, kTightest) <
            c.taken(c.runs[pair.second], c.yardstick.by, kTightest);
   });
+  const std::string range =
+      second.headline[kTightest].n < kFewestForInterval ? range_note(c, problem, other) : "";
   return words("curve.next", name_in_sentence(c.optimizers[other]),
                multiple(next / std::max(best, least_unit(c.yardstick.by))), counted_name(c),
+               range.empty() ? "" : " (" + range + ")",
                pairs.size() < 2 ? ""
                                 : " " + words("curve.seeds", name_in_sentence(c.optimizers[one]),
                                               less, pairs.size()));
@@ -167,6 +182,13 @@ static std::vector<std::string> dois_of(const std::filesystem::path& folder) {
   return dois;
 }
 
+std::string unchecked_text(const Comparison& c) {
+  std::vector<std::string> names;
+  for (const ProblemAxis& problem : c.problems)
+    if (problem.is_unchecked) names.push_back(problem_name(problem));
+  return names.empty() ? "" : words("remarks.unchecked", joined(names));
+}
+
 std::vector<std::string> remarks(const Comparison& c) {
   const Study& study = *c.study;
   std::vector<std::string> all;
@@ -203,6 +225,9 @@ std::vector<std::string> remarks(const Comparison& c) {
       unknown[problem.is_least_of_runs ? "remarks.least-of-runs" : "remarks.no-minimum"].push_back(
           problem_name(problem));
   for (const auto& [key, problems] : unknown) all.push_back(words(key, joined(problems)));
+  const auto has_fit = [](const Run& run) { return run.record->fit.has_value(); };
+  if (std::string text = unchecked_text(c); std::ranges::none_of(c.runs, has_fit) && !text.empty())
+    all.push_back(std::move(text));  // else the fit says it
   return all;
 }
 
@@ -235,20 +260,20 @@ std::string curve_reading(const Comparison& c, std::size_t problem) {
     tied.push_back(name_in_sentence(c.optimizers[s]));
   }
   const bool is_tied = tied.size() > 1;
-  const std::string range =
-      range_figure(first, c.yardstick.by == Measure::time ? milliseconds : reached_figure);
   std::vector<std::string> notes;
-  if (!range.empty() && !is_tied) notes.push_back(words("curve.range", range));
+  if (const std::string range = range_note(c, problem, order[0]); !range.empty() && !is_tied)
+    notes.push_back(range);
   if (c.cell(problem, order[0]).is_bound[kTightest]) notes.push_back(words("curve.bound"));
   const std::size_t unsolved = order.size() - solved, next = tied.size();
-  return words("curve.least", counted_name(c), goal_text(c, problem, 2),
-               is_tied ? words("curve.tied", listed(tied)) : tied[0], amount(c, first.median),
-               unit_name(c), notes.empty() ? "" : " (" + joined(notes, "; ") + ")",
-               solved <= next ? "" : runner_up(c, problem, order[0], order[next]),
-               words(unsolved > 0        ? "curve.unsolved"
-                     : order.size() == 1 ? "curve.only"
-                                         : "curve.all",
-                     unsolved, order.size(), setting_noun(c)));
+  const std::string noted = notes.empty() ? "" : " (" + joined(notes, "; ") + ")";
+  const std::string amount = amount_in_units(c, first.median), goal = goal_text(c, problem, 2);
+  if (order.size() == 1) return words("curve.alone", tied[0], amount, goal, noted, setting_noun(c));
+  return words("curve.least",
+               first.n < kFewestForInterval ? words("curve.few", first.n) : words("curve.smallest"),
+               counted_name(c), goal, is_tied ? words("curve.tied", listed(tied)) : tied[0], amount,
+               noted, solved <= next ? "" : runner_up(c, problem, order[0], order[next]),
+               words(unsolved > 0 ? "curve.unsolved" : "curve.all", unsolved, order.size(),
+                     setting_noun(c)));
 }
 
 // The learned problems, at equal work.
@@ -262,11 +287,12 @@ std::vector<std::string> learned_sentences(const Comparison& c) {
     const EqualWork equal = equal_work(c, p);
     const auto order = equal.nearest_first();
     if (order.empty() || !equal.methods[order[0]]->x_error.is_solved()) continue;
-    ++problems;
     const auto name = [&](std::size_t place) {
       return name_in_sentence(c.optimizers[order[place]]);
     };
-    ++nearest[name(0)];
+    const auto spread = [&](std::size_t place) { return equal.methods[order[place]]->x_error; };
+    const bool is_few = order.size() < 2 || spread(0).n < kFewestForInterval;
+    if (!is_few) ++problems, ++nearest[name(0)];
     const Real least = equal.methods[order[0]]->x_error.median;
     const std::size_t diverged = equal.methods[order[0]]->diverged;
     std::string next;
@@ -283,20 +309,17 @@ std::vector<std::string> learned_sentences(const Comparison& c) {
       next = words("learned.next", name(1), multiple(times.times), seeds);
     }
     if (all.size() >= kFew) continue;
-    const auto spread = [&](std::size_t place) { return equal.methods[order[place]]->x_error; };
-    const bool is_within_range =
-        spread(0).n < kFewestForInterval && spread(0).high >= spread(order.size() > 1).low;
-    if (order.size() > 1 && (is_within_range || (times.interval && times.interval->low <= 1))) {
+    const std::string noted = diverged == 0 ? "" : " " + words("learned.diverged", diverged);
+    if (is_few || (times.interval && times.interval->low <= 1)) {
       std::vector<std::string> ranges;
-      for (const std::size_t place : {0, 1})
-        ranges.push_back(words("learned.range", name(place), figure(spread(place).low),
-                               figure(spread(place).high)));
-      all.push_back(
-          words("learned.overlap", problem_name(c.problems[p]), spread(0).n, joined(ranges, "; ")));
+      for (std::size_t place = 0; place < std::min<std::size_t>(order.size(), 2); ++place)
+        ranges.push_back(range_of(c, order[place], spread(place)));
+      all.push_back(words("learned.ranges", problem_name(c.problems[p]), spread(0).n,
+                          joined(ranges, "; "), noted));
       continue;
     }
-    all.push_back(words("learned.nearest", problem_name(c.problems[p]), name(0), least,
-                        diverged == 0 ? "" : " " + words("learned.diverged", diverged), next));
+    all.push_back(
+        words("learned.nearest", problem_name(c.problems[p]), name(0), least, noted, next));
   }
   if (problems < 2) return all;
   std::vector<std::pair<std::string, std::size_t>> ranked(nearest.begin(), nearest.end());

@@ -6,6 +6,7 @@
 #include <map>
 #include <set>
 
+#include "core/results/contrasts.h"
 #include "core/results/statistics.h"
 #include "core/seeds.h"
 #include "reports/sections/contrasts.h"
@@ -76,14 +77,35 @@ std::string settings_text(const Comparison& c) {
                about.empty() ? "" : " (" + about + ")");
 }
 
-std::string needed_text(const Decision& decision) {
-  const std::optional<std::size_t> fewest = decision.fewest_wins();
-  return fewest ? words("ranking.wins-needed", decision.families, *fewest)
-                : words("ranking.no-wins", decision.families);
-}
-
 std::string common_settings(const Comparison& c) {
   return counted(c.order.settings.size(), common_noun(c));
+}
+
+// The results that so many families can decide; then the highest score, with those equal to it for
+// a user.
+std::string open_text(const Comparison& c, const Decision& decision) {
+  const std::optional<std::size_t> fewest = decision.fewest_wins();
+  if (!fewest) return words("ranking.no-wins", decision.families);
+  std::vector<std::string> scored;
+  for (const results::Place& place : decision.places)
+    if (decision.places[0].score - place.score <= results::score_margin())
+      scored.push_back(
+          words("ranking.scored", names_text(c, {place.method}, 1), place.score, place.solved));
+  return words("ranking.wins-needed", decision.families, *fewest, first_of(scored, 4),
+               scored.size());
+}
+
+std::string tied_names(const Comparison& c, const Decision& decision) {
+  std::vector<std::size_t> tied;
+  for (std::size_t i = 0; i < decision.tied; ++i) tied.push_back(decision.places[i].method);
+  return names_text(c, tied, 3);
+}
+
+// Why results that share enough settings have no decision.
+std::string undecided_text(const Comparison& c) {
+  if (!c.missing.empty()) return words("ranking.incomplete", c.missing.size());
+  if (c.yardstick.by != Measure::time) return words("ranking.none");
+  return words(c.is_any_timed_together ? "ranking.shared-time" : "ranking.short-time");
 }
 
 std::string decision_sentence(const Comparison& c, const Decision& decision) {
@@ -92,20 +114,12 @@ std::string decision_sentence(const Comparison& c, const Decision& decision) {
   const std::string on = settings_text(c), measure(counted_name(c)), tau = tau_name(c);
   if (decision.places.size() == 1)
     return words("ranking.alone", on, name(first), first.score, first.solved);
-  if (decision.tied > 1) {
-    std::vector<std::size_t> tied;
-    for (std::size_t i = 0; i < decision.tied; ++i) tied.push_back(decision.places[i].method);
-    return words("ranking.tied", on, names_text(c, tied, 3), measure, tau, first.score);
-  }
-  if (!decision.is_lead && !decision.fewest_wins())  // so few families name no winner
-    return words("ranking.open-few", on, measure, tau, needed_text(decision));
-  if (!decision.is_lead)
-    return words("ranking.open", on, measure, tau, name(first), first.score, first.solved,
-                 needed_text(decision));
+  if (decision.tied > 1)
+    return words("ranking.tied", on, tied_names(c, decision), measure, tau, first.score);
+  if (!decision.is_lead) return words("ranking.open", on, measure, tau, open_text(c, decision));
+  const results::Place& next = decision.places[1];
   return words("ranking.lead", on, measure, tau, name(first), first.score, first.solved,
-               words("ranking.rival", name(decision.places[1]), decision.places[1].score,
-                     decision.places[1].solved),
-               decision.places[1].p);
+               words("ranking.scored", name(next), next.score, next.solved), next.p);
 }
 
 // The decision in one short sentence.
@@ -114,14 +128,9 @@ std::string first_sentence(const Comparison& c, const Decision& decision) {
   const std::string name = name_in_sentence(c.optimizers[first.method]);
   if (decision.places.size() == 1)
     return words("ranking.alone", common_settings(c), name, first.score, first.solved);
-  if (decision.tied > 1) {
-    std::vector<std::size_t> tied;
-    for (std::size_t i = 0; i < decision.tied; ++i) tied.push_back(decision.places[i].method);
-    return words("ranking.first-tied", names_text(c, tied, 3), first.score);
-  }
+  if (decision.tied > 1) return words("ranking.first-tied", tied_names(c, decision), first.score);
   if (decision.is_lead) return words("ranking.first-lead", name, first.score, decision.places[1].p);
-  if (!decision.fewest_wins()) return words("ranking.first-few", needed_text(decision));
-  return words("ranking.first-open", needed_text(decision), name, first.score);
+  return words("ranking.first-open", open_text(c, decision));
 }
 
 std::string variation_text(const Decision& decision) {
@@ -142,34 +151,37 @@ std::string group_text(const Comparison& c, const Decision& decision) {
       close.push_back(place.method);
     else
       others += place.is_in_group;
-  return words("ranking.group", names_text(c, close, 6), close.size() + others,
-               decision.places.size(), others == 0 ? "" : words("ranking.too-few", others)) +
+  return words("ranking.group", words(c.yardstick.has_contrasts ? "ranking.second" : "ranking.not"),
+               names_text(c, close, 6), close.size() + others, decision.places.size(),
+               others == 0 ? "" : words("ranking.too-few", others)) +
          " " + variation_text(decision);
 }
 
-std::string most_solved_text(const Decision& decision) {
-  const std::size_t most =
-      decision.places.empty()
-          ? 0
-          : std::ranges::max_element(decision.places, {}, &results::Place::solved)->solved;
-  const auto count =
-      static_cast<std::size_t>(std::ranges::count(decision.places, most, &results::Place::solved));
-  return words("ranking.most-solved", count, most, decision.settings,
-               count > 1 ? words("ranking.within-noise") : "");
+std::string most_solved_text(const Comparison& c, const Decision& decision) {
+  const results::Place& first =
+      *std::ranges::max_element(decision.places, {}, &results::Place::solved);
+  const auto count = static_cast<std::size_t>(
+      std::ranges::count(decision.places, first.solved, &results::Place::solved));
+  return words("ranking.most-solved",
+               count > 1 ? counted(count, "method") : names_text(c, {first.method}, 1), count,
+               first.solved, decision.settings, count > 1 ? words("ranking.within-noise") : "");
 }
 
 // The settings that methods of each kind solve: their order within a kind is mostly chance.
 std::string kinds_text(const Comparison& c, const Decision& decision) {
-  std::map<std::string, std::vector<std::size_t>> kinds;
+  std::map<std::string, std::vector<const results::Place*>> kinds;
   for (const results::Place& place : decision.places)
     if (const std::string kind = c.optimizers[place.method].mathematics(); kind != "other")
-      kinds[kind].push_back(place.solved);
+      kinds[kind].push_back(&place);
   std::vector<std::string> parts;
-  for (auto& [kind, solved] : kinds) {
-    std::ranges::sort(solved);
-    parts.push_back(words("ranking.kind", kind, range_text(solved.front(), solved.back())));
+  for (auto& [kind, places] : kinds) {
+    std::ranges::sort(places, {}, &results::Place::solved);
+    const std::size_t low = places.front()->solved, high = places.back()->solved;
+    parts.push_back(words("ranking.kind",
+                          places.size() > 1 ? kind : names_text(c, {places[0]->method}, 1),
+                          places.size(), range_text(low, high)));
   }
-  std::string text = most_solved_text(decision);
+  std::string text = most_solved_text(c, decision);
   if (parts.size() > 1)
     text += " " + words("ranking.kinds", decision.settings, joined(parts, "; "));
   return text;
@@ -189,9 +201,18 @@ std::string linear_text(const Comparison& c, const Decision& decision) {
   return words("ranking.linear", linear, decision.settings, decision.settings - linear, others);
 }
 
-std::string solved_runs_text(const Comparison& c, std::size_t method) {
-  const Standing& standing = c.optimizers[method].tightest();
-  return fmt::format("{} of {}", standing.reached, standing.runs);
+// Why a method ranks first more often than another, where a reason shows.
+std::string reason_text(const Comparison& c, std::size_t method, std::size_t other) {
+  const Standing &own = c.optimizers[method].tightest(), &its = c.optimizers[other].tightest();
+  const std::string name = names_text(c, {method}, 1);
+  if (own.reached > its.reached)
+    return words("ranking.because-solved", name, own.reached, own.runs, names_text(c, {other}, 1),
+                 its.reached);
+  const auto less = std::ranges::count_if(c.order.settings, [&](std::size_t p) {
+    return c.cell(p, method).headline[kTightest].median <
+           c.cell(p, other).headline[kTightest].median;
+  });
+  return less == 0 ? "" : words("ranking.because-work", name, counted_name(c), less);
 }
 
 std::string robustness_text(const Comparison& c, const Decision& decision) {
@@ -214,12 +235,13 @@ std::string robustness_text(const Comparison& c, const Decision& decision) {
     firsts.push_back(
         words("ranking.otherwise-of", method, choices.size(), first_of(choices, 3, "; ")));
   const std::string share = percent(first.share_first);
+  const bool is_other_more = has_other && other->share_first > first.share_first;
   const std::string samples =
       !has_other ? words("ranking.share", name(first), share)
-                 : words(other->share_first > first.share_first ? "ranking.share-more"
-                                                                : "ranking.share-less",
-                         name(first), share, name(*other), percent(other->share_first),
-                         solved_runs_text(c, first.method), solved_runs_text(c, other->method));
+                 : words(is_other_more ? "ranking.share-more" : "ranking.share-less", name(first),
+                         share, name(*other), percent(other->share_first),
+                         is_other_more ? reason_text(c, other->method, first.method)
+                                       : reason_text(c, first.method, other->method));
   return words("ranking.robustness", samples, name(first), kept, decision.choices.size(),
                lost.empty() ? "" : words("ranking.otherwise", listed(firsts)));
 }
@@ -302,8 +324,9 @@ std::vector<std::string> verdict(const Comparison& c) {
   std::string left_out = left_out_text(c);
   if (!left_out.empty()) left_out = words("fact.not-ranked") + ": " + left_out;
   if (!has_order(c) || !c.decision) {  // with few problems: a sentence on each
-    constexpr std::size_t kFew = 4;
-    for (std::size_t p = 0; p < c.problems.size() && p < kFew; ++p)
+    const std::size_t few = has_order(c) ? 0 : 4;
+    if (has_order(c)) all.push_back(undecided_text(c));
+    for (std::size_t p = 0; p < std::min(c.problems.size(), few); ++p)
       all.push_back(fmt::format("{}: {}", problem_name(c.problems[p]), curve_reading(c, p)));
     if (!left_out.empty()) all.push_back(std::move(left_out));
     return all;
@@ -312,8 +335,6 @@ std::vector<std::string> verdict(const Comparison& c) {
          linear_text(c, *c.decision), robustness_text(c, *c.decision)};
   if (c.open_decision && c.open_decision->places[0].method != c.decision->places[0].method)
     all.push_back(words("ranking.without-extra", decision_sentence(c, *c.open_decision)));
-  if (c.yardstick.by == Measure::time && c.is_any_timed_together)
-    all.push_back(words("ranking.shared-time"));
   all.push_back(words("limits.problems"));
   if (c.yardstick.has_contrasts) {
     for (const Table& table : {sanity_table(c), noise_level_table(c)})
@@ -338,11 +359,9 @@ std::vector<std::string> first_sentences(const Comparison& c) {
     all.resize(std::min<std::size_t>(1, all.size()));
     return all;
   }
-  if (c.yardstick.by == Measure::time && c.is_any_timed_together)
-    return {words("ranking.shared-time"), words("ranking.chosen")};
   const bool can_decide = c.decision->places.size() < 2 || c.decision->fewest_wins().has_value();
   return {first_sentence(c, *c.decision),
-          can_decide ? varies_text(c, *c.decision) : most_solved_text(*c.decision),
+          can_decide ? varies_text(c, *c.decision) : most_solved_text(c, *c.decision),
           words("ranking.chosen")};
 }
 
@@ -352,7 +371,7 @@ std::vector<Reading> ranking_facts(const Comparison& c) {
     facts = {{words("fact.group"), group_text(c, *c.decision)},
              {words("fact.robustness"), robustness_text(c, *c.decision)}};
   else
-    facts = {{words("fact.ranking"), words("ranking.none")}};
+    facts = {{words("fact.ranking"), has_order(c) ? undecided_text(c) : words("ranking.none")}};
   if (const std::string left_out = left_out_text(c); !left_out.empty())
     facts.push_back({words("fact.not-ranked"), left_out});
   facts.push_back({words("fact.not-run"), not_run(c)});

@@ -143,7 +143,8 @@ std::vector<Table> uncertainty_tables(const Comparison& c) {
       if (cell.runs.empty()) continue;
       const Record& record = *c.runs[cell.runs[0]].record;
       const std::optional<Uncertainty>& known = record.uncertainty;
-      if (!known || doubt_of(record) != Doubt::none) continue;
+      const bool is_exact = record.minimum == 0.0;  // then the residual is rounding
+      if (!known || is_exact || doubt_of(record) != Doubt::none) continue;
       Table table = worded_table("uncertainty", problem_name(c.problems[p]));
       table.id += fmt::format("-{}", p);
       table.topic = {.optimizer = s, .problem = p};

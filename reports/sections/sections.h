@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -27,6 +28,13 @@ Section fit_section(const Comparison& comparison);  // of a user's own problems;
 Section standings_section(const Comparison& comparison);
 Section problems_section(const Comparison& comparison);  // a sentence each, and the matrix
 Section learned_section(const Comparison& comparison, const std::vector<Judgement>& claims = {});
+// Whether a claim is on the ratio of two errors in x.
+bool is_error_ratio(const Judgement& claim);
+// Those of learned problems, by the problem and by the methods whose error is under and over.
+using RatioClaims = std::map<std::array<std::size_t, 3>, std::vector<const Judgement*>>;
+RatioClaims ratio_claims(const Comparison& comparison, const std::vector<Judgement>& claims);
+// The work of an iteration in forward solves, and its milliseconds; medians over the runs.
+std::array<Real, 2> step_costs(const Comparison& comparison, const Cell& cell);
 Section amortized_section(const Comparison& comparison);  // training once, or solving each
 Section sweeps_section(const Comparison& comparison);     // two options at a time, as heat maps
 Section spectra_section(const Comparison& comparison);    // of J, where runs kept them
@@ -62,6 +70,7 @@ std::string headline(const Comparison& comparison);
 std::string version_text(const Comparison& comparison);  // "Isoline 0.1.0 (1a2b3c4)"
 std::string missing_text(const Comparison& comparison);
 std::vector<std::string> remarks(const Comparison& comparison);
+std::string unchecked_text(const Comparison& comparison);  // which problems ran without checks
 std::vector<std::string> verdict(const Comparison& comparison);          // what the decision says
 std::vector<std::string> first_sentences(const Comparison& comparison);  // few and short
 std::vector<Reading> ranking_facts(const Comparison& comparison);  // the group, how robust, not run

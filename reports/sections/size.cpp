@@ -150,7 +150,6 @@ Plots size_plots(const Comparison& c) {
     const MethodGrowth& first = all[0];
     plot.reading = words("plot-size.reading", name_in_sentence(c.optimizers[first.optimizer]),
                          first.growth.unknowns.back());
-    if (all.size() > kMostLines) all.resize(kMostLines);
     for (MethodGrowth& each : all) {
       PlotSeries& line = plot.series.emplace_back(line_of(c, each.optimizer));
       line.x = std::move(each.growth.unknowns);

@@ -105,17 +105,12 @@ std::string priced_unit(const Comparison& c) {
 
 namespace {
 
-// The best of the common order.
-std::size_t shown_optimizers(const Comparison& c, std::size_t most) {
-  return std::min(c.order.methods.size(), most);
-}
-
 // A row a method of the common order: the shares of its n settings, of which count(method, step)
 // lie within each step of a grid; then n, and its failed runs.
 template <class Count>
 void add_shares(Table& table, const Comparison& c, const std::vector<Real>& steps, Count count) {
   const std::size_t n = c.order.settings.size();
-  for (std::size_t s = 0; s < shown_optimizers(c, kMostTableRows) && n > 0; ++s) {
+  for (std::size_t s = 0; s < std::min(c.order.methods.size(), kMostTableRows) && n > 0; ++s) {
     std::vector<TableCell> row;
     for (const Real step : steps) {
       const Real within = static_cast<Real>(count(s, step)), share = within / Real(n);
@@ -196,16 +191,15 @@ Table profile_table(const Comparison& c) {
 
 namespace {
 
-// "the first 8 of 23 ranked methods; n = 23 settings, …; 2 of 345 of their runs failed".
+// "23 ranked methods; n = 23 settings, …; 2 of 345 of their runs failed".
 std::string denominators(const Comparison& c) {
-  const std::size_t shown = shown_optimizers(c, kMostLines);
   std::size_t runs = 0, failed = 0;
-  for (std::size_t s = 0; s < shown; ++s)
+  for (std::size_t s = 0; s < c.order.methods.size(); ++s)
     for (const std::size_t p : c.order.settings) {
       runs += c.cell(p, s).is_measured() ? c.cell(p, s).runs.size() : 0;
       failed += c.cell(p, s).failed;
     }
-  return words("plot.denominators", shown, c.order.methods.size(),
+  return words("plot.denominators", c.order.methods.size(),
                counted_settings(c, c.order.settings.size()), failed, runs);
 }
 
@@ -258,8 +252,10 @@ PlotSeries share_series(const Comparison& c, std::size_t s, const Costs& measure
 Plots shares_plot(Plot plot, const Comparison& c, const Costs& measures,
                   const std::vector<Real>& grid, Real place) {
   plot.is_log_x = true;
-  for (std::size_t s = 0; s < shown_optimizers(c, kMostLines); ++s)
+  for (std::size_t s = 0; s < c.order.methods.size(); ++s)
     plot.series.push_back(share_series(c, s, measures, grid));
+  if (!plot.series.empty() && plot.series[0].low != plot.series[0].high)
+    plot.caption = words("plot.bands") + " " + plot.caption;
   plot.reading = words(plot.id + ".reading", unit_name(cost_measure(c)), highest_at(plot, place),
                        highest_at(plot, grid.back()));
   return {std::move(plot)};
@@ -346,7 +342,7 @@ PlotSeries runtime_series(const Comparison& c, std::size_t s, const std::vector<
 }  // namespace
 
 Plots runtime_plot(const Comparison& c) {
-  if (shown_optimizers(c, kMostLines) == 0) return {};
+  if (c.order.methods.empty()) return {};
   const Measure by = cost_measure(c);
   Real most = 1;
   for (const Run& run : c.runs) most = std::max(most, in_units(by, run.spent_by(by)));
@@ -354,7 +350,7 @@ Plots runtime_plot(const Comparison& c) {
   Plot plot =
       worded_plot("plot-runtime", setting_noun(c), cost_unit(c), denominators(c), unit_name(by));
   plot.is_log_x = true;
-  for (std::size_t s = 0; s < shown_optimizers(c, kMostLines); ++s)
+  for (std::size_t s = 0; s < c.order.methods.size(); ++s)
     plot.series.push_back(runtime_series(c, s, grid));
   plot.reading = words("plot-runtime.reading", unit_name(by), highest_at(plot, 100),
                        highest_at(plot, grid.back()));

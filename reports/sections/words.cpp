@@ -44,7 +44,8 @@ std::vector<std::string> trimmed_parts(const std::string& text, char between) {
 std::string written(const Value& value, const std::string& form) {
   if (form.starts_with('|')) {
     const std::size_t middle = form.find('|', 1);
-    const bool is_one = value == Value(std::int64_t{1});
+    const bool is_one =
+        std::visit([](const auto& one) { return fmt::format("{}", one) == "1"; }, value);
     return is_one ? form.substr(1, middle - 1) : form.substr(middle + 1);
   }
   if (const Real* real = std::get_if<Real>(&value); real != nullptr && form.empty())
@@ -390,6 +391,10 @@ std::string amount(Measure by, Real value) {
   return by == Measure::time ? milliseconds(value) : reached_figure(value);
 }
 std::string amount(const Comparison& c, Real value) { return amount(c.yardstick.by, value); }
+std::string amount_in_units(const Comparison& c, Real value) {
+  const std::string text = fmt::format("{} {}", amount(c, value), unit_name(c));
+  return text.starts_with("1 ") && !text.ends_with("ms") ? text.substr(0, text.size() - 1) : text;
+}
 
 std::string_view setting_noun(const Comparison& c) {
   return c.problems.size() > c.names ? "setting" : "problem";

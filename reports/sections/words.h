@@ -120,6 +120,7 @@ std::string counted_to_tau(const Comparison& comparison);
 // An amount as tables write it, ✗ where infinite: times are given in seconds and written in ms.
 std::string amount(Measure by, Real value);
 std::string amount(const Comparison& comparison, Real value);
+std::string amount_in_units(const Comparison& comparison, Real value);  // "1 forward solve"
 // A row of a study is a setting where some problem has several: "problem" or "setting".
 std::string_view setting_noun(const Comparison& comparison);
 std::string_view common_noun(const Comparison& comparison);  // of the settings of the common order

@@ -129,8 +129,9 @@ class Page(InBrowser):
     # --- tabs
 
     def test_one_tab_is_laid_out_at_a_time_and_each_has_an_address(self):
-        for tab in ("overview", "choose", "compare", "problems", "claims", "methods", "statistics",
-                    "runs"):
+        listed = self.browser.run("return [...document.querySelectorAll('nav a')].map((link) => link.hash.slice(1))")
+        self.assertEqual(listed, ["overview", "choose", "compare", "problems", "methods", "statistics", "runs"])
+        for tab in listed:
             self.open(f"#{tab}")
             seen = self.browser.run("return [...document.querySelectorAll('.tab')].filter((tab) => "
                                     "tab.getClientRects().length > 0).map((tab) => tab.id)")
@@ -412,6 +413,12 @@ class Page(InBrowser):
             self.open(f"?o={self.json['optimizers'][last]['optimizer']}#problem-{p}")
             if self.browser.run("return cellOf(DATA.problems[arguments[0]], arguments[1])?.reached.length > 0", p, last):
                 self.browser.wait(IS_DRAWN, f"#problem-{p} .curves")
+        ranked = self.browser.run("return DATA.optimizers[DATA.ranked[DATA.ranked.length - 1]]")
+        self.open(f"?o={ranked}#statistics")
+        places = self.browser.wait("return [...document.querySelectorAll('#statistics .plot[id]')].map((one) => one.id)")
+        self.assertGreaterEqual(len(places), 3)
+        for place in places:
+            self.browser.wait(IS_DRAWN, f"#{place}")
 
     def test_an_axis_has_three_ticks(self):
         for low, high in ((1.2, 1.9), (1.5, 4), (3, 90), (1.5, 180), (2, 1e9)):
@@ -668,9 +675,15 @@ class Page(InBrowser):
         self.assertEqual(xml.etree.ElementTree.fromstring(svg).tag, "{http://www.w3.org/2000/svg}svg")
         self.assertNotIn("var(", svg)
         self.assertIn('paint-order="stroke', svg)  # else the edge of a name would cover it
+        for text in self.browser.run(chart + "return [nameOf(linesOf(chart).find(isLineShown)), "
+                                     "chart.querySelector('title').textContent]"):
+            self.assertIn(f">{text}<", svg)
         rows = self.browser.run(chart + "return csvText(chart)").splitlines()
         self.assertEqual(rows[0], "line,x,y")
         self.assertGreater(len(rows), 20)
+        name, taken = self.browser.run("const s = linesShown(arguments[0]).values().next().value; return [DATA.optimizers[s], "
+                                       "takenBy(cellOf(DATA.problems[arguments[0]], s))]", self.problem("beale"))
+        self.assertIn(f'"{name}",{taken:g},1e-06'.replace("1e-06", "0.000001"), rows)
 
     def test_a_figure_opens_its_records_and_the_commands_that_repeat_it(self):
         cell = self.browser.wait(
@@ -930,7 +943,7 @@ class Page(InBrowser):
             paper = base64.b64decode(self.browser.call("POST", "/print", {}))
             self.assertLessEqual(len(re.findall(rb"/Type\s*/Page\b", paper)), 12, tab)
             left = self.browser.run("return document.getElementById('left-out').textContent")
-            self.assertEqual(left.count(","), 7, left)  # a comma in the sentence, six among seven tabs
+            self.assertEqual(left.count(","), 6, left)  # a comma in the sentence, five among six tabs
         self.assertTrue(self.browser.run(
             "return [...document.querySelectorAll('.tab.open .chart')].every((chart) => "
             "linesOf(chart).length > 0)"))
@@ -983,6 +996,30 @@ class Forward(InBrowser):
                                  "return [document.getElementById('motion').childElementCount, top, bottom]")
         self.assertEqual(place[0], 0)
         self.assertTrue(0 < place[1] < place[2] < 900, place)
+
+    def test_paper_has_all_columns_of_the_matrix(self):
+        self.open("")
+        self.browser.wait("return document.querySelector('#heat td') !== null")
+        resized(self.browser, 703, 900)  # the width of A4, upright
+        try:
+            self.browser.call("POST", "/goog/cdp/execute", {"cmd": "Emulation.setEmulatedMedia", "params": {"media": "print"}})
+            seen = self.browser.run(
+                "dispatchEvent(new Event('beforeprint')); return [...document.querySelectorAll('.matrix thead th[data-p]')]"
+                ".map((one) => one.getBoundingClientRect()).filter((box) => box.width > 0 && box.right <= innerWidth).length")
+            self.assertEqual(seen, self.browser.run("return DATA.problems.length"))
+            self.browser.run("dispatchEvent(new Event('afterprint'))")
+        finally:
+            self.browser.call("POST", "/goog/cdp/execute", {"cmd": "Emulation.setEmulatedMedia", "params": {"media": ""}})
+
+    def test_names_of_columns_can_be_told_apart(self):
+        names = self.browser.run("return DATA.problems.map(brief)")
+        self.assertEqual(len(set(names)), len(names))
+        self.assertLessEqual(max(map(len, names)), 24)
+
+    def test_settings_whose_calls_fail_are_a_kind_of_their_own(self):
+        self.open("#choose")
+        self.browser.wait("return document.querySelector('#means .answer .verdict')")
+        self.assertEqual(self.browser.run("return DATA.dataKinds.map((_, kind) => adviceFor({...means, kind})[1])"), [8, 8, 8])
 
     def test_an_engineer_with_noisy_data_finds_method_runs_and_certainty_in_two_clicks(self):
         self.open("")
@@ -1100,7 +1137,7 @@ class Learned(unittest.TestCase):
                 page.open(pathlib.Path(folder, "report", "index.html").as_uri())
                 verdict = page.run("return document.querySelector('.verdict').innerText")
                 self.assertIn("at equal work", verdict)
-                self.assertIn("smallest error in x", verdict)
+                self.assertIn("errors in x over", verdict)
                 heat = page.wait("return document.querySelector('#heat').innerText")
                 self.assertIn("learned: error in x", heat)
                 self.assertIn("ranked by work",

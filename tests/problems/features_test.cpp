@@ -54,6 +54,9 @@ TEST(Features, ANoisyProblemHasALeastLossAndAFloor) {
   EXPECT_GT(noisy.x_floor(noisy.batch()), 0);
   EXPECT_LT(noisy.x_floor(noisy.batch()), noisy.x_scale(noisy.batch()));
   EXPECT_THROW(featured("rosenbrock", {{"noise", 0.01}}), UsageError) << "y* is 0";
+  // An error that is a mean over cells is far below a norm.
+  const Problem flow = featured("navier-stokes[N=8,steps=4]", {{"noise", 1e-6}});
+  EXPECT_LE(flow.x_floor(flow.batch()), flow.x_error(flow.start()));
 }
 
 // As many unknowns as data of a one-to-one P, so that some x fits the noise, too.

@@ -23,7 +23,8 @@ Record run_with(const char* problem, const std::string& option, const char* opti
   OptionValues& options = record.request.problem.options;
   options = OptionValues{{"N", Index{8}}};
   const std::size_t at = option.find('=');
-  if (option.starts_with("noise")) options.set("noise", std::stod(option.substr(at + 1)));
+  for (const char* share : {"noise", "fail"})
+    if (option.starts_with(share)) options.set(share, std::stod(option.substr(at + 1)));
   if (option.starts_with("bounds")) {
     options.set("bounds", option.substr(at + 1));
     record.curve.kkt_residual = record.curve.gradient_norm;
@@ -95,6 +96,8 @@ TEST(DiscrepancyTable, HasTheErrorAtTheNoiseAndAtTheEndOverTheBest) {
   EXPECT_EQ(none.rows[0][2].text, "0");
   EXPECT_EQ(none.reading, words("discrepancy.none"));
   EXPECT_TRUE(discrepancy_table(Compared(reversed())).id.empty()) << "no noise level is known";
+  strict.request.problem.options.set("goal", std::string("fit"));
+  EXPECT_TRUE(discrepancy_table(Compared({strict})).id.empty()) << "distances from the fit";
 }
 
 TEST(NoisePlot, HasTheErrorOverTheNoise) {
@@ -140,6 +143,7 @@ TEST(Chooser, AnswersByTheNoiseAndTheBoundsOfTheReader) {
     runs.push_back(run_with(problem, "", "d", 1));
     runs.push_back(run_with(problem, "noise=0.1", "d", 1));
     runs.push_back(run_with(problem, "bounds=active", "d", 1));
+    runs.push_back(run_with(problem, "fail=0.1", "b", 1));
   }
   for (Record& record : runs) {  // d alone needs gradients
     record.counts = {};
@@ -167,11 +171,13 @@ TEST(Chooser, AnswersByTheNoiseAndTheBoundsOfTheReader) {
   EXPECT_EQ(first({.least_unknowns = 101, .noise = 0.1}), "");
   EXPECT_EQ(first({.budget = 20, .noise = 0.1}), "") << "30 targets of one forward each";
   EXPECT_EQ(first({.budget = 40, .noise = 0.1}), "c");
+  EXPECT_EQ(first({.has_failures = true}), "b");
   std::vector<std::string> kinds;
   for (const Means& kind : kinds_of_data(c)) kinds.push_back(means_text(kind));
-  ASSERT_EQ(kinds.size(), 3U);
+  ASSERT_EQ(kinds.size(), 4U);
   EXPECT_EQ(kinds[1], means_text({.noise = 0.1}));
   EXPECT_EQ(kinds[2], means_text({.has_bounds = true}));
+  EXPECT_EQ(kinds[3], means_text({.has_failures = true}));
   EXPECT_NE(kinds[0], kinds[2]);
 }
 

@@ -7,6 +7,7 @@
 
 #include "core/files.h"
 #include "core/oracle.h"
+#include "core/results/advice.h"
 #include "core/results/ranking.h"
 #include "reports/page/page.h"
 #include "reports/report.h"
@@ -166,6 +167,35 @@ TEST(Orders, WhatAppliesNowhereIsNotRanked) {
   EXPECT_EQ(unranked_sentence(c), "") << "nor listed as left out";
 }
 
+std::string chosen(const Comparison& c) { return advice_text(c, {}, advise(c, {})); }
+
+TEST(Orders, IncompleteDataAreNotTested) {
+  Study study = family();
+  study.plan = plan_of(study.runs);
+  study.runs.erase(study.runs.begin());
+  const Compared c(std::move(study));
+  EXPECT_FALSE(c.decision);
+  EXPECT_EQ(first_sentences(c).at(0), words("ranking.incomplete", 1));
+  EXPECT_TRUE(has(chosen(c), "1 run is missing")) << chosen(c);
+}
+
+// 25 and 26 a target are equal for a user, though on every family the first needs less.
+TEST(Orders, MethodsWithinTheMarginAreBothNamed) {
+  Study study;
+  for (const char* problem : {"p", "q", "r", "s", "t", "u"})
+    for (const auto& [optimizer, work] : {std::pair{"a", 25}, {"b", 26}})
+      study.runs.push_back(
+          record_of({.problem = problem, .optimizer = optimizer, .work_per_hit = work}));
+  const Compared c(study);
+  EXPECT_TRUE(has(verdict(c).at(0), words("ranking.scored", "b", 0.99, 6))) << verdict(c)[0];
+  EXPECT_TRUE(has(chosen(c), "use a or b")) << chosen(c);
+  EXPECT_TRUE(has(verdict(c).at(2), "2 methods solve 6"));
+  for (Record& record : study.runs) record.request.problem.options.set("goal", std::string("fit"));
+  EXPECT_TRUE(has(chosen(Compared(study)), words("advice.fit")));
+  std::erase_if(study.runs, [](const Record& r) { return r.request.optimizer.name == "b"; });
+  EXPECT_TRUE(has(chosen(Compared(study)), words("advice.only")));
+}
+
 // One sentence of at most 60 words, and no other that contradicts it: kin is in the group, second
 // is not.
 TEST(Orders, AllSentencesFollowFromOneDecision) {
@@ -179,6 +209,7 @@ TEST(Orders, AllSentencesFollowFromOneDecision) {
   const std::vector<Reading> facts = ranking_facts(c);
   EXPECT_TRUE(has(facts[0].text, "first, kin")) << facts[0].text;
   EXPECT_FALSE(has(facts[0].text, "second")) << facts[0].text;
+  EXPECT_TRUE(has(facts[1].text, "because first needs less")) << facts[1].text;
 }
 
 // Seeds are instances. By time another is first, which is said of runs that were timed alone and
@@ -201,6 +232,8 @@ TEST(Orders, TheFirstSentenceSaysHowItsRunsDifferAndTimesRankOnlyWhereTheyAreTol
   EXPECT_TRUE(by_time(1, 1));
   EXPECT_FALSE(by_time(1, 2));
   EXPECT_FALSE(by_time(0.04, 1));
+  EXPECT_EQ(first_sentences(Compared(study, {.by = Measure::time})).at(0),
+            words("ranking.short-time"));
   for (const Record& record : std::vector(study.runs)) {
     study.runs.push_back(record);
     study.runs.back().request.seed = 1;
@@ -237,7 +270,9 @@ TEST(Orders, SeedsAreComparedInPairs) {
   }
   const std::string text = curve_reading(compare_optimizers(study), 0);
   EXPECT_TRUE(has(text, "on 2 of 3 seeds")) << text;
-  EXPECT_FALSE(has(text, "overlapping")) << text;
+  EXPECT_TRUE(text.starts_with(words("curve.few", 3))) << text;
+  const std::string alone = curve_reading(Compared({record_of({})}), 0);
+  EXPECT_TRUE(alone.starts_with("gd needs 60 forward")) << alone;
 }
 
 // Rows of one method at its defaults and at tuned rates.

@@ -459,8 +459,9 @@ TEST(Kinds, HaveOneColourAndTellTheirMethodsApart) {
   std::set<std::string> looks;
   std::istringstream rules(kind_rules(c));
   std::string rule;
-  for (std::size_t s = 0; s < c.optimizers.size() && std::getline(rules, rule); ++s) {
-    EXPECT_NE(rule.find(s + 1 < c.optimizers.size() ? "var(--adaptive)" : "var(--other)"),
+  for (std::size_t s = 0; s < c.optimizers.size() && std::getline(rules, rule);) {
+    if (rule.starts_with("[data-look")) continue;  // the same by the name of the method
+    EXPECT_NE(rule.find(++s < c.optimizers.size() ? "var(--adaptive)" : "var(--other)"),
               std::string::npos);
     looks.insert(rule.substr(rule.find('{')));
   }
@@ -476,8 +477,9 @@ TEST(Kinds, HaveFiveMethodsOfWhichNoTwoShareAColour) {
   std::set<std::string> colours;
   std::istringstream rules(kind_rules(c));
   std::string rule;
-  for (std::size_t s = 0; s < c.optimizers.size() && std::getline(rules, rule); ++s)
-    colours.insert(rule.substr(rule.find('{'), rule.find(';') - rule.find('{')));
+  while (std::getline(rules, rule) && colours.size() < c.optimizers.size())
+    if (rule.starts_with("[data-s"))
+      colours.insert(rule.substr(rule.find('{'), rule.find(';') - rule.find('{')));
   EXPECT_EQ(colours.size(), c.optimizers.size());
 }
 

@@ -203,6 +203,7 @@ TEST(Contrasts, LeadTheFirstScreenAndEachGroupStandsApart) {
   EXPECT_EQ(c.sanity.settings.size(), 1U);
   const std::string better = words("contrasts.worse", "adam", "nlopt-lbfgs");
   EXPECT_TRUE(has(first_sentences(c).at(0), better)) << first_sentences(c)[0];
+  EXPECT_TRUE(first_sentences(c).back().starts_with(words("ranking.second")));
   const Section section = standings_section(c);
   const Table& table = table_of(section, "contrasts");
   EXPECT_EQ(at(table, "adam against nlopt-lbfgs", "both solve"), "– (0)");

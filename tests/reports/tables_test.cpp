@@ -83,6 +83,7 @@ TEST(Tables, CertifiedDigitsAreThoseOfTheWorstParameter) {
 
 TEST(Tables, StandardDeviationsAreOfTheBestRunOfAProblem) {
   Record best = record_of({.problem = "square", .optimizer = "gd"});
+  best.minimum = 1e-30;
   best.uncertainty = {.x = {1, 2},
                       .standard_deviation = {0.1, 0.2},
                       .correlation = {{1, -0.5}, {-0.5, 1}},
@@ -99,6 +100,9 @@ TEST(Tables, StandardDeviationsAreOfTheBestRunOfAProblem) {
   EXPECT_EQ(at(tables[0], "x2", "strongest correlation"), "-0.5 with x1");
   EXPECT_EQ(record_from_text(file_text(best), "").uncertainty->correlation,
             best.uncertainty->correlation);
+  Record exact = best;
+  exact.minimum = 0;
+  EXPECT_TRUE(uncertainty_tables(Compared({exact})).empty()) << "the residual is rounding";
   best.answer = AnswerPoints{.unknowns = 2,
                              .names = {"k", "c"},
                              .units = {"N/m", ""},
@@ -250,6 +254,17 @@ TEST(LossWithoutX, SaysWhereNeitherCanBeTold) {
   const Table table = loss_without_x_table(Compared({record_of({})}));  // no solution is known
   EXPECT_TRUE(table.rows.empty());
   EXPECT_EQ(table.reading, words("loss-without-x.none"));
+  Study study = both_kinds();
+  for (Record& record : study.runs) record.request.problem.options.set("goal", std::string("fit"));
+  EXPECT_TRUE(loss_without_x_table(Compared(study)).rows.empty()) << "distances from the fit";
+  const std::string all_found = loss_without_x_table(Compared({run_of("q", "gd", 1)})).reading;
+  EXPECT_TRUE(all_found.ends_with("x of 1e-6.")) << all_found;
+}
+
+TEST(LossWithoutX, CountsNothingAgainstALossThatARunUndercuts) {
+  Record record = run_of("p", "gd", 0.05);
+  record.summary.best_loss = -0.5;
+  EXPECT_EQ(Compared({record}).runs[0].loss_met, 0U);
 }
 
 // Equivalent forward solves: counts at measured prices, and what does not depend on prices.

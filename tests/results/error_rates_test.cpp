@@ -369,6 +369,7 @@ TEST(Contrasts, WithinTenPercentOfWorkAreEqualOrUndecided) {
   EXPECT_EQ(contrast_of(std::vector<Real>(16, least)).outcome, Outcome::undecided);
   EXPECT_EQ(contrast_of(std::vector<Real>(20000, least)).outcome, Outcome::equal);
   EXPECT_EQ(contrast_of(std::vector<Real>(16, 0.5)).outcome, Outcome::better);
+  EXPECT_EQ(contrast_of(std::vector<Real>(12, 1)).interval.high, 1) << "no score is above 1";
   EXPECT_EQ(contrast_of(std::vector<Real>(16, -0.5)).outcome, Outcome::worse);
 }
 
@@ -376,7 +377,9 @@ TEST(Contrasts, WithinTenPercentOfWorkAreEqualOrUndecided) {
 TEST(Contrasts, AreTIntervalsWithTwoPseudoFamilies) {
   const Contrast two = contrast_of({0.5, 0.5});
   EXPECT_NEAR(two.mean, 0.25, 1e-12);
-  EXPECT_NEAR(two.interval.high - two.mean, 3.18245 * 0.86603 / 2, 1e-4);  // digits given
+  EXPECT_NEAR(two.interval.low - two.mean, -1.25, 1e-12) << "half is 1.378, but no score below −1";
+  const Contrast many = contrast_of(std::vector<Real>(8, 0.5));  // s = √((8·0.01 + 1.96 + 0.36)/9)
+  EXPECT_NEAR(many.interval.high - many.mean, 2.26216 * 0.51640 / std::sqrt(10.0), 1e-4);
 }
 
 TEST(Contrasts, AreTestedUntilOneFails) {
