@@ -198,9 +198,9 @@ def contest_findings():
             continue
         back = len(solved[second] - solved[first])
         items.append(f"{first} has the higher score in {sum(d > 0 for d in differences)} of {len(families)} families and solves "
-                     f"{len(solved[first] - solved[second])} settings that {second} does not, {back or 'none'} the other way; with two "
-                     f"pseudo-families at ±64-fold, which widen it, the interval of the index of work ({64 ** -high:.2f} to "
-                     f"{64 ** -low:.2f}) does not exclude equality.")
+                     f"{len(solved[first] - solved[second])} settings that {second} does not, {back or 'none'} the other way. Its work "
+                     f"relative to {second} (64^−Δscore) has a 95 % interval of {64 ** -high:.2f} to {64 ** -low:.2f}, widened by two "
+                     "pseudo-families at ±64-fold, which does not exclude equality.")
         if tested < len(contrasts):
             items[-1] += f" The other {COUNTS[len(contrasts) - tested]} therefore not tested."
         break

@@ -76,7 +76,7 @@ def verdict(peer, works, ended, settings):
             parts.append(f"{kind}, `{ours}` needs less work in {better.count(kind)} and more in {worse.count(kind)} settings")
     choice = "Our default is the better choice" if len(better) > len(worse) else \
         "The peer is the better choice" if len(worse) > len(better) else "Neither is the better choice"
-    middle = f"; where both arrive, the peer takes {statistics.median(ratios):.3g} times the work" if ratios else ""
+    middle = f"; where both reach 1e-6, the peer takes {statistics.median(ratios):.3g} times the work" if ratios else ""
     end = f" In {early} of these settings a test of the peer, at its tolerances, ended the run before 1e-6." if early else ""
     return f"{choice} here: {'; '.join(parts)}{middle}.{end}"
 

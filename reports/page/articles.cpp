@@ -77,7 +77,8 @@ std::string deeds_html(const Comparison& c, std::size_t s) {
       for (const std::size_t run : cell.runs)
         if (is_failure(c.runs[run].record->status)) message = c.runs[run].record->message;
       add(failed, fmt::format("{} of {} runs: {}", cell.failed, cell.runs.size(), message));
-    } else if (!work.is_solved() && !c.problems[p].lacks_least_loss()) {
+    } else if (!work.is_solved() && !c.problems[p].lacks_least_loss() &&
+               !c.problems[p].is_learned) {
       const auto [cause, text] = shortfall(c, p, cell);
       add(unsolved[cause], text);
     }

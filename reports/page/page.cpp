@@ -98,13 +98,6 @@ std::string legend_html(const Comparison& c) {
   return legend;
 }
 
-// The plot itself stands among the statistics.
-std::string profile_html(const Comparison& c) {
-  if (!has_order(c))
-    return html_text(words("page.no-profile", counted_settings(c, c.problems.size())));
-  return html_text(profile_reading(c, kTightest));
-}
-
 // How many of the published results agree.
 std::string checked_html(const Document& document) {
   if (document.claims.empty()) return "";
@@ -403,7 +396,6 @@ std::string readable_html(const Document& document) {
               {"apart", apart.is_empty() ? "" : section_html(apart)},
               {"matrix", section_html(document.section("problems"))},
               {"problems", problems_html(c, fields)},
-              {"profile", profile_html(c)},
               {"details", details_html(c)},
               {"figures", figures_html(document)},
               {"claims", claims_html(document)},

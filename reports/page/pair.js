@@ -78,8 +78,8 @@ const named = (s) => element('b', {}, swatch(s), DATA.optimizers[s], DATA.marks[
 
 // Medians over the settings that all of them solve.
 function priceTable() {
-  const {methods} = pair, solved = settingsOf(methods).filter(({taken}) => taken.every((work) => work < Infinity));
-  const middle = (s, measure) => (solved.length === 0 ? '–' : figure(Number(medianOf(solved.map(({p}) => takenBy(cellOf(DATA.problems[p], s), view.target, measure)).sort((x, y) => x - y)).toPrecision(4))));
+  const {methods} = pair, solved = settingsOf(methods).filter(({taken}) => taken.every((work) => work < Infinity)), doubt = (measure) => (DATA.measures[measure].name === 'time' && DATA.isTimedTogether ? '≈ ' : '');
+  const middle = (s, measure) => (solved.length === 0 ? '–' : doubt(measure) + figure(Number(medianOf(solved.map(({p}) => takenBy(cellOf(DATA.problems[p], s), view.target, measure)).sort((x, y) => x - y)).toPrecision(4))));
   const rows = [...DATA.measures.map(({counted, unit}, measure) => [`${counted}, ${unit}`, (s) => middle(s, measure)]), ['required derivatives', (s) => DATA.asks[s]],
     ['extra information (†)', (s) => DATA.privileges[s] || 'none'], ['kind', (s) => DATA.kinds[s]]];
   const table = element('table', {className: 'prices'}), open = () => openSettings(worded('compared'), methods, solved.map(({p}) => p));
@@ -96,11 +96,11 @@ const pairEvidence = (a, b) => Object.assign(pressable(worded('pair-evidence'), 
 // A sentence that says no more than the interval does.
 function pairSentence(a, b) {
   const {both, onlyA, onlyB, neither, problems, median, low, high} = ratioOf(a, b), isOpen = problems < 6 || (low <= 1 && high >= 1);
-  const counts = worded('pair-counts', {a: DATA.optimizers[a], b: DATA.optimizers[b], tau: tauName(view.target), both, onlyA, onlyB, neither});
+  const counts = worded('pair-counts', {a: saidOf(a), b: saidOf(b), tau: tauName(view.target), both, onlyA, onlyB, neither});
   if (both === 0) return counts;
   if (isDoubtful()) return `${counts} ${worded('not-timed')}`;
   const [more, less, ...ratios] = median < 1 ? [b, a, 1 / median, 1 / high, 1 / low] : [a, b, median, low, high], [ratio, least, most] = ratios.map(multiple);
-  return `${counts} ${worded('pair-ratio', {a: DATA.optimizers[more], b: DATA.optimizers[less], measure: measureNow().counted, ratio, interval: worded(problems < 6 ? 'pair-range' : 'pair-interval', {n: problems}), low: least, high: most})}${isOpen ? ` ${worded('pair-open')}` : ''}`;
+  return `${counts} ${worded('pair-ratio', {a: saidOf(more), b: saidOf(less), measure: measureNow().counted, ratio, interval: worded(problems < 6 ? 'pair-range' : 'pair-interval', {n: problems}), low: least, high: most})} ${worded(isOpen ? 'pair-open' : 'pair-clear')}`;
 }
 
 // One row a setting: a dot for each method on one logarithmic axis, ✗ at its end.
@@ -132,14 +132,17 @@ function settingRows() {
   return settingsOf(pair.methods).sort((x, y) => ratio(x.taken) - ratio(y.taken)).map(({p, taken}) => ({p, taken: taken.map(atLeast), words: taken.map(amount).join(' : ')}));
 }
 
+// In a sentence, without a comma: "sip (given P⁻¹)".
+const saidOf = (s) => DATA.optimizers[s].replace(/, given (.*)/, ' (given $1)');
+
 // How two methods compare on a learned problem, in the numbers of the report.
 function learnedSentence(p, a, b) {
   const {pairs, rows} = DATA.problems[p].learned, one = pairs.find(([less, more]) => (less === a && more === b) || (less === b && more === a));
   if (one === undefined) return [];
   const [less, more, ratio, low, high, chance, isListed] = one, rowOf = (s) => rows.find((row) => row.s === s);
   const costOf = (s) => worded('step-cost', {work: figure(rowOf(s).solves), ms: `${DATA.isTimedTogether ? '≈ ' : ''}${figure(rowOf(s).ms)}`});
-  return [element('p', {}, worded('learned-ratio', {problem: DATA.problems[p].spec, a: DATA.optimizers[more], b: DATA.optimizers[less], ratio: multiple(ratio), work: figure(DATA.problems[p].learned.work), seeds: `${rowOf(more).runs} : ${rowOf(less).runs}`, p: chance, costA: costOf(more), costB: costOf(less),
-    interval: low > 0 && high !== null ? worded('learned-interval', {low: multiple(low), high: multiple(high)}) : worded('learned-few')}), chance > 0.05 ? ` ${worded('pair-open')}` : '', ...isListed ? [' ', element('a', {href: '#ratio-readings'}, worded('other-readings'))] : [])];
+  return [element('p', {}, worded('learned-ratio', {problem: DATA.problems[p].spec, a: saidOf(more), b: saidOf(less), ratio: multiple(ratio), work: figure(DATA.problems[p].learned.work), seeds: `${rowOf(more).runs} and ${rowOf(less).runs}`, p: chance, sure: worded(chance > 0.05 ? 'pair-open' : 'pair-clear'), costA: costOf(more), costB: costOf(less),
+    interval: low > 0 && high !== null ? worded('learned-interval', {low: multiple(low), high: multiple(high)}) : worded('learned-few')}), ...isListed ? [' ', element('a', {href: '#ratio-readings'}, worded('other-readings'))] : [])];
 }
 
 // Learned problems by the error in x at equal work: with the row that a method has there, whatever it was given.
@@ -151,7 +154,7 @@ function learnedSection() {
   });
   const apart = ({taken: [x, y]}) => Math.abs(Math.log(x / y)) || 0;
   rows.sort((x, y) => apart(y) - apart(x));
-  return rows.length === 0 ? [] : [element('h3', {}, worded('learned-pair')), ...rows.flatMap(({p, those: [first, ...others]}) => others.flatMap((s) => learnedSentence(p, first, s))), dotRows(rows)];
+  return rows.length === 0 ? [] : [element('h3', {}, worded('learned-pair')), ...rows.flatMap(({p, those: [first, ...others]}) => others.flatMap((s) => learnedSentence(p, first, s))), element('p', {className: 'legend'}, worded('learned-legend')), dotRows(rows)];
 }
 
 // The work of each other method over settings, against that of the first: below the diagonal it needs less.
@@ -159,7 +162,7 @@ function scatter(rows) {
   const solved = rows.filter(({taken}) => taken[0] < Infinity && taken.some((value, i) => i > 0 && value < Infinity)), values = solved.flatMap(({taken}) => taken.filter((value) => value < Infinity));
   if (solved.length < 2) return [];
   const [low, high] = [Math.min(...values) / 1.2, 1.2 * Math.max(...values)], at = (value) => 40 + 240 * Math.log(value / low) / Math.log(high / low);
-  const drawn = svgElement('svg', {class: 'scatter', viewBox: '0 0 300 310', role: 'img', 'aria-label': worded('scatter', {measure: measureNow().counted, a: DATA.optimizers[pair.methods[0]]})});
+  const drawn = svgElement('svg', {class: 'scatter', viewBox: '0 0 300 310', role: 'img', 'aria-label': worded('scatter', {measure: measureNow().counted, a: saidOf(pair.methods[0])})});
   drawn.append(svgElement('path', {class: 'grid', d: 'M40 280V40M40 280H280M40 280L280 40'}));
   for (const tick of ticksOf(low, high, true))
     drawn.append(svgElement('text', {x: at(tick), y: 294, 'text-anchor': 'middle'}, short(tick)), svgElement('text', {x: 36, y: 324 - at(tick), 'text-anchor': 'end'}, short(tick)));
@@ -184,7 +187,7 @@ function drawPair(place) {
   const {methods} = pair, rows = settingRows(), selects = [...Array(Math.min(MOST_COMPARED, methods.length + 1)).keys()].map((i) => methodSelect(methods, DATA.optimizers.keys(), i, redraw));
   place.replaceChildren(element('style', {}, huesOf(methods, '#pair ')), element('p', {className: 'chosen-two'}, ...selects.flatMap((select, i) => (i === 0 ? [select] : [i === 1 ? ' against ' : ' ', select]))),
       ...methods.slice(1).map((s) => element('p', {className: 'verdict'}, pairSentence(methods[0], s), ' ', pairEvidence(methods[0], s))),
-      element('div', {className: 'decided'}, element('div', {}, element('p', {className: 'legend'}, worded('pair-legend', {measure: measureNow().counted})), dotRows(rows), ...learnedSection()),
+      element('div', {className: 'decided'}, element('div', {}, ...learnedSection(), element('p', {className: 'legend'}, worded('pair-legend', {measure: measureNow().counted})), dotRows(rows)),
           element('div', {}, scrolled(priceTable()), ...scatter(rows))));
 }
 

@@ -44,7 +44,7 @@ function leadersBy(gradient) {
 }
 
 function leadersText(gradient) {
-  return leadersBy(gradient).map(({s, from}, i) => (i === 0 ? DATA.optimizers[s] : worded('price-from', {from: short(from), method: DATA.optimizers[s]}))).join(', ');
+  return leadersBy(gradient).map(({s, from}) => worded('price-from', {from: short(from), method: DATA.optimizers[s]})).join(', ');
 }
 
 function drawPrices(list, sentence, shares) {
@@ -66,7 +66,7 @@ function drawPrices(list, sentence, shares) {
   });
   list.style.setProperty('--places', places.length);
   list.style.setProperty('--letters', 1 + Math.max(...DATA.ranked.map((s) => DATA.optimizers[s].length)));  // a † too
-  sentence.textContent = worded('price-leaders', {gradient: short(gradient), leaders: leadersText(gradient)});
+  sentence.textContent = worded('price-leaders', {gradient: short(gradient), jacobian: jacobian === undefined ? worded('price-nominal') : short(jacobian), method: DATA.optimizers[places[0].s], leaders: leadersText(gradient)});
 }
 
 function priceSlider(key, redraw) {

@@ -160,7 +160,7 @@ function drawRace(place, races) {
     draw();
   };
   const seeds = new Set(runners.map(({seed}) => seed)), told = DATA.problems[p].fields === undefined ? 'race-median' : 'race-seed';
-  place.replaceChildren(element('p', {className: 'steps'}, element('a', {href: `#problem-${p}`}, worded('motion', {problem: ''})), problems, ' ', ...selects.flatMap((select) => [select, ' ']), button, ' ', clock, ' ',
+  place.replaceChildren(element('style', {}, huesOf(race.methods, '#motion ')), element('p', {className: 'steps'}, element('a', {href: `#problem-${p}`}, worded('motion', {problem: ''})), problems, ' ', ...selects.flatMap((select) => [select, ' ']), button, ' ', clock, ' ',
           pressable(worded('race-frames'), undefined, kept(() => download(`${file}.tar`, 'application/x-tar', tarOf(framesOf(scene))))), ' ',
           pressable(worded('race-animated'), undefined, kept(() => download(`${file}.svg`, 'image/svg+xml', animatedText(scene))))),
       svg, element('p', {className: 'legend'}, worded(told, {seed: [...seeds].join(', ')})));
@@ -173,6 +173,7 @@ function liveRace(place) {
   if (races.length === 0) return;
   race.p = races.find((p) => DATA.problems[p].fields === undefined && haveArrived(p)) ?? races[0];
   race.methods = racersOf(race.p);
+  document.querySelector('.first').append(...place.parentElement.querySelectorAll('figure'));
   race.frame = matchMedia('(prefers-reduced-motion: reduce)').matches ? RACE_FRAMES : 0;
   live(place, () => { if (place.childElementCount === 0) drawRace(place, races); });
 }

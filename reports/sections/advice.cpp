@@ -80,10 +80,12 @@ std::string advice_text(const Comparison& c, const Means& means, const Advice& a
                  name(first), first.solved, goal, kFewestFamilies, kFewestSolved);
   } else {
     const Advised& first = advice.ranked[0];
-    std::vector<std::string> equal{name(first)}, group;  // that solve as many; other ones
+    std::vector<std::string> equal{name(first)}, group;  // that solve no fewer; other ones
     for (const Advised& one : advice.ranked)
-      if (one.is_in_group && &one != &first)
-        (one.solved == first.solved ? equal : group).push_back(name(one));
+      if (one.is_in_group && &one != &first && one.solved >= first.solved)
+        equal.push_back(name(one));
+      else if (one.is_in_group && &one != &first)
+        group.push_back(words("advice.member", name(one), one.solved));
     const auto as_many = std::ranges::count(advice.ranked, first.solved, &Advised::solved);
     if (advice.settings.size() < kFewestForInterval && as_many > 1) {
       text = words("advice.indistinct", means_text(means), advice.settings.size(), goal, as_many,
@@ -91,8 +93,7 @@ std::string advice_text(const Comparison& c, const Means& means, const Advice& a
     } else {
       text = words(equal.size() > 1 ? "advice.equal" : "advice.first", means_text(means),
                    first_of(equal, 4, " or "), first.solved, advice.settings.size(), physics, goal);
-      if (first.work < kNever && equal.size() == 1)
-        text += " " + words("advice.work", figure(first.work));
+      if (first.work < kNever) text += " " + words("advice.work", name(first), figure(first.work));
       if (advice.ranked.size() == 1)
         text += " " + words("advice.only");
       else if (!group.empty())

@@ -139,7 +139,7 @@ std::string term_text(const Json& term) {
   std::string text = optimizer.is_array()
                          ? fmt::format("{} of {}", term.value("of", "best"), optimizer.size())
                          : shown_spec(optimizer.get<std::string>());
-  if (term.contains("column")) text += " " + column_words(term["column"]);
+  if (term.contains("column")) text += " (" + column_words(term["column"]) + ")";
   if (term.contains("iteration")) text += " " + iteration_text(term, "");
   if (term.contains("at")) text += fmt::format(" at {}", figure(real_of(term["at"])));
   return text;

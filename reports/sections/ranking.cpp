@@ -177,9 +177,10 @@ std::string kinds_text(const Comparison& c, const Decision& decision) {
   for (auto& [kind, places] : kinds) {
     std::ranges::sort(places, {}, &results::Place::solved);
     const std::size_t low = places.front()->solved, high = places.back()->solved;
-    parts.push_back(words("ranking.kind",
-                          places.size() > 1 ? kind : names_text(c, {places[0]->method}, 1),
-                          places.size(), range_text(low, high)));
+    parts.push_back(
+        words("ranking.kind",
+              places.size() > 1 ? words("kind." + kind) : names_text(c, {places[0]->method}, 1),
+              range_text(low, high)));
   }
   std::string text = most_solved_text(c, decision);
   if (parts.size() > 1)

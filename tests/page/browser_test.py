@@ -1246,7 +1246,7 @@ class Claims(unittest.TestCase):
         self.assertEqual([int(count) for count in counts],
                          [sum(verdict in group for verdict in facts.values()) for group in groups])
 
-    def test_the_ranking_stands_beside_a_published_result_with_its_interval(self):
+    def test_a_published_result_stands_below_the_ranking_with_its_interval(self):
         page = browser.Browser()
         try:
             resized(page, 1400, 900)
@@ -1254,7 +1254,7 @@ class Claims(unittest.TestCase):
             page.run("document.querySelector('.first figure').scrollIntoView()")
             hero = page.run("const hero = document.querySelector('.first figure'); return hero && "
                             "[hero.innerText, hero.querySelector('.ground') !== null, "
-                            "hero.getBoundingClientRect().left, hero.querySelectorAll('.tools button').length]")
+                            "hero.querySelector('figcaption').getBoundingClientRect().left, hero.querySelectorAll('.tools button').length]")
         finally:
             page.close()
         self.assertIsNotNone(hero)
