@@ -14,6 +14,7 @@
 
 #include "benchmarks/cli/verb.h"
 #include "benchmarks/plan/catalog.h"
+#include "benchmarks/plan/claim_cells.h"
 #include "benchmarks/run/isolate.h"
 #include "benchmarks/run/process_group.h"
 #include "core/errors.h"
@@ -59,6 +60,11 @@ const Catalog& Session::catalog() {
     }
   catalog_ = std::make_shared<const Catalog>(std::move(made));
   return *catalog_;
+}
+
+const std::vector<Claim>& Session::claims() {
+  if (!claims_) claims_ = std::make_shared<const std::vector<Claim>>(builtin_claims_of(catalog()));
+  return *claims_;
 }
 
 }  // namespace isoline::benchmarks

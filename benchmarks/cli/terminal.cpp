@@ -177,8 +177,7 @@ int exit_code_of(const Outcome& outcome) {
 
 reports::Study study_of_report(const std::vector<std::string>& folders, Session& session) {
   std::set<std::string> claimed;
-  for (const Request& request : cells_of(builtin_claims_of(session.catalog()), true))
-    claimed.insert(request.cell);
+  for (const Request& request : cells_of(session.claims(), true)) claimed.insert(request.cell);
   reports::Study study = reports::read_study(
       folders, progress_on_terminal("reading records"),
       [&](Record& record) { reports::trim_for_report(record, claimed.contains(record.cell)); });
@@ -237,8 +236,7 @@ void add_published_conduct(reports::Document& document) {
 
 reports::Document document_of_report(const reports::Study& study, Session& session,
                                      const reports::Yardstick& yardstick) {
-  std::vector<reports::Judgement> claims =
-      reports::judge(json_of(builtin_claims_of(session.catalog())), study.runs);
+  std::vector<reports::Judgement> claims = reports::judge(json_of(session.claims()), study.runs);
   std::erase_if(claims, [](const reports::Judgement& judgement) { return !judgement.is_covered; });
   reports::Yardstick own = yardstick;
   own.has_contrasts = reports::has_contrasts(study);

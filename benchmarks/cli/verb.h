@@ -22,14 +22,16 @@ class Option;
 namespace isoline::benchmarks {
 
 struct Catalog;
+struct Claim;
 
-// The state that verbs share: the catalog, which is made at its first use and includes the
-// libraries of --plugin, and the command for the records.
+// The state that verbs share: the catalog, which includes the libraries of --plugin, and the claims
+// with their cells, each made at its first use, and the command for the records.
 class Session {
  public:
   Session(std::string command, std::function<Catalog()> make);
   std::vector<std::string>& plugins() { return plugins_; }  // paths
   const Catalog& catalog();
+  const std::vector<Claim>& claims();
   const std::string& command() const { return command_; }
 
  private:
@@ -37,6 +39,7 @@ class Session {
   std::function<Catalog()> make_;
   std::vector<std::string> plugins_;
   std::shared_ptr<const Catalog> catalog_;
+  std::shared_ptr<const std::vector<Claim>> claims_;
 };
 
 using ListedValues = std::map<const CLI::Option*, std::vector<std::string>>;

@@ -130,8 +130,7 @@ std::vector<Record> runs_of(const ClaimArguments& given) {
 }
 
 int run(const ClaimArguments& given, Session& session) {
-  const std::vector<Claim> claims =
-      chosen_claims(builtin_claims_of(session.catalog()), given.names);
+  const std::vector<Claim> claims = chosen_claims(session.claims(), given.names);
   if (given.is_list) return list_claims(claims, given);
   Outcome outcome;
   if (!given.no_run) outcome = run_missing(given, claims, session);

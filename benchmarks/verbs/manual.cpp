@@ -100,8 +100,7 @@ Candidates values_of(const Verb& verb, const ArgumentText& argument, Session& se
   if (is({"SUITE", "--suite"}))
     for (const auto& [name, text] : builtin_suites()) all.emplace_back(name, "");
   if (verb.name == "claims" && is({"ID"}))
-    for (const Claim& claim : builtin_claims_of(session.catalog()))
-      all.emplace_back(claim.id, claim.sentence);
+    for (const Claim& claim : session.claims()) all.emplace_back(claim.id, claim.sentence);
   if (is({"--retry"}))
     for (const std::string_view status : kStatusNames)
       if (status != name_of(Status::running)) all.emplace_back(status, "");

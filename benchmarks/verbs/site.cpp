@@ -77,7 +77,7 @@ int run(const SiteArguments& given, Session& session) {
   make_output_folder(out);
   std::deque<reports::Study> studies;
   std::deque<reports::Document> documents;
-  const std::vector<Claim> claims = builtin_claims_of(session.catalog());
+  const std::vector<Claim>& claims = session.claims();
   reports::Site site{.docs = docs_html()};
   std::set<std::string> names;
   for (const std::string& folder : given.folders) {

@@ -194,7 +194,7 @@ bool has_twins(const element& value) {
   }
   if (simdjson::dom::array list; value.get(list) == simdjson::SUCCESS)
     for (const element each : list)
-      if (has_twins(each)) return true;
+      if ((each.is_object() || each.is_array()) && has_twins(each)) return true;
   return false;
 }
 

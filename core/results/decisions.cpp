@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numeric>
 #include <set>
@@ -13,6 +14,7 @@
 #include "core/results/contrasts.h"
 #include "core/results/statistics.h"
 #include "core/seeds.h"
+#include "core/threads.h"
 
 namespace isoline::results {
 namespace {
@@ -20,6 +22,7 @@ namespace {
 using Row = std::vector<Real>;
 
 constexpr Real kRounding = 1e-9;  // of sums, relative
+constexpr Real kNone = std::numeric_limits<Real>::quiet_NaN();
 
 // Settings of one family, in the order in which families come first.
 std::vector<std::vector<std::size_t>> by_family(const std::vector<std::string>& families) {
@@ -133,28 +136,37 @@ Leaving leaving_order(const Flips& flips) {
 
 // --- the bootstrap
 
-// The results on one setting: [instance][start].
-using Crossed = std::vector<std::vector<const Repetition*>>;
+// The results on one setting, those of an instance side by side.
+struct Crossed {
+  std::vector<std::size_t> begins{0};  // [instance], among all starts; and their number
+  Row costs;                           // [start][method]; NaN where no such run exists
+};
 
 Crossed by_instance(const std::vector<Repetition>& repetitions) {
   std::map<std::uint64_t, std::vector<const Repetition*>> instances;
   for (const Repetition& each : repetitions) instances[instance_of(each.seed)].push_back(&each);
   Crossed all;
-  for (auto& [instance, starts] : instances) all.push_back(std::move(starts));
+  for (const auto& [instance, starts] : instances) {
+    all.begins.push_back(all.begins.back() + starts.size());
+    for (const Repetition* each : starts)
+      for (const std::optional<Real>& cost : each->costs) all.costs.push_back(cost.value_or(kNone));
+  }
   return all;
 }
 
 // The results of each method on one setting over resampled instances, and within them starts. An
 // empty resample gets the median of all runs.
 std::vector<std::optional<Real>> drawn_costs(const std::vector<std::optional<Real>>& costs,
-                                             const Crossed& instances, Draws& random) {
+                                             const Crossed& all, Draws& random) {
   std::vector<Row> values(costs.size());
-  for (std::size_t i = 0; i < instances.size(); ++i) {
-    const auto& starts = instances[drawn_place(random, instances.size())];
-    for (std::size_t j = 0; j < starts.size(); ++j) {
-      const Repetition& drawn = *starts[drawn_place(random, starts.size())];
+  const std::size_t instances = all.begins.size() - 1;
+  for (std::size_t i = 0; i < instances; ++i) {
+    const std::size_t instance = drawn_place(random, instances), begin = all.begins[instance],
+                      starts = all.begins[instance + 1] - begin;
+    for (std::size_t j = 0; j < starts; ++j) {
+      const Real* const drawn = &all.costs[(begin + drawn_place(random, starts)) * costs.size()];
       for (std::size_t s = 0; s < costs.size(); ++s)
-        if (drawn.costs[s]) values[s].push_back(*drawn.costs[s]);
+        if (!std::isnan(drawn[s])) values[s].push_back(drawn[s]);
     }
   }
   std::vector<std::optional<Real>> medians = costs;
@@ -256,10 +268,9 @@ class Decider {
     std::vector<Crossed> crossed;  // [setting]
     for (const auto& repetitions : evidence_.repetitions)
       crossed.push_back(by_instance(repetitions));
-    Row first(methods_.size(), 0);
-    Draws random(0, "report", "hierarchy");
-    for (std::size_t draw = 0; draw < kDraws; ++draw) {
-      random.restart(draw);
+    std::vector<std::vector<std::size_t>> best(kDraws);
+    share(kDraws, [&](std::size_t draw) {
+      Draws random(0, "report", "hierarchy", draw);
       Costs costs;
       std::vector<std::string> families;  // one that is drawn twice is two
       for (std::size_t g = 0; g < families_.size(); ++g)
@@ -269,9 +280,11 @@ class Decider {
                               : drawn_costs(evidence_.costs[p], crossed[p], random));
           families.push_back(std::to_string(g));
         }
-      const auto best = firsts(mean_scores(family_scores(costs, families, methods_)));
-      for (const std::size_t s : best) first[s] += 1 / Real(best.size());
-    }
+      best[draw] = firsts(mean_scores(family_scores(costs, families, methods_)));
+    });
+    Row first(methods_.size(), 0);
+    for (const auto& those : best)
+      for (const std::size_t s : those) first[s] += 1 / Real(those.size());
     for (std::size_t s = 0; s < methods_.size(); ++s)
       std::ranges::find(out.places, methods_[s], &Place::method)->share_first =
           first[s] / Real(kDraws);

@@ -1,7 +1,9 @@
 // Orders the sections of a report, and writes its first sentences and the summaries of its charts.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <numeric>
 #include <optional>
@@ -10,6 +12,7 @@
 
 #include "core/files.h"
 #include "core/seeds.h"
+#include "core/threads.h"
 #include "reports/sections/sections.h"
 #include "reports/sections/words.h"
 
@@ -26,22 +29,30 @@ Document document_of(Comparison comparison, std::vector<Judgement> claims) {
   document.statuses = status_text(c.statuses);
   document.incomplete = missing_text(c);
   document.remarks = remarks(c);
-  document.sections = {standings_section(c),
-                       problems_section(c),
-                       learned_section(c, document.claims),
-                       amortized_section(c),
-                       sweeps_section(c),
-                       spectra_section(c),
-                       claims_section(document.claims),
-                       properties_section(c.study->audits),
-                       conduct_section(c.study->audits),
-                       tuning_section(c),
-                       statistics_section(c),
-                       failures_section(c),
-                       builds_section(c)};
-  if (Section fit = fit_section(c); !fit.is_empty())
-    document.sections.insert(document.sections.begin(), std::move(fit));
-  document.figures = figures(c);
+  const auto make = std::to_array<std::function<Section()>>({
+      [&] { return fit_section(c); },
+      [&] { return standings_section(c); },
+      [&] { return problems_section(c); },
+      [&] { return learned_section(c, document.claims); },
+      [&] { return amortized_section(c); },
+      [&] { return sweeps_section(c); },
+      [&] { return spectra_section(c); },
+      [&] { return claims_section(document.claims); },
+      [&] { return properties_section(c.study->audits); },
+      [&] { return conduct_section(c.study->audits); },
+      [&] { return tuning_section(c); },
+      [&] { return statistics_section(c); },
+      [&] { return failures_section(c); },
+      [&] { return builds_section(c); },
+  });
+  document.sections.resize(make.size());
+  share(make.size() + 1, [&](std::size_t i) {
+    if (i < make.size())
+      document.sections[i] = make[i]();
+    else
+      document.figures = figures(c);
+  });
+  if (document.sections[0].is_empty()) document.sections.erase(document.sections.begin());
   add_published(document.figures, c, document.claims);
   return document;
 }
