@@ -367,7 +367,12 @@ Status Meter::judge(VectorRef theta) {
   if (std::isnan(means_.loss.last())) return Status::diverged;
   if (goals_.is_target_met(judged_.at.loss, trace_.last.x_error)) return Status::target;
   if (goals_.is_at_noise(trace_.last.discrepancy)) return Status::discrepancy;
-  if (!problem_.is_learned() &&
+  return limit();
+}
+
+Status Meter::limit() {
+  const bool do_all_fail = in_a_row_.failed > kStallIterations / 2;  // their number ends the run
+  if (!problem_.is_learned() && !do_all_fail &&
       goals_.has_stalled(iteration_, budget_.stall.value_or(kStallIterations)))
     return Status::stalled;
   if (is_out_of_work() || iteration_ >= budget_.iterations) return Status::budget;

@@ -73,6 +73,7 @@ class Meter {
     return is_out_of_work() || iteration_ >= budget_.iterations || is_out_of_time();
   }
   Status status() const { return status_; }
+  Status limit();  // `stalled` or `budget` where the run may go no further, whatever its point
   // By which adapters multiply residuals for libraries with absolute tolerances: a power of 2,
   // about 1/‖r‖ at the start where unknowns are scaled; else 1.
   Real residual_unit() const;

@@ -394,7 +394,8 @@ Vector drive(Optimizer& method, Meter& meter, Vector theta, Checkpoint& checkpoi
       if (method.reports_iterations()) break;
       const bool starts_again = retreat.is_due(before, theta, verdict);
       const Status status = meter.iterate(theta);
-      const Status judged = retreat.excused(theta, meter.judged(), status);
+      Status judged = retreat.excused(theta, meter.judged(), status);
+      if (judged != status) judged = meter.limit();
       if (judged != Status::running) verdict = judged;
       if (verdict == Status::running && starts_again) method.start(meter, theta);
       if (verdict == Status::running && !retreat.is_at_failed() &&

@@ -224,8 +224,8 @@ TEST(ForeignText, OfAComponentEndsNoRunAndNoResume) {
 // Tells how often it ran.
 struct Counting {
   struct State {};
-  State init(Meter&, const Vector&) const {
-    ++told();
+  State init(Meter&, const Vector& theta) const {
+    if (theta.size() == 4) ++told();  // else it is rehearsed
     return {};
   }
   Status step(Meter&, Vector&, State&) const {
@@ -241,7 +241,7 @@ class SharedFolder : public testing::Test {
     catalog.optimizers.add(stepper_entry<Counting>({.name = "counting"}));
     told() = 0;
     for (std::uint64_t seed = 0; seed < 30; ++seed) {
-      Request request = request_for(catalog, "rosenbrock", {}, "counting", {});
+      Request request = request_for(catalog, "wood", {}, "counting", {});
       request.seed = seed;
       request.budget.iterations = 5;
       requests.push_back(named(std::move(request)));

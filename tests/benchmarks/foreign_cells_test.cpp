@@ -283,9 +283,9 @@ TEST_F(ForeignCells, OfAFeatureThatFailsEndNoMethodAtAFailedPoint) {
        {"eki", "etki", "uki", "gd[rate=1e-4]", "adam[rate=0.1]", "dfo-gn", "levenberg-marquardt",
         "gauss-newton", "gsl-multifit", "minpack-lmder", "nlopt-lbfgs", "ceres-lm", "cma-es"})
     for (std::uint64_t seed = 0; seed < 4; ++seed) {
-      Request request = request_of(seed % 2 == 0 ? "rosenbrock[fail=0.05]" : "rosenbrock[fail=0.2]",
+      Request request = request_of(seed < 2 ? "rosenbrock[fail=0.05]" : "rosenbrock[fail=0.2]",
                                    method, {.iterations = 1000});
-      request.seed = seed;
+      request.seed = seed % 2;  // at 0 every second mean of uki fails
       const Record record = record_of(named(request));
       EXPECT_FALSE(is_failure(record.status)) << method << " " << seed << record.message;
       EXPECT_NE(record.status, Status::diverged) << method << " " << seed;
