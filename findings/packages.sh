@@ -14,6 +14,8 @@ debian() {
     -o APT::Sandbox::User="$(id -un)" -o Dir::Cache::archives="$work/archives" install "$@" >/dev/null
   local package
   for package in "$work"/archives/*.deb; do dpkg-deb -x "$package" "$root"; done
+  local settings=$root/usr/lib/R/etc/Renviron  # a link to /etc, which has none before R is installed
+  [[ ! -e $settings.ucf ]] || cp --remove-destination "$settings.ucf" "$settings"
   LD_LIBRARY_PATH=$(find "$root" -name '*.so*' -printf '%h\n' | sort -u | paste -sd:)
   export LD_LIBRARY_PATH PATH=$root/usr/bin:$PATH
 }

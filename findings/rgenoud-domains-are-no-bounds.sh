@@ -7,7 +7,7 @@
 # Only boundary.enforcement = 2 makes no call outside. Set it where the model has no value beyond its bounds.
 . "$(dirname "$0")/packages.sh"
 debian r-base-core=4.2.2.20221110-2 r-cran-rgenoud=5.9-0.3-1
-export R_LIBS=$root/usr/lib/R/library:$root/usr/lib/R/site-library
+export R_HOME=$root/usr/lib/R R_SHARE_DIR=$root/usr/share/R/share R_LIBS=$root/usr/lib/R/site-library:/usr/lib/R/site-library
 cat >"$work/run.R" <<'R'
 suppressMessages(library(rgenoud))
 calls <- outside <- 0
@@ -30,4 +30,4 @@ enforcement 0: x1 = 0.9998, value 3.8e-08, 7104 calls, 4091 outside
 enforcement 1: x1 = 0.5000, value 0.25, 61388 calls, 18056 outside
 enforcement 2: x1 = 0.5000, value 0.25, 6777 calls, 0 outside
 S
-)" Rscript "$work/run.R"
+)" "$R_HOME/bin/exec/R" --vanilla --slave -f "$work/run.R"
