@@ -4,8 +4,8 @@
     ./isoline run quick
     python3 docs/first_screen.py results/quick
 
-The findings come from benchmarks/published/contest.csv.xz and from report/report.json in the result folder, and
-replace the text between the two markers in README.md. The picture, docs/heat.svg, animates x of `heat` over forward solves, from the
+The findings come from benchmarks/published/contest.csv.xz and contest-tuned.csv.xz, and from report/report.json in the
+result folder; they replace the text between the two markers in README.md. The picture, docs/heat.svg, animates x of `heat` over forward solves, from the
 snapshots in three records.
 """
 
@@ -137,20 +137,20 @@ def sine_at_equal_work(report):
              "make it with: ./isoline run quick")
 
 
-def contest_works():
-    """Work to 1e-6 of each run in benchmarks/published/contest.csv.xz by setting and method: of nonlinear problems with exact data."""
+def contest_works(name="contest"):
+    """Work to 1e-6 of each published run of a suite by setting and method: of nonlinear problems with exact data."""
     blocks = [block for block in SUITE["matrix"] if block["comment"].startswith("A") and "features" not in block]
     names = {family_of(problem) for block in blocks for problem in block["problems"]}
     works = {}
-    with lzma.open(ROOT / "benchmarks/published/contest.csv.xz", "rt") as table:
+    with lzma.open(ROOT / f"benchmarks/published/{name}.csv.xz", "rt") as table:
         for row in csv.DictReader(table):
             if family_of(row["problem"]) in names and "noise=" not in row["problem"]:
-                works.setdefault(row["problem"], {}).setdefault(row["optimizer"], []).append(float(row["work_to_1e-6"]))
+                works.setdefault(row["problem"], {}).setdefault(family_of(row["optimizer"]), []).append(float(row["work_to_1e-6"]))
     return works
 
 
-def family_of(problem):
-    return problem.partition("[")[0]
+def family_of(spec):
+    return spec.partition("[")[0]
 
 
 def interval_of(differences):
@@ -169,10 +169,10 @@ def detectable_factor(families, deviation):
                  if numpy.mean(interval_of(numpy.clip(noise + math.log(factor, 64), -1, 1))[1] > MARGIN) >= 0.8), None)
 
 
-def contest_findings():
-    """A paragraph, a finding for each contrast that is tested, and what was not tested."""
-    works, contrasts = contest_works(), SUITE["contrasts"]
-    methods = sorted({method for pair in contrasts for method in pair})
+def contrasted(works):
+    """The contrasts in their order, until one finds no difference: for each the better method, the other one, the interval of the
+    difference of their scores, the differences by family, and the settings that each solves."""
+    methods = sorted({method for pair in SUITE["contrasts"] for method in pair})
     costs = {p: {m: statistics.median(works[p][m]) for m in methods} for p in works}
     families = sorted(set(map(family_of, works)))
 
@@ -181,14 +181,36 @@ def contest_findings():
         return statistics.mean(max(0, 1 - math.log(max(each[method], 1) / max(min(each.values()), 1), 64))
                                if each[method] < math.inf else 0 for each in own)
 
-    items, deviation = [], 0
-    for tested, (first, second) in enumerate(contrasts, 1):
+    for first, second in SUITE["contrasts"]:
         differences = [score(first, family) - score(second, family) for family in families]
-        deviation = statistics.stdev(differences)
         mean, low, high = interval_of(differences)
         if mean < 0:
             first, second, low, high, differences = second, first, -high, -low, [-d for d in differences]
-        solved = {m: {p for p in works if costs[p][m] < math.inf} for m in (first, second)}
+        yield first, second, low, high, differences, {m: {p for p in works if costs[p][m] < math.inf} for m in (first, second)}
+        if low <= MARGIN:
+            return
+
+
+def tuned_finding():
+    """The same contrasts with tuned rates."""
+    works, parts = contest_works("contest-tuned"), []
+    for first, second, low, _, _, solved in contrasted(works):
+        counts = f"{len(solved[first])} and {len(solved[second])}{'' if parts else f' of {len(works)} settings solved'}"
+        parts.append(f"{first}{' is better' * (not parts)} than {second} ({counts})" if low > MARGIN else
+                     f"{first} and {second} ({counts}) do not differ significantly")
+    spent = next(row["source"]["spent"] for row in json.loads((ROOT / "benchmarks/rates/contest-tuned.json").read_text())["rows"]
+                 if row["optimizer"] == "adam")
+    return (f"With rates tuned on the other families (`contest-tuned`; for adam, by {spent / 1e6:.2g} million forward "
+            f"solves), {', '.join(parts[:-1])}; {parts[-1]}.")
+
+
+def contest_findings():
+    """A paragraph, a finding for each contrast that is tested, what was not tested, and the same with tuned rates."""
+    works, contrasts = contest_works(), SUITE["contrasts"]
+    families = sorted(set(map(family_of, works)))
+    items, deviation = [], 0
+    for tested, (first, second, low, high, differences, solved) in enumerate(contrasted(works), 1):
+        deviation = statistics.stdev(differences)
         missed = [sum(w == math.inf for p in works for w in works[p][m]) for m in (first, second)]
         runs = sum(len(works[p][first]) for p in works)
         if low > MARGIN:
@@ -198,12 +220,12 @@ def contest_findings():
             continue
         back = len(solved[second] - solved[first])
         items.append(f"{first} has the higher score in {sum(d > 0 for d in differences)} of {len(families)} families and solves "
-                     f"{len(solved[first] - solved[second])} settings that {second} does not, {back or 'none'} the other way. Its work "
-                     f"relative to {second} (64^−Δscore) has a 95 % interval of {64 ** -high:.2f} to {64 ** -low:.2f}, widened by two "
-                     "pseudo-families at ±64-fold, which does not exclude equality.")
+                     f"{len(solved[first] - solved[second])} settings that {second} does not, {back or 'none'} the other way. The 95 % interval "
+                     f"of its relative work (64^−Δscore; with two pseudo-families at ±64-fold), {64 ** -high:.2f} to {64 ** -low:.2f}, "
+                     "does not exclude equality.")
         if tested < len(contrasts):
-            items[-1] += f" The other {COUNTS[len(contrasts) - tested]} therefore not tested."
-        break
+            items[-1] += f" The other {COUNTS[len(contrasts) - tested]} thus not tested."
+    items.append(tuned_finding())
     usual, here = (f"a factor of {factor}" if factor else "no factor"
                    for factor in (detectable_factor(len(families), d) for d in (0.25, deviation)))
     lead = (f"**Findings** from the suite `contest`: eight methods, named before the runs, at their defaults, on {len(families)} families "
@@ -225,7 +247,7 @@ def findings(report):
     return (f"In `quick`, a sample for a first look ({len(leader['places'])} methods, {leader['settings']} settings of "
             f"{leader['families']} families), {decision}. On sine, networks trained by adam "
             f"end with about {float(times):.2g} times the error in x of those trained by sip (95 %: {low} to {high}; more on "
-            f"{seeds} seeds), at published rates and equal work in physics. sip (†) is given "
+            f"{seeds} seeds), at published rates and equal work in physics alone. sip (†) is given "
             f"{sine['optimizer'].partition(', given ')[2]}.")
 
 
@@ -236,8 +258,8 @@ def write_findings(quick):
     after = rest[rest.index("<!-- end of findings -->"):]
     lead, items = contest_findings()
     items.append(findings(json.loads((quick / "report.json").read_text())))
-    text = textwrap.fill(lead, 118, break_on_hyphens=False) + "\n\n" + "".join(
-        textwrap.fill(each, 118, initial_indent="- ", subsequent_indent="  ", break_on_hyphens=False) + "\n" for each in items)
+    text = textwrap.fill(lead, 120, break_on_hyphens=False) + "\n" + "".join(
+        textwrap.fill(each, 120, initial_indent="- ", subsequent_indent="  ", break_on_hyphens=False) + "\n" for each in items)
     readme.write_text(before + "<!-- findings -->\n" + text + after)
 
 

@@ -242,7 +242,11 @@ Suite suite_from_json(const Json& json, const std::string& origin) {
     throw UsageError(
         fmt::format("{}: block {}: {}", origin, suite.blocks.size() + 1, error.what()));
   }
-  for (MatrixBlock& block : suite.blocks) block.rates = json.value("rates", block.rates);
+  for (MatrixBlock& block : suite.blocks) {
+    block.rates = json.value("rates", block.rates);
+    block.optimizers = json.value("optimizers", block.optimizers);
+    block.except_optimizers = json.value("except_optimizers", block.except_optimizers);
+  }
   return suite;
 }
 

@@ -263,7 +263,7 @@ Json candidate_row(const Candidate& candidate, const Budget& usual) {
           {"source", source}};
 }
 
-// One row per method and family, which is for all settings of the family.
+// One row per method and problem, which is for all settings of the problem.
 Json left_out_rows(const std::vector<Candidate>& candidates,
                    const std::vector<TunedOption>& tuned) {
   Json rows = Json::array();
@@ -280,10 +280,14 @@ Json left_out_rows(const std::vector<Candidate>& candidates,
                 {"value", left.grid->values[left.best]},
                 {"spent", left.work}};
     if (left.is_at_edge) source["edge"] = true;
-    rows.push_back({{"problem", left.family},
-                    {"optimizer", left.grid->optimizer},
-                    {"options", to_json(options_at(*candidate, left.grid->values[left.best]))},
-                    {"source", source}});
+    std::set<std::string> problems;
+    for (const Candidate& each : candidates)
+      if (each.tuned.family == left.family) problems.insert(each.pair.problem.name);
+    for (const std::string& problem : problems)
+      rows.push_back({{"problem", problem},
+                      {"optimizer", left.grid->optimizer},
+                      {"options", to_json(options_at(*candidate, left.grid->values[left.best]))},
+                      {"source", source}});
   }
   return rows;
 }

@@ -82,6 +82,11 @@ std::vector<Request> cells_of(const Catalog& catalog, const TuneArguments& given
   const std::string own =
       given.leaves_out ? std::filesystem::path(given.table).stem().string() : std::string();
   std::erase_if(suite.blocks, [&](const MatrixBlock& block) { return block.rates != own; });
+  require(!suite.blocks.empty(), [&] {
+    return fmt::format("tune: no block of {} has {}", given.suite,
+                       own.empty() ? "rates to tune: all name a table"
+                                   : fmt::format("the rates '{}', as the table is named", own));
+  });
   std::vector<Request> cells =
       read_as(given.suite, [&] { return expand(catalog, suite, Rates()); });
   return filtered(catalog, std::move(cells), given.problem, given.optimizer);

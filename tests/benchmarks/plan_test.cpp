@@ -156,6 +156,20 @@ TEST(Suites, WithNumbersThatNoTypeHoldsUnknownKeysOrEmptySelectionsAreRefused) {
   EXPECT_THROW(expand(catalog(), suite_from_json(empty, "here"), {}), UsageError);
 }
 
+TEST(Suites, OfOtherOptimizersHaveTheProblemsOfTheFirst) {
+  std::map<std::string, std::set<std::string>> problems;
+  for (const char* name : {"contest", "contest-others", "contest-sip"})
+    for (const Request& cell : cells_of(name)) {
+      problems[name].insert(cell.problem.spec);
+      if (name != std::string("contest")) {
+        EXPECT_NE(cell.optimizer.name, "adam");
+        EXPECT_EQ(cell.optimizer.name == "sip", name == std::string("contest-sip"));
+      }
+    }
+  EXPECT_EQ(problems["contest-others"], problems["contest"]);
+  EXPECT_EQ(problems["contest-sip"], problems["contest"]);
+}
+
 bool is_learned(const Request& cell) {
   return cell.problem.spec.find("mode=learn") != std::string::npos;
 }

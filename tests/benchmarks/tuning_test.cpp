@@ -416,7 +416,8 @@ problems::ProblemParts make_steep(const SteepOptions& o, const Draw& draw) {
 
 Catalog with_steep() {
   Catalog all = builtin_catalog();
-  all.problems.add(problem_entry({.name = "steep", .title = "Steep"}, make_steep));
+  all.problems.add(
+      problem_entry({.name = "steep", .title = "Steep", .family = "slopes"}, make_steep));
   return all;
 }
 
