@@ -246,7 +246,7 @@ def findings(report):
                 "no result could be significant" if leader["families"] < 6 else "no method is significantly ahead of all others")
     return (f"In `quick`, a sample for a first look ({len(leader['places'])} methods, {leader['settings']} settings of "
             f"{leader['families']} families), {decision}. On sine, networks trained by adam "
-            f"end with about {float(times):.2g} times the error in x of those trained by sip (95 %: {low} to {high}; more on "
+            f"end with {times} times the error in x of those trained by sip (95 %: {low} to {high}; more on "
             f"{seeds} seeds), at published rates and equal work in physics alone. sip (†) is given "
             f"{sine['optimizer'].partition(', given ')[2]}.")
 

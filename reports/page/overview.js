@@ -177,9 +177,10 @@ function makeMore(table, draw) {
 }
 
 function liveOverview() {
-  liveRace(document.getElementById('motion'));
-  const standings = document.getElementById('standings-table'), heat = document.getElementById('heat');
+  const motion = document.getElementById('motion'), standings = document.getElementById('standings-table'), heat = document.getElementById('heat');
+  liveRace(motion);
   live(standings, makeMore(standings, drawStandings));
+  [standings, motion].forEach(refresh);  // at once: a picture may be taken when the page has loaded
   live(heat, makeMore(heat, drawHeat));
   soon(heat, () => refresh(heat));  // it stands a little below the first screen
   explainMatrix(heat);
