@@ -140,16 +140,16 @@ def sine_at_equal_work(report):
 def contest_works(name="contest"):
     """Work to 1e-6 of each published run of a suite by setting and method: of nonlinear problems with exact data."""
     blocks = [block for block in SUITE["matrix"] if block["comment"].startswith("A") and "features" not in block]
-    names = {family_of(problem) for block in blocks for problem in block["problems"]}
+    names = {name_of(problem) for block in blocks for problem in block["problems"]}
     works = {}
     with lzma.open(ROOT / f"benchmarks/published/{name}.csv.xz", "rt") as table:
         for row in csv.DictReader(table):
-            if family_of(row["problem"]) in names and "noise=" not in row["problem"]:
-                works.setdefault(row["problem"], {}).setdefault(family_of(row["optimizer"]), []).append(float(row["work_to_1e-6"]))
+            if name_of(row["problem"]) in names and "noise=" not in row["problem"]:
+                works.setdefault(row["problem"], {}).setdefault(name_of(row["optimizer"]), []).append(float(row["work_to_1e-6"]))
     return works
 
 
-def family_of(spec):
+def name_of(spec):  # that of a problem is its family here
     return spec.partition("[")[0]
 
 
@@ -174,10 +174,10 @@ def contrasted(works):
     difference of their scores, the differences by family, and the settings that each solves."""
     methods = sorted({method for pair in SUITE["contrasts"] for method in pair})
     costs = {p: {m: statistics.median(works[p][m]) for m in methods} for p in works}
-    families = sorted(set(map(family_of, works)))
+    families = sorted(set(map(name_of, works)))
 
     def score(method, family):  # 1 less the doublings of work over the least, in units of six
-        own = [costs[p] for p in works if family_of(p) == family]
+        own = [costs[p] for p in works if name_of(p) == family]
         return statistics.mean(max(0, 1 - math.log(max(each[method], 1) / max(min(each.values()), 1), 64))
                                if each[method] < math.inf else 0 for each in own)
 
@@ -207,7 +207,7 @@ def tuned_finding():
 def contest_findings():
     """A paragraph, a finding for each contrast that is tested, what was not tested, and the same with tuned rates."""
     works, contrasts = contest_works(), SUITE["contrasts"]
-    families = sorted(set(map(family_of, works)))
+    families = sorted(set(map(name_of, works)))
     items, deviation = [], 0
     for tested, (first, second, low, high, differences, solved) in enumerate(contrasted(works), 1):
         deviation = statistics.stdev(differences)

@@ -312,7 +312,7 @@ class Runner {
     if (!catalog_.problems.contains("rosenbrock")) return;
     cell.problem = complete_problem(catalog_, "rosenbrock", OptionValues());
     cell.budget = {.iterations = 2, .work = 100};
-    run_in_process(catalog_, {named(std::move(cell))}, [](const Request&, const Trace&) {});
+    run_in_process(catalog_, {std::move(cell)}, [](const Request&, const Trace&) {});
   }
 
   // In the process of a worker.

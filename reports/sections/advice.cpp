@@ -81,11 +81,13 @@ std::string advice_text(const Comparison& c, const Means& means, const Advice& a
   } else {
     const Advised& first = advice.ranked[0];
     std::vector<std::string> equal{name(first)}, group;  // that solve no fewer; other ones
-    for (const Advised& one : advice.ranked)
-      if (one.is_in_group && &one != &first && one.solved >= first.solved)
+    for (const Advised& one : advice.ranked) {
+      if (!one.is_in_group || &one == &first) continue;
+      if (one.solved >= first.solved)
         equal.push_back(name(one));
-      else if (one.is_in_group && &one != &first)
+      else
         group.push_back(words("advice.member", name(one), one.solved));
+    }
     const auto as_many = std::ranges::count(advice.ranked, first.solved, &Advised::solved);
     if (advice.settings.size() < kFewestForInterval && as_many > 1) {
       text = words("advice.indistinct", means_text(means), advice.settings.size(), goal, as_many,

@@ -20,16 +20,13 @@ namespace {
 
 using Pair = std::array<std::string, 2>;  // names of methods
 
-// Those of the suites "contest@1" that the folders were planned by, or of those whose cells they
-// have.
+// Those of the suites "contest@1" that the folders were planned by.
 std::vector<Pair> named_contrasts(const Study& study) {
   std::vector<Pair> all;
   for (const std::string& label : study.plan.suites) {
     const auto suite = suites_of_tree().find(label.substr(0, label.find('@')));
     if (suite == suites_of_tree().end()) continue;
-    Json json = parse_json(std::string(suite->second), suite->first);
-    if (json.contains("cells_of"))
-      json = parse_json(std::string(suites_of_tree().at(json["cells_of"])), suite->first);
+    const Json json = parse_json(std::string(suite->second), suite->first);
     for (const Json& pair : json.value("contrasts", Json::array()))
       all.push_back({pair.at(0).get<std::string>(), pair.at(1).get<std::string>()});
   }
