@@ -694,7 +694,8 @@ class command:
 _NUMBER = re.compile(
     r"[+-]?(?:(?:\d+\.?\d*|\.\d+)(?:[eEdDqQ][+-]?\d+)?|(?:\d+\.\d*|\.\d+)[+-]\d{3}|nan|inf(?:inity)?)", re.ASCII | re.IGNORECASE
 )
-_LIKE_NUMBER = re.compile(r"[+-]?\.?\d[\d_.eEdDqQ+-]*")
+_BEGINS = re.compile(r"[+-]?\.?\d")  # as numbers do
+_LIKE_NUMBER = re.compile(rf"{_BEGINS.pattern}[\d_.eEdDqQ+-]*")
 _OVERFLOW = re.compile(r"[+-]?\*{2,25}")
 _ERROR = re.compile(r"\W*(?:(?:FATAL\W+)?ERROR\b|(?i:(?:fatal\W+)?error\s*:(?!\s*[+-]?\.?\d)))")
 
@@ -718,7 +719,8 @@ def _numbers(text, name):
     numbers = []
     for line in text.splitlines():
         words = line.replace(",", " ").split()
-        is_data = all(_NUMBER.fullmatch(word) or _OVERFLOW.fullmatch(word) for word in words)
+        whole = [_NUMBER.fullmatch(word) or _OVERFLOW.fullmatch(word) for word in words]
+        is_data = any(whole) and all(each or _BEGINS.match(word) for each, word in zip(whole, words))
         is_banner = bool(words) and not is_data and words[0].strip("*") == ""
         for word in words:  # others stand between the numbers
             is_wanted = is_data or _NUMBER.fullmatch(word) or _LIKE_NUMBER.fullmatch(word)

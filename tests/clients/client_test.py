@@ -293,6 +293,7 @@ class Commands(unittest.TestCase):
             ("***** RESULTS *****", "no numbers"), ("1 1_000", "1_000"), ("head = ****", "overflow: ****"),
             ("3 *** 4", "overflow"), ("ERROR 42: no mesh", "ERROR 42"), ("Error: mesh 3", "Error: mesh"),
             ("error: 0.5", "[0.5]"), ("dose 0x10", "0x10"), ("٣ mol", "٣"),
+            ("0.5x 2", "has '0.5x'"), ("10%\n2.5", "[2.5]"),
         ):
             self.assertIn(expected, self.ask(f"printf '%s' '{printed}'", "model([1, 2])"))
 
