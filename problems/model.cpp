@@ -46,17 +46,12 @@ Real number_of(std::string_view text, const char* word, std::string_view name) {
 
 // (m)
 Vector factors_of(const std::string& text, const char* word, Index m) {
-  const auto cells = cells_of_line(text);
-  require(cells.size() == 1 || std::ssize(cells) == m, [&] {
-    return fmt::format("{} must have one number or one for each of the {} data, got {}", word, m,
-                       cells.size());
-  });
-  Vector numbers(m);
-  for (Index i = 0; i < m; ++i) {
-    const auto at = cells.size() == 1 ? 0 : static_cast<std::size_t>(i);
-    numbers[i] = number_of(cells[at], word, fmt::format("datum {}", i + 1));
-  }
-  return numbers;
+  std::vector<Real> numbers;
+  for (const auto& cell : cells_of_line(text))
+    numbers.push_back(number_of(cell, word, fmt::format("datum {}", numbers.size() + 1)));
+  require_factors(numbers, word, m);
+  if (numbers.size() == 1) return Vector::Constant(m, numbers[0]);
+  return Eigen::Map<const Vector>(numbers.data(), m);
 }
 
 struct Tie {
@@ -156,15 +151,8 @@ Mapping mapping_of(const ModelWords& words, const ProblemParts& parts) {
     map.is_log.push_back(has_log);
   }
   require(!map.free.empty(), "fixed and tied leave no unknown");
-  if (!words.sigma.empty()) {
-    const Vector sigma = factors_of(words.sigma, "sigma", m);
-    require(sigma.minCoeff() > 0, "sigma must be positive");
-    map.factors = sigma.cwiseInverse();
-  }
-  if (!words.weights.empty()) {
-    map.factors = factors_of(words.weights, "weights", m);
-    require(map.factors.minCoeff() > 0, "weights must be positive");
-  }
+  if (!words.sigma.empty()) map.factors = factors_of(words.sigma, "sigma", m).cwiseInverse();
+  if (!words.weights.empty()) map.factors = factors_of(words.weights, "weights", m);
   for (const auto& [name, text] : pairs_in(words.prior)) {
     std::size_t sign = text.find("±"), width = std::string_view("±").size();
     if (sign == text.npos) sign = text.find("+-"), width = 2;
@@ -337,6 +325,15 @@ std::unique_ptr<Modelled> make_modelled(const ModelWords& words, ProblemParts& p
 }
 
 }  // namespace
+
+void require_factors(std::span<const Real> numbers, std::string_view what, Index m) {
+  require(numbers.size() == 1 || std::ssize(numbers) == m, [&] {
+    return fmt::format("{} must have one number or one for each of the {} data, got {}", what, m,
+                       numbers.size());
+  });
+  require(std::ranges::all_of(numbers, [](Real each) { return each > 0 && std::isfinite(each); }),
+          [&] { return fmt::format("{} must be positive", what); });
+}
 
 const Model* Problem::model() const {
   const Modelled* const found = modelled_in(*this);

@@ -3,6 +3,10 @@
 // starts spread over the bounds.
 #pragma once
 
+#include <span>
+#include <string>
+#include <string_view>
+
 #include "core/options.h"
 #include "problems/problem.h"
 
@@ -37,6 +41,9 @@ inline void fields(ModelWords& o, auto& field) {
   field("starts", o.starts, between(0, 100'000),
         "starts 1 to N − 1 are a Latin hypercube over the bounds; 0: near the standard start");
 }
+
+// UsageError unless these are one positive number for all of m data, or one for each.
+void require_factors(std::span<const Real> numbers, std::string_view what, Index m);
 
 // Without `starts`, fixed and tied unknowns are no unknowns of the method, others keep their order.
 // The target of a residual is y*/σ; of a prior, which is a row below the data, 0. UsageError for a

@@ -19,6 +19,7 @@
 #include "core/records/provenance.h"
 #include "optimizers/optimizer.h"
 #include "problems/features.h"
+#include "problems/model.h"
 #include "problems/problem.h"
 
 namespace isoline::benchmarks {
@@ -257,9 +258,12 @@ Problem made_with_features(const ProblemEntry& entry, const Component& problem,
   if (has_words) {  // they are of x, as the files are
     plain = with_own_data(std::move(plain));
     for (const char* word : kFileWords)
-      if (const auto file = features.text(word); is_file(file))
-        features.set(word,
-                     fmt::format("{}", fmt::join(read_numbers(named_file(file).path).values, ";")));
+      if (const auto file = features.text(word); is_file(file)) {
+        const std::string path = named_file(file).path;
+        const std::vector<Real> numbers = read_numbers(path).values;
+        problems::require_factors(numbers, path + ": " + word, plain.outputs());
+        features.set(word, fmt::format("{}", fmt::join(numbers, ";")));
+      }
   }
   std::optional<Matrix> target;
   if (const std::string model = features.text("model"); !model.empty()) {

@@ -169,6 +169,7 @@ const std::vector<std::pair<std::string, std::string>> kMistakes = {
     {"tune square --problem square", "--problem"},
     {"report .", "no records in .; "},
     {"run --rates nowhere.json", "nowhere.json"},
+    {"run --problem 'rosenbrock[sigma=\"three.csv\"]' --optimizer gd", "three.csv: sigma must"},
     {"check rosenbrok", "did you mean 'rosenbrock'"},
     {"validate nowhere", "nowhere: no such"},
     {"report nowhere", "nowhere: no such"},
@@ -187,6 +188,7 @@ const std::vector<std::pair<std::string, std::string>> kMistakes = {
 TEST(Usage, MistakesAreOneSentenceWithASuggestionAndExitOne) {
   const Shell shell;
   write_text(shell.folder() / "wrong.json", "{\"rows\": [1]}");
+  write_text(shell.folder() / "three.csv", "1\n2\n3\n");
   for (const auto& [command, sentence] : kMistakes) {
     const Finished result =
         shell.expect("./isoline " + command, {.exit_code = 1, .err = {sentence}});
