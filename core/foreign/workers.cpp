@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <limits>
 #include <string>
@@ -49,10 +50,23 @@ void Workers::launch(Worker& worker) {
 
 void Workers::welcome(Worker& worker) {
   receive_greeting_of(worker);
-  if (!is_copy(worker) || worker.starts > 1 || known_x_.size() == 0) return;
+  examine(worker);
+}
+
+// Asks an idle copy, once, what the first program has answered.
+void Workers::examine(Worker& worker) {
+  if (!is_copy(worker) || worker.state != State::idle || worker.is_examined || known_x_.size() == 0)
+    return;
+  worker.is_examined = true;
   worker.line->send(Verb::linearize, point_, numbers_of(known_x_));
   worker.waited = 0;
   worker.state = State::compared;
+}
+
+void Workers::know(std::span<const Real> x, std::span<const Real> y) {
+  if (workers_.size() == 1 || known_x_.size() > 0) return;
+  known_x_ = Eigen::Map<const Vector>(x.data(), std::ssize(x));
+  known_y_ = Eigen::Map<const Vector>(y.data(), std::ssize(y));
 }
 
 void Workers::receive_greeting_of(Worker& worker) {
@@ -103,7 +117,11 @@ void Workers::compare(Worker& worker) {
   } catch (const FailedCall&) {
     y.setConstant(std::numeric_limits<Real>::quiet_NaN());
   }
-  if ((y - known_y_).cwiseAbs().maxCoeff() <= kRelative * known_y_.cwiseAbs().maxCoeff()) return;
+  const Real most = kRelative * known_y_.cwiseAbs().maxCoeff<Eigen::PropagateNumbers>();
+  const auto is_same = [&](Real a, Real b) {
+    return a == b || (std::isnan(a) && std::isnan(b)) || std::abs(a - b) <= most;
+  };
+  if (std::ranges::equal(y, known_y_, is_same)) return;
   remark_on_calls(fmt::format(
       "copy {} of the program answers differently than the first one at the same x; with workers=1 "
       "there are no copies",
@@ -117,11 +135,8 @@ void Workers::ask(Verb verb, std::uint32_t point, std::span<const std::span<cons
   try {
     line.send(verb, point, numbers);
     line.receive_answer(verb, answer, most_seconds());
-    if (workers_.size() > 1 && known_x_.size() == 0 && verb == Verb::linearize &&
-        numbers[0].size() == static_cast<std::size_t>(said_.inputs)) {
-      known_x_ = Eigen::Map<const Vector>(numbers[0].data(), said_.inputs);
-      known_y_ = Eigen::Map<const Vector>(answer.data(), said_.outputs);
-    }
+    if (verb == Verb::linearize && std::cmp_equal(numbers[0].size(), said_.inputs))
+      know(numbers[0], answer);
   } catch (const LostProgram&) {
     workers_[0].state = State::lost;
     throw;
@@ -132,6 +147,13 @@ void Workers::ask(Verb verb, std::uint32_t point, std::span<const std::span<cons
 void Workers::settle() {
   begun_ = calls_.size();
   again_.clear();
+  for (Worker& worker : workers_)
+    guarded(worker, [&] {
+      if (worker.state == State::compared)
+        hear(worker, 0);
+      else
+        examine(worker);
+    });
   while (workers_[0].state == State::busy || workers_[0].state == State::greeted) pump();
   next_ = calls_.size();
   restart_if_lost();
@@ -168,6 +190,7 @@ void Workers::hand_out() {
   begun_ = std::max(begun_, next_);
   for (Worker& worker : workers_) {
     if (begun_ == calls_.size() && again_.empty()) return;
+    guarded(worker, [&] { examine(worker); });
     if (worker.state != State::idle) continue;
     if (again_.empty()) {
       worker.call = begun_++;
@@ -260,6 +283,7 @@ void Workers::end_call(Worker& worker, const auto& exchange) {
     worker.state = State::lost;
   }
   call.is_done = true;
+  if (!is_copy(worker) && !call.error) know(numbers_of(call.x), numbers_of(call.y));
   const double seconds = 1e-9 * static_cast<double>(monotonic_nanoseconds() - worker.begun);
   act_({numbers_of(call.x), numbers_of(call.y), call.error, seconds});
   if (is_lost) guarded(worker, [&] { launch(worker); });

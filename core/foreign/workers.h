@@ -63,6 +63,7 @@ class Workers {
     std::unique_ptr<Line> line = nullptr;
     State state = State::absent;
     int starts = 0;
+    bool is_examined = false;
     std::size_t call = 0;    // that it is busy with
     double waited = 0;       // seconds, for its greeting or its answer
     std::int64_t begun = 0;  // its call: monotonic nanoseconds
@@ -81,6 +82,8 @@ class Workers {
   void launch(Worker& worker);
   void welcome(Worker& worker);
   void receive_greeting_of(Worker& worker);
+  void examine(Worker& worker);
+  void know(std::span<const Real> x, std::span<const Real> y);
   void compare(Worker& worker);
   void retire(Worker& worker, const char* why);
   void guarded(Worker& worker, const auto& work);

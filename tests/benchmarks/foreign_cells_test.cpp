@@ -98,6 +98,27 @@ TEST_F(ForeignCells, WhoseProgramFailsAtAKnownPointSayWhy) {
   EXPECT_NE(record.failures->reasons.at(0).find("ValueError: the mesh"), std::string::npos);
 }
 
+// The first program waits for the copy, which starts with the first points that are asked at once.
+TEST_F(ForeignCells, WhoseCopyAloneHasNoNumberSaySo) {
+  const auto script = folder.path() / "copies.py", mark = folder.path() / "mark";
+  write_text(script,
+             "import isoline, os, sys, time\n"
+             "mark = sys.argv[1][5:]\n"
+             "def forward(x):\n"
+             "    if os.environ['ISOLINE_WORKER'] == '1':\n"
+             "        open(mark, 'w').close()\n"
+             "        return [x[0] - 1, float('nan'), 5 - x[1]]\n"
+             "    for _ in range(100):\n"
+             "        if os.path.exists(mark): break\n"
+             "        time.sleep(0.01)\n"
+             "    return [x[0] - 1, x[0] * x[1], 5 - x[1]]\n"
+             "isoline.problem(forward, [3, 4], target=[0, 0, 0], name='copies')\n");
+  const std::string problem =
+      process_of("python3 " + script.string() + " mark=" + mark.string(), ",workers=2");
+  const Record record = record_of(request_of(problem, "dfo-gn", {.iterations = 50, .work = 40}));
+  EXPECT_NE(record.output.find("copy 1"), std::string::npos) << record.output;
+}
+
 // Rosenbrock's valley where x₂ > 1.2 fails: by an exception, by the end of the script, or by a call
 // that takes too long.
 TEST_F(ForeignCells, GoOnAfterAFailedCallHoweverItFailed) {
