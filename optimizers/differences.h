@@ -1,8 +1,9 @@
 // J of residuals without derivatives, for methods of least squares: by differences whose steps
-// follow from the noise of the calls, with rank-one updates between; Broyden (1965). The noise is
-// measured once, by three to eight calls or by ECNoise's tables, and is at least rounding. M₂ of h
-// = 8^¼ √(ε_f/M₂), a bound on the second derivative along an unknown, is ‖y‖ over the square of the
-// unknown's size; Moré, Wild (2012), ACM TOMS 38.
+// follow from the noise of the calls, with rank-one updates between; Broyden (1965), which keep
+// what J knows of the steps before; Gay, Schnabel (1978). The noise is measured once, by three to
+// eight calls or by ECNoise's tables, and is at least rounding. M₂ of h = 8^¼ √(ε_f/M₂), a bound on
+// the second derivative along an unknown, is ‖y‖ over the square of the unknown's size; Moré, Wild
+// (2012), ACM TOMS 38.
 #pragma once
 
 #include <algorithm>
@@ -11,6 +12,7 @@
 #include <limits>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "core/archive.h"
@@ -87,7 +89,8 @@ class DifferenceJacobian {
     f.recall_paid_loss(at.loss());
   }
   // Broyden's update at an evaluated point that θ moves to: J moves least, in the norm of ‖J D⁻¹‖,
-  // so that J Δθ = Δy.
+  // so that J Δθ = Δy, and without noise J s stays for the last steps s, as many as leave
+  // enough of Δθ beside them.
   void update(const Vector& theta, const Vector& D, Linearization& at) {
     learn(theta, at.y().reshaped(), D);
     theta_ = theta;
@@ -129,7 +132,7 @@ class DifferenceJacobian {
     return std::max(std::abs(theta[j]), (is_noisy() ? 1 : kLeast) * sizes_[j]);
   }
   void persist(Archive& archive) {
-    archive(J_, columns_, theta_, y_, sizes_, noise_, is_fresh_, is_central_);
+    archive(J_, steps_, columns_, theta_, y_, sizes_, noise_, is_fresh_, is_central_);
   }
 
  private:
@@ -149,9 +152,34 @@ class DifferenceJacobian {
   bool shows(Index j, Real h) const { return J_.col(j).norm() * h > 2 * noise_ * y_.norm(); }
 
   void learn(const Vector& theta, const Vector& y, const Vector& D) {
-    const Vector moved = theta - theta_, dual = D.cwiseAbs2().cwiseProduct(moved);
+    constexpr Real kNew = 0.25;  // of a step: less that is new follows from errors of the others
+    constexpr Real kDependent = 1e-3;  // of a step that is kept
+    const Vector moved = theta - theta_;
+    const Index n = moved.size();
+    if (is_fresh_ || steps_.rows() != n) steps_.resize(n, 0);
+    Vector along = D.cwiseProduct(moved);
+    const Real least = kNew * along.norm();
+    const Index most = is_noisy() ? 0 : steps_.cols();  // noise in Δy grows by what is left out
+    Matrix Q(n, most);                                  // of the steps to keep, orthonormal
+    Index kept = 0;
+    for (; kept < most; ++kept) {
+      Vector q = D.cwiseProduct(steps_.col(kept));
+      const Real shortest = kDependent * q.norm();
+      q -= Q.leftCols(kept) * (Q.leftCols(kept).transpose() * q);
+      if (!(q.norm() > shortest)) break;
+      Q.col(kept) = q.normalized();
+      const Vector rest = along - Q.col(kept).dot(along) * Q.col(kept);
+      if (!(rest.norm() > least)) break;
+      along = rest;
+    }
+    const Vector dual = D.cwiseProduct(along);
     const Real squares = moved.dot(dual);
-    if (squares > 0) J_ += (y - y_ - J_ * moved) * (dual / squares).transpose();
+    if (squares > 0) {
+      J_ += (y - y_ - J_ * moved) * (dual / squares).transpose();
+      Matrix steps(n, kept + 1);
+      steps << moved, steps_.leftCols(kept);
+      steps_ = std::move(steps);
+    }
     is_fresh_ = false;
   }
   // Along a line through θ, inside the bounds.
@@ -187,6 +215,7 @@ class DifferenceJacobian {
   }
 
   Matrix J_;                      // (m, n)
+  Matrix steps_;                  // (n, any), since then, the newest first: J knows Δy of each
   Vector columns_;                // (n), their norms when last measured, or empty
   Vector theta_, moved_, sizes_;  // (n)
   Vector y_;                      // (m), at θ

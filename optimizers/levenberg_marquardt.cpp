@@ -494,7 +494,7 @@ void register_levenberg_marquardt(OptimizerRegistry& registry) {
        .kind = Kind::least_squares,
        .formula = "θ ← θ + argmin ‖J d + r‖² + μ‖D d‖²",
        .source = "Marquardt (1963); Moré (1978); Nielsen (1999); Transtrum, Sethna (2012); by "
-                 "differences Broyden (1965); Dennis, Gay, Welsch (1981)",
+                 "differences Broyden (1965); Gay, Schnabel (1978); Dennis, Gay, Welsch (1981)",
        .note =
            "A rejected candidate counts as an iteration. With damping=fixed, every step is "
            "accepted, D is 1, and μ is a share of the mean diagonal of JJᵀ. On mini-batches, the "

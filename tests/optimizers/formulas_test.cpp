@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/decompose.h"
+#include "optimizers/differences.h"
 #include "optimizers/examination.h"
 #include "optimizers/residual_curvature.h"
 #include "optimizers/ssbroyden.h"
@@ -504,6 +505,18 @@ TEST(Examination, ConfirmsASolutionAndNamesWhatSpeaksAgainstOne) {
   EXPECT_NE(doubt_at(J, Vector::Zero(2)).find("c has no effect"), std::string::npos);
   J.col(1) = 2 * J.col(0);
   EXPECT_NE(doubt_at(J, Vector::Zero(2)).find("rank"), std::string::npos);
+}
+
+// Each update keeps what J knows of the steps before; Broyden's own would be 0.7 off here.
+TEST(UpdatedJacobian, OfALinearMapIsExactAfterAStepForEachUnknown) {
+  const Matrix A{{1, 2, 0}, {0, 1, 3}, {2, 0, 1}, {1, 1, 1}};
+  const Vector zero = Vector::Zero(3), D{{1, 2, 0.5}};
+  DifferenceJacobian J;
+  Linearization at;
+  J.know(zero, A * zero, Matrix::Ones(4, 3));
+  for (const Vector& step : {Vector{{1, 0, 0}}, Vector{{1, 1, 0}}, Vector{{0, 1, 2}}})
+    J.learn(step, A * step, D, at);
+  EXPECT_LT((at.jacobian() - A).norm(), 1e-14);
 }
 
 // r = (x₁ − 1, x₂ + x₁², 3 + x₁x₂/2, …) leaves a residual: with S, steps shrink ever faster;
