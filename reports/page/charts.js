@@ -15,8 +15,7 @@ const shareOf = ({low, high, kind}, value) => (kind === 'log' ? Math.log(value /
 function ticksOf(low, high, isLog) {
   const ticks = [];
   if (isLog) {
-    let factor = high / low <= 100 ? 2 : 10;
-    factor **= Math.max(1, Math.ceil(Math.log(high / low) / Math.log(factor) / 8));
+    const factor = 10 ** Math.max(1, Math.ceil(Math.log10(high / low) / 8));
     for (let tick = factor ** Math.ceil(Math.log(low) / Math.log(factor) - 1e-9); tick <= high * (1 + 1e-9) && ticks.length < 64; tick *= factor) ticks.push(tick);
     if (ticks.length >= 3 || !(low > 1e-300)) return ticks;
     ticks.length = 0;

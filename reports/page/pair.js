@@ -103,16 +103,20 @@ function pairSentence(a, b) {
   return `${counts} ${worded('pair-ratio', {a: saidOf(more), b: saidOf(less), measure: measureNow().counted, ratio, interval: worded(problems < 6 ? 'pair-range' : 'pair-interval', {n: problems}), low: least, high: most})} ${worded(isOpen ? 'pair-open' : 'pair-clear')}`;
 }
 
+// The ticks of rows of dots.
+function tickRow(values, at) {
+  return element('li', {className: 'axis'}, element('span'), element('span', {className: 'way'}, ...values.map((value) => {
+    const tick = element('b', {}, short(value));
+    tick.style.setProperty('--at', at(value));
+    return tick;
+  })));
+}
+
 // One row a setting: a dot for each method on one logarithmic axis, ✗ at its end.
 function dotRows(rows) {
   const values = rows.flatMap(({taken}) => taken.filter((value) => value > 0 && value < Infinity)), [low, high] = [Math.min(...values), Math.max(...values)];
   const at = (value) => (value === Infinity ? 1 : high > low ? 0.94 * Math.log(Math.max(value, low) / low) / Math.log(high / low) : 0);
-  const axis = element('li', {className: 'axis'}, element('span'), element('span', {className: 'way'}, ...ticksOf(low, high, true).map((tick) => {
-    const made = element('b', {}, short(tick));
-    made.style.setProperty('--at', at(tick));
-    return made;
-  })));
-  return element('ol', {className: 'bars-of'}, ...high > low ? [axis] : [], ...rows.map(({p, taken, words, those = pair.methods}) => {
+  return element('ol', {className: 'bars-of'}, ...high > low ? [tickRow(ticksOf(low, high, true), at)] : [], ...rows.map(({p, taken, words, those = pair.methods}) => {
     const dots = taken.map((value, i) => {
       const dot = element('i', {className: value === Infinity ? 'lost' : ''}, value === Infinity ? '✗' : '');
       dot.style.setProperty('--at', at(value));
@@ -166,7 +170,8 @@ function scatter(rows) {
   drawn.append(svgElement('path', {class: 'grid', d: 'M40 280V40M40 280H280M40 280L280 40'}));
   for (const tick of ticksOf(low, high, true))
     drawn.append(svgElement('text', {x: at(tick), y: 294, 'text-anchor': 'middle'}, short(tick)), svgElement('text', {x: 36, y: 324 - at(tick), 'text-anchor': 'end'}, short(tick)));
-  drawn.append(svgElement('text', {x: 160, y: 308, 'text-anchor': 'middle'}, DATA.optimizers[pair.methods[0]]));
+  const [first, ...others] = pair.methods.map((s) => DATA.optimizers[s]);
+  drawn.append(svgElement('text', {x: 160, y: 308, 'text-anchor': 'middle'}, first), svgElement('text', {x: 36, y: 30}, others.join(', ')));
   for (const {p, taken} of solved)
     taken.forEach((value, i) => {
       if (i === 0 || value === Infinity) return;

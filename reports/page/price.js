@@ -49,13 +49,16 @@ function leadersText(gradient) {
 
 function drawPrices(list, sentence, shares) {
   const gradient = priceOf(price.gradient), jacobian = price.jacobian < 0 ? undefined : priceOf(price.jacobian), places = standingsAtPrices(gradient, jacobian, workers);
-  if (list.childElementCount === 0)
+  if (list.childElementCount === 0) {
+    const axis = list.appendChild(tickRow([0, .25, .5, .75, 1], (score) => score));
+    axis.style.setProperty('--place', DATA.ranked.length);
     for (const s of DATA.ranked) {
       const row = element('li', {}, element('span', {}, ...nameOfMethod(s)), element('span', {className: 'way'}, element('i')), element('small'));
       row.querySelector('i').dataset.s = s;
       row.dataset.line = s;
       list.append(row);
     }
+  }
   const rows = new Map([...list.children].map((row) => [Number(row.dataset.line), row]));
   places.forEach(({s, score, solved}, place) => {
     const row = rows.get(s);
@@ -64,7 +67,7 @@ function drawPrices(list, sentence, shares) {
     const alone = workers > 0 && !shares.has(s) ? ` ${worded('price-alone')}` : '';
     row.querySelector('small').textContent = `${score.toFixed(2)}, ${solved}/${DATA.calls.length}${alone}`;
   });
-  list.style.setProperty('--places', places.length);
+  list.style.setProperty('--places', places.length + 1);
   list.style.setProperty('--letters', 1 + Math.max(...DATA.ranked.map((s) => DATA.optimizers[s].length)));  // a † too
   sentence.textContent = worded('price-leaders', {gradient: short(gradient), jacobian: jacobian === undefined ? worded('price-nominal') : short(jacobian), method: DATA.optimizers[places[0].s], leaders: leadersText(gradient)});
 }

@@ -39,15 +39,13 @@ Real Frame::y(Real value) const {
 }
 
 std::vector<Real> ticks_of(Real low, Real high, bool is_logarithmic) {
-  constexpr Real kMost = 8, kFewDoublings = 100;
+  constexpr Real kMost = 8;
   constexpr std::ptrdiff_t kFewest = 3;
   constexpr int kBound =
       64;  // of any axis: where a step is lost to rounding, none goes on for ever
   std::vector<Real> ticks;
   if (is_logarithmic) {
-    Real factor = high / low <= kFewDoublings ? 2 : 10;
-    const Real powers = std::log(high / low) / std::log(factor);
-    factor = std::pow(factor, std::max(1.0, std::ceil(powers / kMost)));
+    const Real factor = std::pow(10.0, std::max(1.0, std::ceil(std::log10(high / low) / kMost)));
     Real tick = std::pow(factor, std::ceil(std::log(low) / std::log(factor) - 1e-9));
     while (tick <= high * (1 + 1e-9) && std::ssize(ticks) < kBound) {
       ticks.push_back(tick);
