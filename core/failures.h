@@ -13,7 +13,7 @@
 namespace isoline {
 
 struct FailedEvaluations {
-  static constexpr int kMost = 1000, kNumbers = 8000, kReason = 96;
+  static constexpr int kMost = 1000, kNumbers = 8000, kReason = 256;
   std::int64_t total = 0, most_in_a_row = 0;  // 0: as the meter says
   int kept = 0, unknowns = 0;  // of the first ones; 0 unknowns: x has more numbers than fit
   double x[kNumbers];          // one after the other

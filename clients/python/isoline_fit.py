@@ -320,7 +320,8 @@ def fit(
     bounds=(lower, upper): numbers or lists (k). names, units: texts (k).
     methods: one of Isoline's optimizers, or a list. The point of least loss is the result. By default,
         Levenberg-Marquardt with forward differences; if its point is not a confirmed minimum, with central ones,
-        and so on from points beside the best one, at most six runs in all.
+        and so on from points beside the best one, at most six runs in all; three that end at one loss for one
+        reason, such as an unknown without effect, are enough.
     workers: so many calls at a time, each in a thread of this process; forward must permit it. Programs
         (isoline.command) then run at the same time, functions of pure Python do not.
     fixed: names or numbers of unknowns that stay at x0, or a dict from them to values.
@@ -361,7 +362,8 @@ def fit(
                 f"{each['request']['optimizer']['spec']} is {each['status']}: {each['message']}" for each in new))
             raise Refused(why or printed or f"isoline ended with exit code {code}")
         records += [(each, described) for each in new if "answer" in each]
-        if any(each["status"] in FITS for each in new):
+        ends = [(each["message"], "%.6g" % float(each["summary"]["loss"])) for each, _ in records]
+        if any(each["status"] in FITS for each in new) or (attempt > 1 and ends.count(ends[-1]) > attempt):  # other starts end there
             break
         if attempt > 0 or any(each.get("failures") for each, _ in records):  # there, the calls of differences are others
             best = min((each for each, _ in records), key=lambda each: float(each["summary"]["loss"]))

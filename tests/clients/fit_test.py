@@ -257,6 +257,7 @@ class Fits(unittest.TestCase):
         flat = self.fit(lambda x: misra(x[:2]), MISRA_Y, [500, 1e-4, 1], names=["a", "b", "idle"])
         few = self.fit(misra, MISRA_Y, [500, 1e-4], methods="nlopt-neldermead", work=20)
         contradicted = self.fit(misra, MISRA_Y, [500, 1e-4], sigma=0.01)
+        self.assertEqual(len(flat.runs), 3)
         for result, word in ((flat, "idle"), (few, "budget"), (contradicted, "χ²")):
             self.assertEqual((result.sd, result.interval, result.correlation), (None, None, None))
             self.assertIn(word, result.message)
