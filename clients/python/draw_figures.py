@@ -89,7 +89,18 @@ def add_line(axes, plot, line, place):
         return axes.plot(x, y, marker or "o", markersize=2, color=colour, zorder=3)[0]
     style = "-" if dash == "none" else (0, [float(length) / 2 for length in dash.split()])
     return axes.plot(x, y, drawstyle="steps-post" if is_stair else "default", color=colour, linestyle=style,
-                     marker=marker, markersize=3, markevery=(0.618 * place % 0.25, 0.25), zorder=3)[0]
+                     marker=marker, markersize=3, markevery=marked(plot, x, y, place), zorder=3)[0]
+
+
+def marked(plot, x, y, place):
+    """The points that carry a marker, as on the page. By lengths, matplotlib would list those outside of the window,
+    which are without end where a path diverges."""
+    left, right, bottom, top = map(float, plot["window"])
+    left, right = limits(left, right, plot["log_x"])
+    along = math.log if plot["log_x"] else float
+    quarter = (along(right) - along(left)) / 4
+    return sorted({math.floor((along(x[i]) - along(left)) / quarter - 0.618 * place % 1): i
+                   for i in range(len(x)) if left <= x[i] <= right and bottom <= y[i] <= top}.values())
 
 
 def add_published(axes, mark):

@@ -1,6 +1,7 @@
 """The client of Python, driven as Isoline drives it: with NumPy where it is, and without."""
 
 import glob
+import importlib.util
 import json
 import os
 import socket
@@ -500,6 +501,19 @@ class Alone(unittest.TestCase):
                                        capture_output=True, text=True, timeout=60, check=False)
                 self.assertIn(array + " must be", found.stderr)
                 self.assertNotIn("Traceback", found.stderr)
+
+    @unittest.skipUnless(importlib.util.find_spec("matplotlib"), "matplotlib is not installed")
+    def test_draws_a_path_that_leaves_the_window_for_good(self):
+        line = {"name": "gd", "x": [0, 0.5, 1e15], "y": [0, 0.5, -1e15], "marker": "o"}
+        plot = {"name": "path", "title": "", "x_label": "", "y_label": "", "join": "lines", "kind": "path",
+                "log_x": False, "log_y": False, "window": [0, 1, 0, 1], "series": [line]}
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "report.json")
+            with open(path, "w") as file:
+                json.dump({"plots": [plot]}, file)
+            found = subprocess.run([sys.executable, CLIENT + "/draw_figures.py", path, "--out", folder],
+                                   capture_output=True, text=True, timeout=60, check=False)
+            self.assertEqual(found.returncode, 0, found.stderr[-400:])
 
 
 if __name__ == "__main__":
