@@ -135,6 +135,7 @@ Real noise_of_calls(const Vector& y0, const std::function<Vector(Real t)>& y, co
   const Real near = kNoiseSteps[2];
   Real far = kNoiseSteps[0];
   constexpr Real kNotSmooth = 0.5, kSmooth = 0.1, kSmaller = 0.01, kFalls = 0.01, kBends = 0.3;
+  constexpr Real kWild = 10;
   constexpr Real kBent = 1e-4;  // of the change: a smooth y bends less over so small a step
   constexpr int kMostAgain = 2;
   constexpr std::size_t kMostRows = 1000;
@@ -150,6 +151,8 @@ Real noise_of_calls(const Vector& y0, const std::function<Vector(Real t)>& y, co
   }
   if (!std::isfinite(size)) return noise;
   std::vector<Vector> values{y0, y(far), y(2 * far), y(near)};
+  // Steps so small do not change y so much: a call that failed, with numbers or without.
+  const auto is_wild = [&](const Vector& each) { return !((each - y0).norm() <= kWild * size); };
   const auto difference = [&](const Vector& once, const Vector& two) -> Vector {
     return two - 2 * once + y0;
   };
@@ -170,10 +173,10 @@ Real noise_of_calls(const Vector& y0, const std::function<Vector(Real t)>& y, co
     second = difference(values[1], values[2]);
     gap = gap_to(far, values[1]);
     third = 0;
-    if (!is_finite(second)) return false;
+    if (is_wild(values[1]) || is_wild(values[2])) return false;
     if (far / near * gap <= kSmooth * second.norm()) return true;
     third = third_over(far, values[1], values[2]);
-    return std::isfinite(third);
+    return !is_wild(values.back());
   };
   for (int again = 0; !have_values() && again < kMostAgain; ++again) {  // beside failed calls
     far *= 0.75;
@@ -191,14 +194,14 @@ Real noise_of_calls(const Vector& y0, const std::function<Vector(Real t)>& y, co
     gap = gap_to(small, once);
     const bool bends = second.norm() >= kBends * kSmaller * kSmaller * third;
     third = bends && smaller <= kFalls * third ? 0 : std::max(third, smaller);
-    if (std::isfinite(third)) noise = std::max(noise, third / std::sqrt(20.0) / size);
+    if (third <= kWild * size) noise = std::max(noise, third / std::sqrt(20.0) / size);
   }
   const Real change = moved.norm();
   if (!(gap <= kBent * change)) {
     const Real bend = difference(values[3], y(2 * near)).norm() / std::sqrt(6.0);
-    if (std::isfinite(bend) && bend > kBent * change) noise = std::max(noise, bend / size);
+    if (bend > kBent * change && bend <= kWild * size) noise = std::max(noise, bend / size);
   }
-  std::erase_if(values, [](const Vector& each) { return !is_finite(each); });
+  std::erase_if(values, is_wild);
   const auto factor = [&](Index i) { return i < factors.size() ? factors[i] : 0; };
   std::vector<Index> rows;
   for (Index i = 0; i < y0.size() && rows.size() < kMostRows; ++i)
@@ -206,7 +209,7 @@ Real noise_of_calls(const Vector& y0, const std::function<Vector(Real t)>& y, co
         std::ranges::any_of(values, [&](const Vector& each) { return each[i] != y0[i]; }))
       rows.push_back(i);
   if (!rows.empty()) noise = std::max(noise, last_places(values, rows, factor).norm() / size);
-  if (slope != nullptr && noise == std::numeric_limits<Real>::epsilon() && is_finite(moved))
+  if (slope != nullptr && noise == std::numeric_limits<Real>::epsilon() && change <= kWild * size)
     *slope = moved / near;
   return noise;
 }

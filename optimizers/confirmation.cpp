@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/foreign/line.h"
 #include "optimizers/differences.h"
@@ -58,7 +59,8 @@ const Matrix* Meter::jacobian_at_end() {
     Linearization at;
     DifferenceJacobian differences;
     const Vector theta = judged_.theta;
-    if (known_.J.size() > 0) differences.know_noise(theta, known_.by.noise);
+    differences.know(sizes_of_unknowns(problem_.standard_start()).cwiseMax(theta.cwiseAbs()),
+                     known_.J.size() > 0 ? known_.by.noise : 0);
     linearize(theta, at);
     differences.renew(*this, theta, "central", at);
     return &known_.J;
@@ -68,19 +70,27 @@ const Matrix* Meter::jacobian_at_end() {
 }
 
 std::string Meter::doubt() {
-  constexpr Index kMostUnknowns = 256;
+  constexpr Index kMostUnknowns = 256, kMostWithoutGradient = 512;
   constexpr Real kSmall = 1e-5;  // of the gradient at the start
-  if (judged_.at.loss > trace_.start_loss) return "its loss is not below that of the start";
+  const Real noise = std::max(known_.by.noise, problem_.products().noise);
+  const Real loss = judged_.at.loss, largest = judged_.at.y.lpNorm<Eigen::Infinity>();
+  const bool is_sum = problem_.is_least_squares();
+  const Real rounding = rounding_of_misfit(loss, std::sqrt(2 * loss), largest, noise);
+  if (loss > trace_.start_loss + (is_sum ? rounding : 0))
+    return "its loss is not below that of the start";
   const Index n = problem_.unknowns();
-  if (!problem_.is_least_squares() || n > kMostUnknowns) {
-    const bool is_bounded = problem_.bounds() != nullptr;
-    const Real slope = is_bounded ? trace_.last.kkt_residual : trace_.last.gradient_norm;
-    if (!(slope > kSmall * start_gradient_)) return "";
-    return fmt::format("gradient not small: {:.2g}, {:.2g} at the start", slope, start_gradient_);
+  const bool is_bounded = problem_.bounds() != nullptr;
+  const Real gradient = is_bounded ? trace_.last.kkt_residual : trace_.last.gradient_norm;
+  if (!is_sum || n > (std::isnan(gradient) ? kMostWithoutGradient : kMostUnknowns)) {
+    if (std::isnan(gradient)) return "its gradient was not examined";
+    if (!(gradient > kSmall * start_gradient_)) return "";
+    return fmt::format("gradient not small: {:.2g}, {:.2g} at the start", gradient,
+                       start_gradient_);
   }
   const bool was_known = knows_jacobian();
   if (!jacobian_at_end()) return "no calls were left to see whether the gradient is small";
-  const bool is_by_method = !problem_.offers().contains(Oracle::jacobian);
+  const bool is_by_method =
+      !problem_.offers().contains(Oracle::jacobian) || problem_.products().may_be_replaced;
   const Vector r = (judged_.at.y - problem_.target()).reshaped(), slope = known_.J.transpose() * r;
   LeastSquaresPoint at{
       .J = known_.J,
@@ -106,10 +116,16 @@ std::string Meter::doubt() {
   return doubt_of(at);
 }
 
+// A method with a tolerance of its own may end beside a bound.
 bool Meter::is_held(Index i, VectorRef slope) const {
   const Bounds* const bounds = problem_.bounds();
-  return bounds != nullptr &&
-         (bounds->is_active(judged_.theta, slope, i) || bounds->lower[i] == bounds->upper[i]);
+  if (bounds == nullptr || bounds->lower[i] == bounds->upper[i]) return bounds != nullptr;
+  const Real size = sizes_of_unknowns(problem_.standard_start())[i];
+  const Real near = kEnoughOfUnknown * least_size(judged_.theta[i], size);
+  Vector theta = judged_.theta;
+  if (theta[i] - bounds->lower[i] <= near) theta[i] = bounds->lower[i];
+  if (bounds->upper[i] - theta[i] <= near) theta[i] = bounds->upper[i];
+  return bounds->is_active(theta, slope, i);
 }
 
 }  // namespace isoline::optimizers

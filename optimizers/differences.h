@@ -36,7 +36,7 @@ class DifferenceJacobian {
   void renew(Meter& f, const Vector& theta, std::string_view kind, Linearization& at) {
     const bool is_central = kind == "central";
     Vector line, slope;  // of y along the line, which the first J needs not measure again
-    if (sizes_.size() == 0) measure(f, theta, kind == "ecnoise", at, line, slope);
+    if (noise_ == 0) measure(f, theta, kind == "ecnoise", at, line, slope);
     const Index n = theta.size();
     Index known = n;  // the column that follows from the slope
     if (slope.size() > 0 && !is_central && !line.isZero(0) && given_.steps.empty())
@@ -105,11 +105,11 @@ class DifferenceJacobian {
   // In place of those that follow from the noise. Absolute ones are in the problem's own units.
   void take_steps(const std::string& text, const Meter& f) {
     given_ = given_steps(text);
-    own_scales_ = f.problem().own_units().scales;
+    of_ = &f.problem();
   }
   void take_steps(const Vector& absolute) {  // in the units of θ
     given_ = {.steps = {absolute.begin(), absolute.end()}, .are_absolute = true};
-    own_scales_.resize(0);
+    of_ = nullptr;
   }
   // As they were near θ.
   void know(const Vector& theta, const Vector& y, const Matrix& J) {
@@ -117,9 +117,10 @@ class DifferenceJacobian {
     y_ = y;
     J_ = J;
   }
-  // As another one has measured it near θ.
-  void know_noise(const Vector& theta, Real noise) {
-    sizes_ = sizes_of_unknowns(theta);
+  // The sizes of the unknowns, (n), in place of those of the first θ; and the noise, as another one
+  // has measured it near θ, or 0.
+  void know(const Vector& sizes, Real noise) {
+    sizes_ = sizes;
     noise_ = noise;
   }
   bool is_fresh() const { return is_fresh_; }  // not yet updated
@@ -140,8 +141,8 @@ class DifferenceJacobian {
     Real size = size_of(theta, j);
     if (given_.steps.empty() && columns_.size() > 0)
       size = size_for_steps(size, columns_[j], y_.norm());
-    const Real h = given_.of(j, theta.size(), size, otherwise);
-    return given_.are_absolute && own_scales_.size() > 0 ? h / own_scales_[j] : h;
+    if (of_ == nullptr) return given_.of(j, theta.size(), size, otherwise);
+    return of_->given_step(given_, theta, j, size, otherwise);
   }
   static Room room_of(const Meter& f, const Vector& theta, Index j) {
     const Bounds* const bounds = f.bounds();
@@ -185,7 +186,7 @@ class DifferenceJacobian {
   // Along a line through θ, inside the bounds.
   void measure(Meter& f, const Vector& theta, bool by_tables, Linearization& at, Vector& line,
                Vector& slope) {
-    sizes_ = sizes_of_unknowns(theta);
+    if (sizes_.size() == 0) sizes_ = sizes_of_unknowns(theta);
     const Bounds* const bounds = f.bounds();
     line = line_inside(theta, sizes_, bounds ? &bounds->lower : nullptr,
                        bounds ? &bounds->upper : nullptr);
@@ -219,11 +220,11 @@ class DifferenceJacobian {
   Vector columns_;                // (n), their norms when last measured, or empty
   Vector theta_, moved_, sizes_;  // (n)
   Vector y_;                      // (m), at θ
-  Real noise_ = 0;                // of y in a call, relative to ‖y‖
+  Real noise_ = 0;                // of y in a call, relative to ‖y‖; 0: it is not known
   bool is_fresh_ = false, is_central_ = false;
   Linearization other_;
   GivenSteps given_;
-  Vector own_scales_;  // (n), or empty
+  const Problem* of_ = nullptr;  // in whose units they are; nullptr: those of θ
 };
 
 }  // namespace isoline::optimizers

@@ -16,7 +16,9 @@ namespace isoline::optimizers {
 
 std::string doubt_of(const LeastSquaresPoint& at) {
   constexpr Real kRounding = std::numeric_limits<Real>::epsilon();
-  constexpr Real kOfSpread = 0.1;  // of its standard deviation: more noise leaves it undetermined
+  // Shares of its standard deviation, and of the error that the noise of a call gives it where the
+  // fit is as good as that: more leaves it undetermined.
+  constexpr Real kOfSpread = 0.1, kOfError = 2;
   std::vector<Index> free;
   for (Index i = 0; i < at.theta.size(); ++i)
     if (!at.is_held[static_cast<std::size_t>(i)]) free.push_back(i);
@@ -75,7 +77,8 @@ std::string doubt_of(const LeastSquaresPoint& at) {
     const Real length = root.row(i).norm() / D[i];
     const Real unsure = std::hypot(error * length, spreads.row(i).norm() / D[i]);
     const bool forgives = at.forgives_noise || at.is_central;
-    const Real of_noise = forgives ? std::min(at.sure * unsure, kOfSpread * spread * length) : 0;
+    const Real most = std::max(kOfSpread * spread, kOfError * error) * length;
+    const Real of_noise = forgives ? std::min(at.sure * unsure, most) : 0;
     const Real known = std::max(enough_of_unknown, at.enough_of_deviation * spread * length);
     const Real enough = std::max(known, of_noise);
     const bool is_blurred =

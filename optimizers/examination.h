@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -35,6 +36,14 @@ struct LeastSquaresPoint {
   bool forgives_noise = true;  // a step that the noise makes counts as none
   Real sure = 4;               // standard deviations of that
 };
+
+// The error of ½‖r‖², r = y − y*, by that of y in a call, `noise` of each component: the loss
+// cannot judge what changes it by less. `misfit`: ½‖r‖²; `norm`: ‖r‖; `largest`: of |y|.
+inline Real rounding_of_misfit(Real misfit, Real norm, Real largest, Real noise) {
+  constexpr Real kSure = 3;  // standard deviations
+  const Real error = noise > std::numeric_limits<Real>::epsilon() ? kSure * noise : noise;
+  return error * (misfit + norm * largest);
+}
 
 // Empty where J has full rank over the unknowns that no bound holds and the Gauss-Newton step there
 // is that small, or below what the noise makes of it; else the reason.

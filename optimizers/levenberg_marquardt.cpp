@@ -34,6 +34,7 @@ constexpr Real kEpsilon = std::numeric_limits<Real>::epsilon();
 constexpr Real kUnbounded = std::numeric_limits<Real>::infinity();
 bool has_own_jacobian(const Problem& problem) {
   const OracleSet offers = problem.offers();
+  if (problem.products().may_be_replaced && problem.has_identity_network()) return false;
   return offers.contains(Oracle::jacobian) || offers.contains(Oracle::layer_factors) ||
          offers.contains(Oracle::sparse_jacobian) || offers.contains(Oracle::pullback);
 }
@@ -386,16 +387,12 @@ struct LevenbergMarquardt {
     return 0.5 * s.Jd.squaredNorm() + s.damping.mu * s.squares.squared_length(s.step);
   }
 
-  // The rounding error of ½‖r‖², r = y − y*, whose components have errors of ε|y|, ε that of a call
-  // where J comes by differences. Where a step and
-  // its prediction change ½‖r‖² by less, the loss cannot judge it; x, which depends on the
-  // gradient, still becomes more accurate as long as steps become shorter.
+  // Where a step and its prediction change ½‖r‖² by less, the loss cannot judge it; x, which
+  // depends on the gradient, still becomes more accurate as long as steps become shorter.
   static Real rounding_of_misfit(Meter& f, const State& s) {
-    constexpr Real kSure = 3;  // standard deviations
     const Real largest = (f.target().reshaped() - s.residual).lpNorm<Eigen::Infinity>();  // of y
     const Real noise = s.jacobian == "exact" ? s.noise : s.differences.noise();
-    const Real error = noise > kEpsilon ? kSure * noise : noise;
-    return error * (s.squares.misfit() + s.residual.norm() * largest);
+    return optimizers::rounding_of_misfit(s.squares.misfit(), s.residual.norm(), largest, noise);
   }
 
   // Geodesic acceleration, Transtrum and Sethna (2012): d ← d + a, a = argmin ‖J a + ½ r''‖² +

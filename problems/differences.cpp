@@ -53,12 +53,13 @@ class Differenced final : public Wrapper {
             .pushforward_price = calls,
             .pullback_price = calls * inputs(),
             .are_differences = has_products_,
+            .may_be_replaced = has_products_ && has_inverse_ && given_.steps.empty(),
             .are_at_once = has_products_,
             .noise = noise_,
             .step = given_.steps.empty() && noise_ > 0 ? step() : std::nan("")};
   }
   const std::string& steps() const { return steps_; }
-  void keep_inverse() { has_inverse_ = true; }
+  void keep_inverse() { has_inverse_ = true; }  // of a script that leaves its derivatives to us
   const Physics& inside() const override { return *inside_; }
   std::unique_ptr<Physics> take_inside() { return std::move(inside_); }
   Inverse inverse_kind() const override {
@@ -113,7 +114,7 @@ class Differenced final : public Wrapper {
     const Vector sizes = x.rowwise().lpNorm<Eigen::Infinity>().cwiseMax(sizes_);
     Vector steps = sizes;
     for (Index i = 0; i < steps.size() && !given_.steps.empty(); ++i)
-      steps[i] = given_.of(i, steps.size(), sizes[i], 0);
+      steps[i] = given_step(given_, *inside_, x.col(0), i, sizes[i], 0);
     const Real length = (v.array().colwise() / steps.array()).abs().maxCoeff();
     const Real step = given_.steps.empty() ? this->step() : 1;
     for (Index b = 0; bounds_ && b < x.cols(); ++b)

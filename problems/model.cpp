@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <optional>
 #include <utility>
 
 #include "core/errors.h"
@@ -70,7 +71,8 @@ struct Mapping {
   std::vector<bool> is_log;        // (n)
   std::vector<Tie> ties;
   std::vector<Prior> priors;
-  Vector factors;  // of the residuals of the data, (m); empty: 1
+  Vector factors;             // of the residuals of the data, (m); empty: 1
+  std::optional<Bounds> box;  // of x, (k)
 
   Index unknowns() const { return std::ssize(free); }
   bool has_log(Index j) const { return is_log[static_cast<std::size_t>(j)]; }
@@ -106,6 +108,12 @@ struct Mapping {
     }
     return S;
   }
+  bool has_ties_within_bounds(BatchRef full) const {
+    return !box || std::ranges::all_of(ties, [&](const Tie& tie) {
+      const auto row = full.row(tie.unknown).array();
+      return (row >= box->lower[tie.unknown] && row <= box->upper[tie.unknown]).all();
+    });
+  }
   // −infinity where x has no logarithm.
   Vector to_z(VectorRef full) const {
     Vector z(unknowns());
@@ -120,12 +128,18 @@ struct Mapping {
 Mapping mapping_of(const ModelWords& words, const ProblemParts& parts) {
   const Index k = parts.physics->inputs(), m = parts.physics->outputs();
   Mapping map{.names = parts.names, .x = parts.start.standard};
+  map.box = parts.bounds;
   for (Index i = std::ssize(map.names); i < k; ++i) map.names.push_back(fmt::format("x{}", i + 1));
   std::vector<bool> is_held(static_cast<std::size_t>(k)), is_log = is_held;
   for (const auto& [name, value] : pairs_in(words.fixed)) {
     const Index i = map.index(name, "fixed");
     is_held[static_cast<std::size_t>(i)] = true;
     if (!value.empty()) map.x[i] = number_of(value, "fixed", name);
+    const auto& box = map.box;
+    require(!box || (box->lower[i] <= map.x[i] && map.x[i] <= box->upper[i]), [&] {
+      return fmt::format("fixed: {} = {} lies outside its bounds, {} to {}", name, map.x[i],
+                         box->lower[i], box->upper[i]);
+    });
   }
   const auto ties = pairs_in(words.tied);
   std::vector<std::string> known = map.names;  // without those that are tied further on
@@ -198,10 +212,12 @@ class Modelled final : public Wrapper {
     own.w.x = points(z);
     own.w.context = c;
     own.w.saved_is_current = false;
-    own.has_failed = !own.w.x.allFinite();
+    own.has_failed = !own.w.x.allFinite() || !map_.has_ties_within_bounds(own.w.x);
     if (own.has_failed) {
       add_failure({z.data(), static_cast<std::size_t>(z.rows())},
-                  "x is not finite, by its logarithm or the expression that it is tied to");
+                  own.w.x.allFinite() ? "what is tied lies outside its bounds"
+                                      : "x is not finite, by its logarithm or the expression that "
+                                        "it is tied to");
       y.setConstant(kNaN);
       return;
     }
@@ -356,14 +372,36 @@ Vector point_of_model(const Physics& physics, VectorRef theta) {
   return x;
 }
 
-Matrix Problem::model_slopes(VectorRef theta) const {
+namespace {
+
+Matrix slopes_of_model(const Physics& physics, VectorRef theta) {
   Vector x = theta;
   Matrix slopes = Matrix::Identity(theta.size(), theta.size());
-  modelled_in(&physics(), [&](const Wrapper& wrapper) {
+  modelled_in(&physics, [&](const Wrapper& wrapper) {
     slopes = Matrix(wrapper.inner_slopes(x) * slopes);
     x = Vector(wrapper.inner_point(x));
   });
   return slopes;
+}
+
+}  // namespace
+
+Matrix Problem::model_slopes(VectorRef theta) const { return slopes_of_model(physics(), theta); }
+
+Real given_step(const GivenSteps& given, const Physics& physics, VectorRef theta, Index j,
+                Real size, Real otherwise) {
+  const Modelled* const found = modelled_in(&physics, [](const Wrapper&) {});
+  if (found == nullptr) return given.of(j, theta.size(), size, otherwise);
+  const Index i = found->map().outer(j);
+  const Real h = given.of(i, std::ssize(found->map().names), size, otherwise);
+  return given.are_absolute ? h / std::abs(slopes_of_model(physics, theta)(i, j)) : h;
+}
+
+Real Problem::given_step(const GivenSteps& given, VectorRef theta, Index j, Real size,
+                         Real otherwise) const {
+  const Real h = problems::given_step(given, physics(), theta, j, size, otherwise);
+  const Vector& scales = own_units().scales;
+  return given.are_absolute && scales.size() > 0 ? h / scales[j] : h;
 }
 
 bool is_logarithm(const Problem& problem, Index unknown) {

@@ -56,6 +56,9 @@ Problem with_model(Problem plain, const ModelWords& words, const Draw& draw);
 Vector factors_of_data(const Physics& physics, Index rows);
 // x at θ, of a physics with a model.
 Vector point_of_model(const Physics& physics, VectorRef theta);
+// As Problem::given_step(), in units in which methods see it.
+Real given_step(const GivenSteps& given, const Physics& physics, VectorRef theta, Index j,
+                Real size, Real otherwise);
 // Whether an unknown of the methods is a logarithm.
 bool is_logarithm(const Problem& problem, Index unknown);
 

@@ -92,6 +92,7 @@ struct Products {
   bool has_pushforward = true, has_pullback = true;
   Index pushforward_price = 1, pullback_price = 1;
   bool are_differences = false;  // quotients of forwards, of some eight digits
+  bool may_be_replaced = false;  // by a method's own differences: no user asked for these
   bool are_at_once = false;      // by forwards none of which needs the result of another
   Real noise = 0;  // of y in a call, relative to ‖y‖, where differences have found it
   Real step = std::numeric_limits<Real>::quiet_NaN();  // of those, relative to the unknowns' sizes

@@ -9,6 +9,7 @@
 #include <memory>
 #include <optional>
 
+#include "core/differences.h"
 #include "core/field.h"
 #include "core/frames.h"
 #include "core/options.h"
@@ -195,6 +196,10 @@ class Problem {
   // By which each y of the simulator is multiplied: (residuals), without penalties and priors.
   Vector factors_of_data() const;
   Matrix model_slopes(VectorRef theta) const;  // ∂x/∂θ, (k, n), of a problem with a model
+  // h of unknown j at θ by the steps that a user gave: one for each x, and absolute ones in units
+  // of x; `otherwise` as GivenSteps has it.
+  Real given_step(const GivenSteps& given, VectorRef theta, Index j, Real size,
+                  Real otherwise) const;
   const Physics& physics() const { return *parts_.physics; }
   const auto& window() const { return parts_.window; }
   const auto& y_window() const { return parts_.y_window; }

@@ -117,7 +117,15 @@ JudgesReply reply_to(const PointToJudge& asked, const Worker& worker, Instances&
     const Worker& worker = workers[asked.slot];
     evaluations().begin({.folder = asked.folder});
     JudgesReply reply = reply_to(asked, worker, instances, make);
-    if (!reply.is_judged) reply = reply_to(asked, worker, instances, make);  // a fresh one
+    constexpr int kMostAgain = 2;  // a call may fail by chance
+    for (int again = 0; again < kMostAgain; ++again) {
+      const auto before = std::pair(reply.afresh, reply.afresh_failed);
+      if (reply.is_judged && (before.first == 0 || before.second < before.first)) break;
+      instances.erase(asked.seed);
+      reply = reply_to(asked, worker, instances, make);
+      reply.afresh += before.first;
+      reply.afresh_failed += before.second;
+    }
     if (send(socket, &reply, sizeof reply, MSG_NOSIGNAL) != sizeof reply) break;
   }
   _exit(0);

@@ -42,7 +42,7 @@ Refits::Refits(problems::Problem& problem, Vector fit, Real variance, Real rise_
   constexpr Real kFirst = 1e-3, kOfDeviation = 0.3, kNear = 3, kMostGrowth = 100;
   constexpr int kPasses = 6;
   steps_ = kFirst * fit.cwiseAbs().cwiseMax(sizes_of_unknowns(start_.standard));
-  differences_.know_noise(fit, std::numeric_limits<Real>::epsilon());
+  differences_.know(sizes_of_unknowns(fit), std::numeric_limits<Real>::epsilon());
   // Printed digits hide what a step far too small changes: until each has the length that it shows.
   for (int pass = 0; pass < kPasses; ++pass) {
     differences_.take_steps(steps_);

@@ -394,12 +394,20 @@ void add_profiles(Solution& solution, const SolutionArguments& given, Session& s
   if (problem.is_elsewhere()) evaluations().begin({.folder = from});  // answers and keeps its calls
   const Units units(problem, fit);
   std::vector<std::size_t> unknowns;
-  for (std::size_t i = 0; i < fit.names.size(); ++i)
-    if (units.component(i) &&
-        (given.unknowns.empty() ||
-         std::ranges::find(given.unknowns, fit.names[i]) != given.unknowns.end()))
-      unknowns.push_back(i);
-  require(!unknowns.empty(), "--unknown names no free unknown of the fit");
+  const auto is_asked = [&](const std::string& name) {
+    return given.unknowns.empty() || std::ranges::count(given.unknowns, name) > 0;
+  };
+  std::vector<std::string> free;
+  for (std::size_t i = 0; i < fit.names.size(); ++i) {
+    if (!units.component(i)) continue;
+    free.push_back(fit.names[i]);
+    if (is_asked(fit.names[i])) unknowns.push_back(i);
+  }
+  for (const std::string& name : given.unknowns)
+    require(std::ranges::count(free, name) > 0, [&] {
+      return fmt::format("--unknown: '{}' is no free unknown of the fit; there are {}", name,
+                         fmt::join(free, ", "));
+    });
   const auto n = static_cast<std::size_t>(problem.unknowns());
   const std::size_t ends = 2 * unknowns.size(), first = 2 + 3 * n;  // measured on calibrations
   constexpr Real kValley = 1000;  // a condition number from which a refit takes ten times as many

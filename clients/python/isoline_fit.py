@@ -12,9 +12,11 @@ import hashlib
 import html
 import inspect
 import io
+import itertools
 import json
 import math
 import os
+import re
 import select
 import shlex
 import shutil
@@ -30,7 +32,7 @@ from isoline import Refused
 
 np = isoline.numpy  # None where it is not installed
 
-METHOD, CENTRAL = "levenberg-marquardt[jacobian=differences]", "levenberg-marquardt"
+METHOD, CENTRAL = "levenberg-marquardt[jacobian=differences]", "levenberg-marquardt[jacobian=central]"
 MOST_ATTEMPTS = 6  # of the default methods, until a point is a confirmed minimum
 FITS = ("converged", "target", "discrepancy")  # statuses of a point that Isoline has examined
 
@@ -79,12 +81,12 @@ def _rows_of_file(path):
         while header.startswith("#"):
             above, header = above + 1, file.readline()
         mark = next((mark for mark in ";\t" if mark in header), ",")
-        yield [name.strip() for name in header.split(mark)]
-        reader = csv.reader(file, delimiter=mark)
+        reader = csv.reader(itertools.chain([header], file), delimiter=mark)
         try:
-            yield from ((f"{path}, line {above + reader.line_num + 1}", row) for row in reader if row)
+            yield [name.strip() for name in next(reader)]
+            yield from ((f"{path}, line {above + reader.line_num}", row) for row in reader if row)
         except csv.Error:
-            raise Refused(f"{path}, line {above + reader.line_num + 1}: expected fields of at most {csv.field_size_limit()} characters, "
+            raise Refused(f"{path}, line {above + reader.line_num}: expected fields of at most {csv.field_size_limit()} characters, "
                           "in lines that end by a line feed; an open quote joins lines") from None
 
 
@@ -140,20 +142,21 @@ class _Model:
         self.fixed, tied = {self.index(which) for which in fixed}, tied or {}
         self.free = [i for i in range(count) if i not in self.fixed | {self.index(which) for which in tied}]
         lower, upper = (_spread(side, count, "bounds") for side in bounds or (-math.inf, math.inf))
-        for i in self.free:
+        for i in [*self.free, *self.fixed]:
             if not lower[i] <= x0[i] <= upper[i] or i in map(self.index, log) and not x0[i] > 0:
                 limits = f"its bounds {lower[i]:g} and {upper[i]:g}"
                 raise Refused(f"x0 of {self.names[i]} is {x0[i]:g}; it must lie in {limits}, and be positive for log=")
-        is_free = np.isin(range(count), self.free)
-        self.bounds = np.where(is_free, lower, -math.inf), np.where(is_free, upper, math.inf)
+        self.bounds = lower, upper
         for which, words in tied.items():
-            known = {**vars(math), **dict(zip(self.names, x0))}
-            try:
-                x0[self.index(which)] = eval(words.replace("^", "**"), {"__builtins__": {}}, known)
+            known = {**vars(math), "abs": abs, **{f"_{i}": value for i, value in enumerate(x0)}}
+            named = lambda found: f"_{self.names.index(found[0])}" if found[0] in self.names else found[0]
+            try:  # a name may be a word of Python
+                text = re.sub(r"(?<![\w.])[^\W\d]\w*", named, words.replace("^", "**"))
+                x0[self.index(which)] = eval(text, {"__builtins__": {}}, known)
             except (NameError, SyntaxError) as error:
                 raise Refused(f"{which} is tied to {words!r}, which cannot be computed: {error}") from None
         self.tied = {self.index(which) for which in tied}
-        self.x0 = x0  # (k); that of the next run
+        self.x0, self.begin = x0, x0  # (k), and those of the next run
         axis = self.table and isoline._axis(self.table)
         many = starts if starts > 1 else None
         self.words = isoline._words(self.names, count, fixed, tied, log, sigma, weights, prior, many, axis=axis)
@@ -196,12 +199,14 @@ class _Model:
         arrays = [list(each) for each in (y0, self.data, np.atleast_1d(self.factor), self.x0, *self.bounds)]
         return hashlib.sha1(repr([*arrays, self.names, self.units, self.words, text]).encode()).hexdigest()[:12]
 
-    def description(self, name, start):
-        numbers = lambda values: isoline._json_numbers(values, "x0")
+    def description(self, name, drawn):
+        """`drawn` (k) or None: where a run begins in place of x0."""
+        numbers, start = lambda values: isoline._json_numbers(values, "x0"), self.x0
         is_bounded = bool(np.any(np.isfinite(self.bounds)))
         return {
             "name": name, "inputs": len(start), "outputs": len(self.data), "oracles": ["forward"], "differences": True,
-            "start": numbers(start), "target": numbers(self.data), "bounds": [*map(numbers, self.bounds)] if is_bounded else None,
+            "start": numbers(start), "drawn": None if drawn is None else numbers(drawn), "target": numbers(self.data),
+            "bounds": [*map(numbers, self.bounds)] if is_bounded else None,
             "active_bounds": is_bounded, "names": self.names, "units": self.units, "start_scale": "own", "words": self.words,
         }
 
@@ -348,15 +353,17 @@ def fit(
         raise Refused(f"forward(x0) must be finite, got {y0}")
     bridge = os.path.join(os.path.dirname(os.path.abspath(__file__)), "bridge.py")
     more = (f",workers={workers}" if workers > 1 else "") + (f",call-time={call_time}" if call_time else "")
-    words = ["run", "--starts", str(starts), "--out", str(out), "--uncertified", "--no-report", "--jobs", "1",
+    words = ["run", "--out", str(out), "--uncertified", "--no-report", "--jobs", "1",
              "--time", "1000000s", *(["--work", str(work)] if work else [])]  # a call may take hours
     records, asked = [], [methods] if isinstance(methods, str) else list(methods or [])
+    command = shlex.join([sys.executable or "python3", "-IS", bridge, f"{name}-{model.key(y0)}"])
+    spec = f"process[command={json.dumps(command, ensure_ascii=False)},label={name}{more}]"
     for attempt in range(1 if asked or starts > 1 else MOST_ATTEMPTS):
-        some, described = asked or [CENTRAL if attempt % 2 else METHOD], model.description(name, model.x0)
-        command = shlex.join([sys.executable or "python3", "-IS", bridge, f"{name}-{model.key(y0)}"])
-        spec = f"process[command={json.dumps(command, ensure_ascii=False)},label={name}{more}]"
-        code, printed = _run([*words, "--problem", spec, "--optimizer", ",".join(some)], workers, model, described)
-        new = _of_methods(_records(out, command, work), some)
+        some, described = asked or [CENTRAL if attempt % 2 else METHOD], model.description(name, model.begin if attempt else None)
+        begun = ["--starts", f"={attempt}" if attempt else str(starts)]
+        code, printed = _run([*words, *begun, "--problem", spec, "--optimizer", ",".join(some)], workers, model, described)
+        new = [each for each in _of_methods(_records(out, command, work), some)
+               if attempt <= each["request"]["seed"] % 1000 < attempt + starts]
         if not any("answer" in each for each in new):
             why = "; ".join(dict.fromkeys(  # of many starts, one
                 f"{each['request']['optimizer']['spec']} is {each['status']}: {each['message']}" for each in new))
@@ -369,7 +376,7 @@ def fit(
             best = min((each for each, _ in records), key=lambda each: float(each["summary"]["loss"]))
             beside = np.array(best["answer"]["x"][0], float)
             beside[model.free] *= 1 + 3e-3 * (attempt + 1)
-            model.x0 = np.clip(beside, *model.bounds)
+            model.begin = np.clip(beside, *model.bounds)
     model.show(math.inf, is_last=True)
     if progress:
         print(f"`isoline report {shlex.quote(str(out))}` makes a page of this fit", file=sys.stderr)
@@ -435,8 +442,9 @@ class Fit:
         self.residuals, found = self.y - model.data, self._solution()
         self.sd = self.interval = self.correlation = self._profile = None
         self.p = found.get("p")
-        self.degrees_of_freedom = found.get("degrees_of_freedom", len(model.data) + len(model.prior) - len(model.free))
         active = found.get("active_bounds", [""] * len(self.names))
+        free = sum(not active[i] for i in model.free)
+        self.degrees_of_freedom = found.get("degrees_of_freedom", len(model.data) + len(model.prior) - free)
         if "standard_deviation" in found:
             numbers = lambda name: np.array(found[name], float)
             self.sd, self.interval, self.correlation = map(numbers, ("standard_deviation", "interval", "correlation"))

@@ -6,6 +6,7 @@
 #include <limits>
 #include <map>
 
+#include "core/text.h"
 #include "reports/formats/formats.h"
 #include "reports/page/page.h"
 #include "reports/sections/words.h"
@@ -333,8 +334,11 @@ std::string end_names(const Drawing& drawing, const Frame& frame) {
     while (last > 0 && !std::isfinite(line.y[last - 1])) --last;
     if (last == 0 || is_hidden(drawing, line)) continue;
     std::string text = line.name;
-    if (text.size() > kLongest)
-      text = text.substr(0, kLongest / 2) + "…" + text.substr(text.size() - kLongest / 2 + 1);
+    if (text.size() > kLongest) {
+      std::size_t rest = text.size() - kLongest / 2 + 1;  // where a letter begins
+      while (rest < text.size() && (text[rest] & 0xC0) == 0x80) ++rest;
+      text = std::string(cut(text, kLongest / 2)) + "…" + text.substr(rest);
+    }
     if (is_bound(drawing, line)) text = "≤ " + text;
     if (line.is_worse_at_end) text += " ✗";
     const Real x = drawing.plot.kind == Plot::Kind::steps ? frame.window.x_high : line.x[last - 1],

@@ -121,10 +121,14 @@ class Fits(unittest.TestCase):
     def fit(self, *arguments, **more):
         return isoline.fit(*arguments, **{"out": self.folder + "/results", "progress": False, **more})
 
-    def record(self, out=None):
+    def records(self, out=None):
         folder = (out or self.folder + "/results") + "/runs/"
-        with open(folder + os.listdir(folder)[0]) as file:
-            return json.load(file)
+        for each in os.listdir(folder):
+            with open(folder + each) as file:
+                yield json.load(file)
+
+    def record(self, out=None):
+        return next(self.records(out))
 
     def assertNear(self, found, expected, relative):
         self.assertEqual(len(found), len(expected))
@@ -234,6 +238,19 @@ class Fits(unittest.TestCase):
         _, data, given, x, sd, *_ = CALIBRATIONS["puromycin"]
         self.assertNear(self.fit(forward, data, **given).x, x, 1e-6)
 
+    def test_a_call_that_fails_by_chance_when_it_is_verified_is_made_again(self):
+        seen = {}
+
+        def forward(x):
+            seen[tuple(x)] = seen.get(tuple(x), 0) + 1
+            if seen[tuple(x)] == 2 and tuple(x) != (100, 1):
+                raise RuntimeError("no licence")
+            return [x[0] * c / (x[1] + c) for c in PPM]
+
+        result = self.fit(forward, CALIBRATIONS["puromycin"][1], [100, 1])
+        self.assertEqual(result.status, "converged", result.message)
+        self.assertEqual(self.record()["calls"]["failed"], 1)
+
     def test_a_script_that_fails_here_and_there_passes_its_checks(self):
         script = self.folder + "/script.py"
         with open(script, "w") as file:
@@ -258,11 +275,14 @@ class Fits(unittest.TestCase):
         few = self.fit(misra, MISRA_Y, [500, 1e-4], methods="nlopt-neldermead", work=20)
         contradicted = self.fit(misra, MISRA_Y, [500, 1e-4], sigma=0.01)
         self.assertEqual(len(flat.runs), 3)
+        self.assertEqual(len({record["request"]["problem"]["spec"] for record in self.records()}), 3, "one for each fit")
         for result, word in ((flat, "idle"), (few, "budget"), (contradicted, "χ²")):
             self.assertEqual((result.sd, result.interval, result.correlation), (None, None, None))
             self.assertIn(word, result.message)
             with self.assertRaises(isoline.Refused):
                 result.profile()
+        with self.assertRaisesRegex(isoline.Refused, "nosuch"):
+            self.fit(misra, MISRA_Y, [500, 1e-4]).profile(["x1", "nosuch"])
         self.assertLess(contradicted.p, 1e-3)
         self.assertAlmostEqual(self.fit(misra, MISRA_Y, [500, 1e-4], sigma=0.1).p, 0.41, delta=0.005)
 
@@ -285,6 +305,24 @@ class Fits(unittest.TestCase):
         self.assertNear(prior.x, [(a22 * b1 - a12 * b2) / determinant, (a11 * b2 - a12 * b1) / determinant], 1e-8)
         with self.assertRaises(isoline.Refused):
             self.fit(line, data, {"a": 0, "b": 1}, prior={"b": (1, 0.1)})
+
+    def test_unknowns_that_are_tied_have_bounds_and_names_of_any_kind(self):
+        line = lambda x: [abs(x[0]) + x[1] * t for t in (0, 1, 2, 3)]
+        data, x0 = [1.1, 2.9, 5.2, 6.8], {"a": -1, "lambda": 1}
+        tied = self.fit(line, data, x0, tied={"a": "-abs(lambda) / 2"})
+        slope = sum((t + 0.5) * y for t, y in enumerate(data)) / 21
+        self.assertNear(tied.x, [-slope / 2, slope], 1e-9)
+        limited = self.fit(line, data, x0, tied={"a": "-lambda / 2"}, bounds=([-0.9, 0], [9, 9]))
+        self.assertGreaterEqual(limited.x[0], -0.9)
+        self.assertGreater(limited.loss, 1.01 * tied.loss)
+        with self.assertRaisesRegex(isoline.Refused, "a is -1"):
+            self.fit(line, data, x0, fixed=["a"], bounds=([0, 0], [9, 9]))
+
+    def test_counts_no_degree_of_freedom_for_what_a_bound_holds(self):
+        curve = lambda x: [x[0] + x[1] * t + x[2] * t**2 for t in (0, 1, 2)]
+        result = self.fit(curve, [1.1, 2.9, 5.2], [1, 1, 1], bounds=([-9, -9, 0.5], [9, 9, 9]))
+        self.assertEqual((result.status, result.degrees_of_freedom), ("converged", 1))
+        self.assertGreater(result.sd[0], 0)
 
     def test_weights_are_factors_of_residuals_without_a_scale(self):
         line = lambda x: [x[0] + x[1] * t for t in (0, 1, 2, 3)]
@@ -495,6 +533,7 @@ class Tables(unittest.TestCase):
         data = self.read("t;u;e\n1;2;0.1\n", y="u", sigma="e")
         self.assertEqual((list(data.y), list(data.sigma)), ([2], [0.1]))
         self.assertIsNone(self.read("t,y\n1,2\n").sigma)
+        self.assertEqual(list(self.read('"t","y"\n1,2\n').y), [2])  # as R writes it
         self.assertEqual(list(self.read("t,y,\xb5\n1,2,3\n", encoding="latin-1").y), [2])
 
     def test_refuses_missing_values_by_their_line(self):

@@ -527,6 +527,17 @@ TEST(NoiseOfCalls, IsMeasuredBesideFailedCalls) {
   EXPECT_GT(noise_of_calls(y(0), y, Vector::Ones(30)), 1e-5);
 }
 
+// A call that prints a wrong number is no noise of the others.
+TEST(NoiseOfCalls, LeavesAWildCallOut) {
+  for (const Real wild : {1.0, 2.0, 1e-8 / kNoiseStep}) {
+    const auto y = [&](Real t) -> Vector {
+      const Vector all = calls_of(t, [](Real value) { return value; });
+      return std::abs(t / kNoiseStep / wild - 1) < 1e-6 ? Vector(1e30 * all) : all;
+    };
+    EXPECT_LT(noise_of_calls(y(0), y, Vector::Ones(30)), 1e-8) << wild;
+  }
+}
+
 // Where one of two calls fails, a call halfway keeps the order: e^t over steps of 0.01.
 TEST(Differences, OfTwoCallsKeepTheirOrderWhereOneFails) {
   const auto y = [](Real t) { return Vector::Constant(1, t < 0 ? std::nan("") : std::exp(t)); };

@@ -122,6 +122,78 @@ TEST(Forward, SixDigitsAndFailedCallsDoNotEndAFitBeforeItsMinimum) {
   EXPECT_LT(fit.trace->last.x_error, 5e-3);
 }
 
+// As a method has it that reports any point as its solution.
+Status verdict_on(const Problem& problem, const Vector& theta) {
+  auto trace = std::make_unique<Trace>();
+  Meter meter(problem, {.iterations = 10}, {Oracle::forward}, *trace);
+  meter.begin(problem.start());
+  meter.finish(theta, Status::converged);
+  return trace->status;
+}
+
+// Without derivatives no gradient says that a point is no solution, of any number of unknowns.
+TEST(Forward, APointThatWasNotExaminedIsUnconfirmed) {
+  for (const std::string n : {"30", "300", "1100"}) {
+    const Problem problem =
+        featured("broyden-tridiagonal[n=" + n + "]", {{"derivatives", std::string("none")}});
+    EXPECT_EQ(verdict_on(problem, 0.9 * problem.start()), Status::unconfirmed) << n;
+  }
+  const Problem problem =
+      featured("broyden-tridiagonal[n=300]", {{"derivatives", std::string("none")}});
+  const Outcome fit =
+      run(problem, "levenberg-marquardt", {.iterations = 100, .work = 4000, .target = 0});
+  EXPECT_EQ(fit.status, Status::converged) << fit.trace->message;
+}
+
+// Within what few digits tell, the loss of a start at the fit is as good as that of the end.
+TEST(Forward, AStartAtTheFitIsConfirmedWithFewDigits) {
+  for (const Real digits : {4.0, 5.0, 6.0}) {
+    const Problem problem = featured("nist[dataset=Chwirut2,start=2]",
+                                     {{"digits", digits}, {"derivatives", std::string("none")}});
+    const Budget budget{.iterations = 1000, .work = 1000, .target = 0};
+    const Outcome fit = run(problem, "levenberg-marquardt", budget);
+    EXPECT_EQ(fit.status, Status::converged) << digits << fit.trace->message;
+    const Outcome again = run_from(fit.theta, problem, "levenberg-marquardt", budget);
+    EXPECT_EQ(again.status, Status::converged) << digits << again.trace->message;
+  }
+}
+
+// As many residuals as unknowns, which no method solves exactly with printed digits.
+TEST(Forward, ASquareSystemWithFewDigitsIsConfirmed) {
+  for (const Real digits : {5.0, 7.0}) {
+    const Problem problem =
+        featured("helical-valley", {{"digits", digits}, {"derivatives", std::string("none")}});
+    const Outcome fit =
+        run(problem, "levenberg-marquardt", {.iterations = 1000, .work = 1000, .target = 0});
+    EXPECT_EQ(fit.status, Status::converged) << digits << fit.trace->message;
+    EXPECT_LT(fit.trace->last.x_error, std::pow(10, 1 - digits)) << digits;
+    EXPECT_EQ(verdict_on(problem, fit.theta + Vector::Constant(3, 1e-2)), Status::unconfirmed);
+  }
+}
+
+// Methods with a tolerance of their own end beside a bound, and beside 0, not on it. The residual
+// at x = (1, 0) is orthogonal to both columns.
+TEST(Forward, MethodsWithoutAJacobianAreConfirmedBesideABoundAndBesideZero) {
+  const Matrix A{{1, 0.2}, {0.3, 1}, {0.5, -0.4}};
+  const auto problem = [&](Real lower) {
+    problems::ProblemParts parts{
+        .physics = std::make_unique<Linear>(A),
+        .start = Vector{{1, 2}},
+        .target = Vector(A * Vector{{1, 0}} + Vector{{-0.062, 0.05, 0.094}})};
+    const Vector far = Vector::Constant(2, 10);
+    parts.bounds = problems::Bounds{Vector{{-10, lower}}, far};
+    return with_features(Problem(std::move(parts)), {{"derivatives", std::string("none")}},
+                         Draw(0, "line"));
+  };
+  for (const char* method : {"dfo-gn", "nlopt-neldermead", "nlopt-sbplx", "nlopt-cobyla"})
+    for (const Real lower : {-10.0, 0.5}) {  // of x₂, which is 0 without
+      const Outcome fit =
+          run(problem(lower), method, {.iterations = 10'000, .work = 10'000, .target = 0});
+      EXPECT_NE(fit.status, Status::unconfirmed) << method << lower << fit.trace->message;
+      EXPECT_NEAR(fit.theta[1], std::max<Real>(lower, 0), 1e-5) << method;
+    }
+}
+
 // Fewer than J at each step would take, which is n calls an iteration.
 TEST(Forward, UpdatesOfTheJacobianSaveCalls) {
   std::int64_t with_updates = 0, without = 0;

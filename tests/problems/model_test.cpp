@@ -153,5 +153,36 @@ TEST(Expressions, HaveAGreatestLengthAndDepth) {
   EXPECT_THROW(Expression(sum, names), UsageError);
 }
 
+// Of a logarithm h / x, of what is scaled h over its scale; one for each x, fixed ones as well.
+TEST(Model, GivenStepsAreThoseOfX) {
+  const GivenSteps absolute = given_steps("1:2:3:4:5:6:7 absolute"), relative = given_steps("0.1");
+  const Problem problem = full();
+  const Vector z = problem.start(), x = problem.in_own_units(z);
+  EXPECT_DOUBLE_EQ(given_step(absolute, problem.physics(), z, 0, 1, 0), 1 / x[0]);
+  EXPECT_EQ(given_step(absolute, problem.physics(), z, 1, 1, 0), 4)
+      << "x₄, after a fixed and a tied one";
+  EXPECT_EQ(given_step(relative, problem.physics(), z, 1, 5, 0), 0.5);
+  const Problem scaled = with_scaled_unknowns(full());
+  const Matrix S = scaled.model_slopes(scaled.start());
+  EXPECT_DOUBLE_EQ(given_step(absolute, scaled.physics(), scaled.start(), 1, 1, 0),
+                   4 / std::abs(S(3, 1)));
+}
+
+// What is tied has no value outside its bounds, and what is fixed none.
+TEST(Model, BoundsHoldWhatIsTiedAndWhatIsFixed) {
+  const auto with = [](const ModelWords& words) {
+    ProblemParts parts = make("rosenbrock").parts();
+    parts.bounds = Bounds{Vector{{-5, -5}}, Vector{{5, 1}}};
+    return with_model(Problem(std::move(parts)), words, Draw(0, "rosenbrock"));
+  };
+  const Problem tied = with({.tied = "x2 = 2 * x1"});
+  Point at;
+  tied.forward(Vector{{0.4}}, at);
+  EXPECT_TRUE(std::isfinite(at.loss));
+  tied.forward(Vector{{0.6}}, at);
+  EXPECT_FALSE(std::isfinite(at.loss));
+  EXPECT_THROW(with({.fixed = "x2=5"}), UsageError);
+}
+
 }  // namespace
 }  // namespace isoline::problems

@@ -30,10 +30,13 @@ struct Covariance {
         problem.samples() != 1 || all > kUnknowns || !std::isfinite(f.judged_point().loss) ||
         (!problem.offers().contains(Oracle::jacobian) && !f.knows_jacobian()))
       return;
-    if (m < all && problem.is_elsewhere())  // a user reads it
-      f.remark(
-          fmt::format("{} data do not determine {} unknowns: others explain them as well", m, all));
-    if (m <= all) return;
+    const auto are_too_few = [&](Index count) {
+      if (m < count && problem.is_elsewhere())  // a user reads it
+        f.remark(fmt::format("{} data do not determine {} unknowns: others explain them as well", m,
+                             count));
+      return m <= count;
+    };
+    if (problem.bounds() == nullptr && are_too_few(all)) return;
     const Matrix* const known = f.jacobian_at_end();
     if (known == nullptr) return f.remark("no calls were left for standard deviations");
     const Vector r = (f.judged_point().y - problem.target()).reshaped(),
@@ -42,7 +45,7 @@ struct Covariance {
     for (Index i = 0; i < all; ++i)
       if (!f.is_held(i, slope)) free.push_back(i);
     const auto n = static_cast<Index>(free.size());
-    if (n == 0) return;
+    if (n == 0 || are_too_few(n)) return;
     const Matrix J = (*known)(Eigen::all, free);  // (m, n)
     const Vector D = J.colwise().norm();          // (n)
     Svd svd;
