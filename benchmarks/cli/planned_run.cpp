@@ -10,6 +10,7 @@
 #include "benchmarks/plan/suite.h"
 #include "benchmarks/run/run_plan.h"
 #include "benchmarks/shard/split.h"
+#include "core/records/naming.h"
 #include "core/spec.h"
 #include "core/text.h"
 
@@ -209,9 +210,10 @@ PlannedRun planned_run(const RunArguments& given, const Catalog& catalog) {
     return expand(catalog, suite, rates, most);
   };
   const bool is_of_file = is_suite && given.instead.empty() && fs::is_regular_file(given.suite);
-  PlannedRun all{suite.label(), is_of_file ? read_as(given.suite, cells) : cells(), given.out,
-                 std::move(rates)};
-  if (is_suite && is_limited && given.instead.empty())
+  const bool is_part = is_suite && is_limited && given.instead.empty();
+  PlannedRun all{is_part ? part_of_suite(suite.label()) : suite.label(),
+                 is_of_file ? read_as(given.suite, cells) : cells(), given.out, std::move(rates)};
+  if (is_part)
     all.requests = filtered(catalog, std::move(all.requests), given.problem, given.optimizer);
   if (!all.folder.empty()) return all;
   const std::string title = is_suite ? suite.name : "";

@@ -12,6 +12,7 @@
 #include "core/json.h"
 #include "core/options.h"
 #include "core/records/fields.h"
+#include "core/records/naming.h"
 #include "core/records/npy.h"
 #include "core/status.h"
 
@@ -438,10 +439,24 @@ Budget budget_from(const JsonView& json) {
   return budget;
 }
 
+namespace {
+
+constexpr std::string_view kPart = "part of ";
+
+}  // namespace
+
+std::string part_of_suite(const std::string& label) { return std::string(kPart) + label; }
+
 void add_suite(std::vector<std::string>& suites, const std::string& suite) {
-  const auto name_in = [](const std::string& one) { return one.substr(0, one.find('@')); };
-  const auto with_version = [](const std::string& one) {
-    return one.find('@') == one.npos ? one + "@1" : one;
+  const auto is_part = [](const std::string& one) { return one.starts_with(kPart); };
+  const auto whole = [&](const std::string& one) {
+    return is_part(one) ? one.substr(kPart.size()) : one;
+  };
+  const auto name_in = [&](const std::string& one) {
+    return whole(one).substr(0, whole(one).find('@'));
+  };
+  const auto with_version = [&](const std::string& one) {
+    return one.find('@') == one.npos ? whole(one) + "@1" : whole(one);
   };
   for (std::string& known : suites) {
     if (name_in(known) != name_in(suite)) continue;
@@ -451,7 +466,9 @@ void add_suite(std::vector<std::string>& suites, const std::string& suite) {
           "its versions; keep each version in its own folder, and report it alone",
           with_version(known), with_version(suite));
     });
-    if (suite.size() > known.size()) known = suite;  // the one that states its version
+    const bool are_parts = is_part(suite) && is_part(known);
+    const std::string label = std::max(whole(suite), whole(known));  // the one with its version
+    known = are_parts ? part_of_suite(label) : label;
     return;
   }
   suites.push_back(suite);

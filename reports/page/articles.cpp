@@ -11,6 +11,7 @@
 
 #include "core/json.h"
 #include "core/oracle.h"
+#include "core/results/contrasts.h"
 #include "core/threads.h"
 #include "reports/formats/formats.h"
 #include "reports/page/page.h"
@@ -113,17 +114,22 @@ std::string values_of(const Comparison& c, std::size_t s, const std::string& opt
   return fmt::format("{} to {}, {} values", texts.front(), texts.back(), texts.size());
 }
 
-// "3rd of 36 on the 17 settings that all ranked methods ran on", or that it is not ranked.
+// "3rd to 5th of 36 on the 17 settings that all ranked methods ran on", or that it is not ranked.
+// Scores within the margin of its own do not tell the methods apart.
 std::string place_text(const Comparison& c, std::size_t s) {
   if (!c.order.has(s))
     return words("deed.not-ranked", counted(c.order.settings.size(), common_noun(c)));
-  const Standing& own = c.optimizers[s].tightest();
-  const auto first = std::ranges::find_if(c.order.methods, [&](std::size_t other) {
-    return are_tied(own, c.optimizers[other].tightest());
-  });
-  const auto before = first - c.order.methods.begin();
-  return fmt::format("{} of {} on the {} common to all ranked methods",
-                     ordinal(1 + static_cast<std::size_t>(before)), c.order.methods.size(),
+  const Real own = c.optimizers[s].tightest().score;
+  const auto above = [&](Real score) {
+    const auto is_above = [&](std::size_t other) {
+      return c.optimizers[other].tightest().score > score;
+    };
+    return static_cast<std::size_t>(std::ranges::count_if(c.order.methods, is_above));
+  };
+  const Real margin = results::score_margin();
+  const std::size_t first = 1 + above(own + margin), last = above(own - margin);
+  return fmt::format("{}{} of {} on the {} common to all ranked methods", ordinal(first),
+                     last > first ? " to " + ordinal(last) : "", c.order.methods.size(),
                      counted(c.order.settings.size(), common_noun(c)));
 }
 

@@ -140,8 +140,18 @@ namespace {
 
 constexpr const char* kNothing = "–";
 
+// The quantity of the medians over seeds, and beside it the geometric mean of the seeds, which the
+// verdict compares, where that is another number.
 std::string value_text(const Judgement& judgement) {
-  return judgement.measured ? figure(judgement.measured->value) : kNothing;
+  if (!judgement.measured) return kNothing;
+  const std::string value = figure(judgement.measured->value);
+  const std::string& kind = judgement.evidence.kind;
+  Real sum = 0;
+  for (const Real each : judgement.measured->each) sum += std::log(each);
+  const auto n = static_cast<Real>(judgement.measured->each.size());
+  const bool has_mean = n > 1 && std::isfinite(sum) && (kind == "ratio" || kind == "value");
+  const std::string mean = has_mean ? figure(std::exp(sum / n)) : value;
+  return mean == value ? value : fmt::format("{}, mean {}", value, mean);
 }
 
 std::string interval_text(const Judgement& judgement) {

@@ -138,8 +138,9 @@ Sequence add_sequence(Table& table, const Comparison& c, const std::vector<Pair>
   };
   for (std::size_t i = 0; i < out.contrasts.size(); ++i) {
     const results::Contrast& contrast = out.contrasts[i];
-    out.outcomes.push_back(
-        words(kOutcomes[static_cast<std::size_t>(contrast.outcome)], pairs[i][0], pairs[i][1]));
+    out.outcomes.push_back(words(kOutcomes[static_cast<std::size_t>(contrast.outcome)], pairs[i][0],
+                                 pairs[i][1], index(contrast.interval.high),
+                                 index(contrast.interval.low)));
     const std::string decision = is_noisy             ? words("contrasts.estimate")
                                  : contrast.is_tested ? out.outcomes.back()
                                                       : words("contrasts.untested");

@@ -1,4 +1,5 @@
 // The error in x after a fixed number of forward solves.
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -48,15 +49,17 @@ Table fixed_budget_table(const Comparison& c) {
                                             : kNever);
       }
       const Real error = median_of(std::move(errors));
-      leaders[i].offer(1 / error, name_in_sentence(c.optimizers[s]));
+      leaders[i].offer(1 / std::max(error, c.yardstick.tightest().tau),  // below it, all are equal
+                       name_in_sentence(c.optimizers[s]));
       row.push_back({reached_figure(error), {{"error", error}}});
     }
     row.push_back(count_cell(settings.size()));
     row.push_back(failed_cell(c, s));
     add_row(table, c, s, std::move(row));
   }
-  table.reading =
-      words("fixed-budget.reading", leaders[0].text(), leaders[1].text(), leaders[2].text());
+  if (table.rows.size() > 1)
+    table.reading =
+        words("fixed-budget.reading", leaders[0].text(), leaders[1].text(), leaders[2].text());
   return table;
 }
 

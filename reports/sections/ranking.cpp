@@ -157,14 +157,34 @@ std::string group_text(const Comparison& c, const Decision& decision) {
          " " + variation_text(decision);
 }
 
+// Counts of settings, of which one family may have many, and of families solved whole.
 std::string most_solved_text(const Comparison& c, const Decision& decision) {
-  const results::Place& first =
-      *std::ranges::max_element(decision.places, {}, &results::Place::solved);
-  const auto count = static_cast<std::size_t>(
-      std::ranges::count(decision.places, first.solved, &results::Place::solved));
-  return words("ranking.most-solved",
-               count > 1 ? counted(count, "method") : names_text(c, {first.method}, 1), count,
-               first.solved, decision.settings, count > 1 ? words("ranking.within-noise") : "");
+  std::vector<std::size_t> solved, whole;  // by place
+  for (const results::Place& place : decision.places) {
+    std::map<std::string, bool> families;  // whether every setting is solved
+    for (const std::size_t p : c.order.settings) {
+      bool& is_whole = families.try_emplace(c.problems[p].family(), true).first->second;
+      is_whole = is_whole && c.cell(p, place.method).headline[kTightest].is_solved();
+    }
+    solved.push_back(place.solved);
+    whole.push_back(static_cast<std::size_t>(
+        std::ranges::count(families, true, &std::pair<const std::string, bool>::second)));
+  }
+  const auto text = [&](const std::vector<std::size_t>& counts, const char* key, std::size_t all,
+                        const auto&... more) {
+    const std::size_t most = std::ranges::max(counts);
+    const auto count = static_cast<std::size_t>(std::ranges::count(counts, most));
+    const auto at = std::ranges::find(counts, most) - counts.begin();
+    const std::size_t method = decision.places[static_cast<std::size_t>(at)].method;
+    return words(key, count > 1 ? counted(count, "method") : names_text(c, {method}, 1), count,
+                 most, all, more...);
+  };
+  const bool are_tied = std::ranges::count(solved, std::ranges::max(solved)) > 1;
+  return text(solved, "ranking.most-solved", decision.settings,
+              are_tied ? words("ranking.within-noise") : "",
+              decision.families < decision.settings
+                  ? text(whole, "ranking.most-families", decision.families)
+                  : "");
 }
 
 // The settings that methods of each kind solve: their order within a kind is mostly chance.
@@ -237,12 +257,15 @@ std::string robustness_text(const Comparison& c, const Decision& decision) {
         words("ranking.otherwise-of", method, choices.size(), first_of(choices, 3, "; ")));
   const std::string share = percent(first.share_first);
   const bool is_other_more = has_other && other->share_first > first.share_first;
+  constexpr Real kApart = 0.1;  // less is chance
+  const bool are_apart = has_other && std::abs(other->share_first - first.share_first) > kApart;
   const std::string samples =
       !has_other ? words("ranking.share", name(first), share)
                  : words(is_other_more ? "ranking.share-more" : "ranking.share-less", name(first),
                          share, name(*other), percent(other->share_first),
-                         is_other_more ? reason_text(c, other->method, first.method)
-                                       : reason_text(c, first.method, other->method));
+                         !are_apart      ? ""
+                         : is_other_more ? reason_text(c, other->method, first.method)
+                                         : reason_text(c, first.method, other->method));
   return words("ranking.robustness", samples, name(first), kept, decision.choices.size(),
                lost.empty() ? "" : words("ranking.otherwise", listed(firsts)));
 }
@@ -319,6 +342,9 @@ std::vector<std::string> verdict(const Comparison& c) {
   const bool are_all_unknown = std::ranges::all_of(c.problems, &ProblemAxis::lacks_least_loss);
   if (!is_any_solved && !are_all_unknown) {  // calls of one's own may differ by more than τ
     const bool are_own = std::ranges::all_of(c.problems, &ProblemAxis::is_least_of_runs);
+    const auto applies = [](const auto& method) { return method.applicable > 0; };
+    if (!c.missing.empty()) return {words("ranking.incomplete", c.missing.size())};
+    if (std::ranges::none_of(c.optimizers, applies)) return {words("ranking.none-applies")};
     return {words(are_own ? "ranking.none-near" : "ranking.none-solved", tau_name(c))};
   }
   std::vector<std::string> all;

@@ -18,6 +18,7 @@
 #include "core/json.h"
 #include "core/random.h"
 #include "core/records/json_view.h"
+#include "core/records/naming.h"
 #include "core/records/request.h"
 #include "core/spec.h"
 #include "core/text.h"
@@ -112,7 +113,9 @@ TEST(Suites, OfTwoVersionsAreNotCombined) {
   std::vector<std::string> suites = {"quick", "nist@3"};
   add_suite(suites, "quick@1");
   add_suite(suites, "notebook@1");
+  add_suite(suites, part_of_suite("nist@3"));
   EXPECT_EQ(suites, (std::vector<std::string>{"quick@1", "nist@3", "notebook@1"}));
+  EXPECT_THROW(add_suite(suites, part_of_suite("nist@2")), UsageError);
   const std::string reason = refusal([&] { add_suite(suites, "nist@4"); });
   EXPECT_NE(reason.find("nist@3 and nist@4"), reason.npos) << reason;
   EXPECT_NE(refusal([&] { add_suite(suites, "nist"); }), "") << "it is version 1";

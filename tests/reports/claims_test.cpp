@@ -581,7 +581,7 @@ TEST(Claims, AreNoBetterThanWhatTheyAreHeldAgainst) {
 
 TEST(Claims, OfAReportAreToldInEveryFormatByTheSameFigures) {
   const std::vector<Judgement> judgements = {judgement_of({}, adam_and_sip())};
-  EXPECT_EQ(measured_text(judgements[0]), "10 (10–30), n = 3");
+  EXPECT_EQ(measured_text(judgements[0]), "10, mean 14.42 (10–30), n = 3");
   const Section section = claims_section(judgements);
   const Document document = document_of(compare_optimizers(Study()), judgements);
   for (const std::string& text :
